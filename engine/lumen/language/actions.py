@@ -1,0 +1,123 @@
+"""What stands in `entry`, `do`, `exit` and `actions`: one value for each verb of the YAML.
+
+Verbs without expressions are their own commands (`Play`, `Posture`, …); the others hold expressions and templates
+that a step evaluates. `where` is the action's path in its document, for diagnostics; it does not count in equality.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Union  # a recursive alias needs it: `|` does not take names in quotes
+
+from lumen.language.commands import Language, Look, Play, Posture, Rest, Stop, Track, Wake, Walk
+from lumen.language.diagnostics import Path
+
+
+@dataclass(frozen=True, slots=True)
+class Expression:
+    """The source of an expression, as the author wrote it."""
+
+    source: str
+    where: Path = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """A text that may hold `{{ expression }}`."""
+
+    text: str
+    where: Path = field(default=(), compare=False)
+
+
+Value = Union[Expression, None, bool, int, float, tuple["Value", ...], Mapping[str, "Value"]]  # noqa: UP007
+"""A value to be computed: every text in the YAML is an expression, everything else stands for itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class SayText:
+    """`say`: for each language (or `""` for any) the alternatives, of which one is drawn."""
+
+    texts: Mapping[str, tuple[Template, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class PublishBody:
+    """`publish`: a body on a route."""
+
+    route: str
+    body: Value = None
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """`assign`: context keys and their new values, evaluated and stored in the order written."""
+
+    values: Mapping[str, Value]
+
+
+@dataclass(frozen=True, slots=True)
+class Raise:
+    """`raise`: an event for this machine, before any from outside."""
+
+    event: str
+    data: Value = None
+
+
+@dataclass(frozen=True, slots=True)
+class Send:
+    """`send`: an event for this machine, after `delay` [s]; `id` lets `cancel` take it back."""
+
+    event: str
+    data: Value = None
+    delay: float = 0.0
+    id: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class CancelSend:
+    """`cancel`: take back the delayed `send` of that id."""
+
+    id: str
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """`wait`, in `do` only: let [s] pass."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class LogText:
+    """`log`: a line for the exhibition's log."""
+
+    text: Template
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """`if`/`then`/`else` around actions."""
+
+    guard: Expression
+    then: tuple["Step", ...]
+    otherwise: tuple["Step", ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Parallel:
+    """`parallel`, in `do` only: all of these at once; it ends with the last of them."""
+
+    branches: tuple["Step", ...]
+
+
+Action = (
+    SayText | PublishBody | Assign | Raise | Send | CancelSend | Wait | LogText | If | Parallel
+    | Play | Posture | Walk | Look | Track | Stop | Rest | Wake | Language
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One action and where it stands."""
+
+    action: Action
+    where: Path = field(default=(), compare=False)

@@ -1,0 +1,120 @@
+"""What a behaviour asks of the world: values that a step returns and the edge performs.
+
+Lengths in [m], angles in [rad], times in [s]; what a `Start` holds is answered by the robot with the events
+`done.command.ID`, `error.command.ID` or `cancelled.command.ID`.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+Channel = Literal["all", "walk", "play", "say"]
+
+
+@dataclass(frozen=True, slots=True)
+class Say:
+    """Speak a text; `language` is one of the project's, or empty where it has none."""
+
+    text: str
+    language: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Play:
+    """Play the motion of that name."""
+
+    motion: str
+
+
+@dataclass(frozen=True, slots=True)
+class Posture:
+    """Go to a posture of the robot; `speed` is a fraction of the greatest, in (0, 1]."""
+
+    name: str
+    speed: float = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """Walk to a pose relative to the robot: `x` forward, `y` left [m], `theta` to the left [rad]."""
+
+    x: float
+    y: float = 0.0
+    theta: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """Turn the head: `yaw` to the left, `pitch` down [rad], as NAO counts them."""
+
+    yaw: float
+    pitch: float
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """Let a controller move its joints, or take them from it."""
+
+    controller: str
+    on: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """End what is running, keeping balance."""
+
+    what: Channel = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class Rest:
+    """Stop, go safely to Crouch, motors off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wake:
+    """Motors on, stand."""
+
+
+@dataclass(frozen=True, slots=True)
+class Language:
+    """Speak this language from now on."""
+
+    language: str
+
+
+@dataclass(frozen=True, slots=True)
+class Publish:
+    """Send a body (JSON data) on a route."""
+
+    route: str
+    body: Any = None
+
+
+@dataclass(frozen=True, slots=True)
+class Log:
+    """Write a line into the exhibition's log."""
+
+    text: str
+
+
+BodyCommand = Say | Play | Posture | Walk | Look | Track | Stop | Rest | Wake | Language
+"""What a robot performs, or the parts of the runtime that move it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Begin a command; its end is reported under `id`."""
+
+    id: str
+    command: BodyCommand
+
+
+@dataclass(frozen=True, slots=True)
+class Cancel:
+    """End the command of that id early, as soon as the body is balanced."""
+
+    id: str
+
+
+Command = Start | Cancel | Publish | Log
+"""Everything a step can ask for."""

@@ -1,0 +1,33 @@
+"""What happened: the only input of a behaviour."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+
+class Event(NamedTuple):
+    """Something that happened, named and timed; `event.name` and `event.data` in expressions.
+
+    `data` is JSON data. `at` [s] is the time on the exhibition's clock, the only clock a step reads. `sendid` is
+    the id of the timer or delayed `send` that raised it (SCXML 5.10.1), empty for events from outside.
+    """
+
+    name: str
+    data: Any = None
+    at: float = 0.0
+    sendid: str = ""
+
+
+def _object(**fields: object) -> dict[str, object]:
+    return {"type": "object", "properties": fields, "required": list(fields)}
+
+
+ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
+    "touched": _object(sensor={"type": "string"}),
+    "released": _object(sensor={"type": "string"}),
+    "fallen": _object(),
+    "battery.low": _object(percentage={"type": "integer"}),
+    "motors.hot": _object(joint={"type": "string"}, temperature={"type": "number"}),
+    "brain.lost": _object(seconds={"type": "number"}),
+    "stop": _object(),
+}
+"""Events that every robot raises by itself, with the JSON Schema of their data; no behaviour has to declare them."""

@@ -1,0 +1,108 @@
+"""What a behaviour file says: a statechart as frozen values, its targets resolved.
+
+The words are XState v5's with UML's `entry`/`do`/`exit`; what they mean is W3C SCXML (Appendix D).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+from lumen.language.actions import Expression, Step, Value
+from lumen.language.diagnostics import Path
+
+
+class Kind(StrEnum):
+    """`type:` of a state; a state with children is compound, one without is atomic."""
+
+    ATOMIC = "atomic"
+    COMPOUND = "compound"
+    PARALLEL = "parallel"
+    FINAL = "final"
+    HISTORY = "history"
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """A candidate: taken on `event` where its guard holds.
+
+    `event` is a descriptor (`heard`, `error.*`, `*`), empty for `always`; `delay` [s] is set for `after`. `targets`
+    are the paths of existing states, empty for a targetless transition. `reenter` is SCXML's `type="external"`.
+    """
+
+    source: str
+    event: str = ""
+    targets: tuple[str, ...] = ()
+    guard: Expression | None = None
+    actions: tuple[Step, ...] = ()
+    reenter: bool = False
+    delay: float | None = None
+    where: Path = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Invoke:
+    """Another behaviour that runs while the state is active."""
+
+    id: str
+    behavior: str
+    input: Value = None
+    where: Path = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """A state; `path` is its identity, dotted from the root, whose own path is empty.
+
+    `initial` holds the paths entered by default (of a compound state, or of a history state without history).
+    `children` are paths in document order, `transitions` candidates in document order. `output` is the data of
+    `done.state.*` for a final state.
+    """
+
+    path: str
+    kind: Kind = Kind.ATOMIC
+    parent: str | None = None
+    alias: str = ""
+    children: tuple[str, ...] = ()
+    initial: tuple[str, ...] = ()
+    deep: bool = False
+    entry: tuple[Step, ...] = ()
+    do: tuple[Step, ...] = ()
+    exit: tuple[Step, ...] = ()
+    transitions: tuple[Transition, ...] = ()
+    invoke: tuple[Invoke, ...] = ()
+    output: Value = None
+    on_reload: str = ""
+    where: Path = field(default=(), compare=False)
+
+    @property
+    def name(self) -> str:
+        """What `configuration` calls it: the alias where there is one, else the path."""
+        return self.alias or self.path
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """A row of an `answers:` table: phrases by language, and the value (a text, or one per language)."""
+
+    phrases: Mapping[str, tuple[str, ...]]
+    value: Any
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A whole statechart; `states` maps paths to states in document order, the root under the empty path."""
+
+    id: str
+    states: Mapping[str, State]
+    context: Mapping[str, Any] = field(default_factory=dict)
+    types: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    events: Mapping[str, Any] = field(default_factory=dict)
+    phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
+    answers: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    hash: str = ""
+
+    @property
+    def root(self) -> State:
+        return self.states[""]

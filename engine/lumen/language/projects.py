@@ -1,0 +1,51 @@
+"""A whole project as one immutable bundle."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from lumen.language.controllers import Controller
+from lumen.language.machines import Machine
+from lumen.language.motions import Motion
+from lumen.language.robots import Body
+from lumen.language.routes import Route
+from lumen.language.stories import Story
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """Where feet may go: a rectangle around the robot's start, in its frame [m]."""
+
+    x: tuple[float, float]
+    y: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Project:
+    """Everything the YAML of a project says. `root` is its folder, `hash` of all its files' contents.
+
+    `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has
+    the default first; `messages` maps a message's name to its JSON Schema.
+    """
+
+    root: str
+    name: str
+    robot: str
+    body: Body
+    hall: str
+    behavior: str
+    behaviors: Mapping[str, Machine]
+    controllers: Mapping[str, Controller] = field(default_factory=dict)
+    motions: Mapping[str, Motion] = field(default_factory=dict)
+    routes: Mapping[str, Route] = field(default_factory=dict)
+    stories: Mapping[str, Story] = field(default_factory=dict)
+    messages: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    languages: tuple[str, ...] = ("en",)
+    story: str = ""
+    stage: Stage | None = None
+    bus: str = "memory://"
+    hash: str = ""
+
+    @property
+    def machine(self) -> Machine:
+        """The behaviour that runs."""
+        return self.behaviors[self.behavior]

@@ -1,0 +1,55 @@
+"""What is known of a robot's body without simulating it: joints, limits, parts, postures, camera."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A joint: limits [rad], greatest speed [rad/s], greatest torque [N m]; a hand counts 0 closed to 1 open."""
+
+    name: str
+    minimum: float
+    maximum: float
+    speed: float = inf
+    effort: float = inf
+
+
+@dataclass(frozen=True, slots=True)
+class CoupledLimit:
+    """Limits of `joint` by where `on` stands: rows (angle of `on`, minimum, maximum) [rad], linear in between."""
+
+    joint: str
+    on: str
+    rows: tuple[tuple[float, float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A pinhole camera on the head: size [px], angles of view [rad], place in its frame [m], pitch down [rad]."""
+
+    width: int
+    height: int
+    horizontal_fov: float
+    vertical_fov: float
+    position: tuple[float, float, float]
+    pitch: float
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A robot model: `models/NAME.yaml` beside its MJCF.
+
+    `joints` keeps the robot's own order of names. `parts` maps head, arms, legs to joint names. `postures` maps a
+    posture to angles [rad] of every joint.
+    """
+
+    name: str
+    mjcf: str
+    joints: Mapping[str, Joint]
+    parts: Mapping[str, tuple[str, ...]]
+    postures: Mapping[str, Mapping[str, float]]
+    coupled: tuple[CoupledLimit, ...]
+    camera: Camera
+    tactile: tuple[str, ...]

@@ -1,0 +1,113 @@
+"""What a story file says: a scripted visitor, and what must happen."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumen.language.diagnostics import Path
+
+
+@dataclass(frozen=True, slots=True)
+class Visitor:
+    """Somebody in the hall: where they stand in the robot's frame at its start, [m], and how tall they are [m]."""
+
+    x: float = 1.5
+    y: float = 0.0
+    height: float = 1.65
+
+
+@dataclass(frozen=True, slots=True)
+class Arrive:
+    """`visitor: {x, y, height}` or `visitor: arrives`: somebody walks up."""
+
+    visitor: Visitor
+
+
+@dataclass(frozen=True, slots=True)
+class Leave:
+    """`visitor: leaves`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Speak:
+    """`says: TEXT`: the visitor speaks, in `language` where given."""
+
+    text: str
+    language: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """`touch: SENSOR` or `release: SENSOR`."""
+
+    sensor: str
+    pressed: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Happen:
+    """`event: NAME` or `event: {name, data}`: an event from nowhere."""
+
+    name: str
+    data: Any = None
+
+
+@dataclass(frozen=True, slots=True)
+class Send:
+    """`message: {route, body}`: a message as a module would send it."""
+
+    route: str
+    body: Any = None
+
+
+@dataclass(frozen=True, slots=True)
+class Pause:
+    """`wait: DURATION` [s]."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Expect:
+    """`expect:`: all of this holds, or comes to hold `within` [s], else the story fails.
+
+    `states` are active together; `said` is part of a text said, and `played` a motion finished, since the last
+    `expect` that held; `context` maps keys to values.
+    """
+
+    states: tuple[str, ...] = ()
+    said: str | None = None
+    played: str | None = None
+    published: str | None = None
+    context: Mapping[str, Any] = field(default_factory=dict)
+    within: float = 30.0
+
+
+Deed = Arrive | Leave | Speak | Touch | Happen | Send | Pause | Expect
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """One step of a story and where it stands."""
+
+    deed: Deed
+    where: Path = field(default=(), compare=False)
+
+
+@dataclass(frozen=True)
+class Story:
+    """A story, and how the world is while it plays.
+
+    `robot` maps a verb to `fails`, `hangs` or its duration [s]; `clock` is the time of day at its start (`09:30`);
+    the states in `never` must never be active.
+    """
+
+    name: str
+    title: str
+    scenes: tuple[Scene, ...]
+    behavior: str = ""
+    language: str = ""
+    clock: str = ""
+    context: Mapping[str, Any] = field(default_factory=dict)
+    robot: Mapping[str, str | float] = field(default_factory=dict)
+    never: tuple[str, ...] = ()

@@ -1,0 +1,203 @@
+"""YAML 1.2 with a place for every node.
+
+PyYAML reads YAML 1.1 (`on:` is true there, `12:30` is 750); here only its parser is used, and scalars are resolved by
+the YAML 1.2 core schema. A `Document` keeps plain data beside a table of places, so that every later message can point
+at the author's text by the path of the node.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf, nan
+from typing import Any
+
+import yaml
+
+from lumen.language.diagnostics import Diagnostic, Path, Place, Severity
+
+MAX_DEPTH = 100
+MAX_NODES = 200_000
+
+_NULL = frozenset(("", "~", "null", "Null", "NULL"))
+_BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
+_INT = re.compile(r"[-+]?[0-9]+")
+_OCT = re.compile(r"0o[0-7]+")
+_HEX = re.compile(r"0x[0-9a-fA-F]+")
+_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_INF = re.compile(r"([-+]?)\.(inf|Inf|INF)")
+_NAN = frozenset((".nan", ".NaN", ".NAN"))
+
+
+class _Loader(yaml.CSafeLoader):
+    """Parses and composes; resolves nothing."""
+
+
+_Loader.yaml_implicit_resolvers = {}
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Where a node stands: its key (None in a list and at the root) and its value."""
+
+    key: Place | None
+    value: Place
+
+
+@dataclass(frozen=True)
+class Document:
+    """One file: its path relative to the project, its text, the plain data in it, and where each node stands."""
+
+    file: str
+    data: Any
+    spans: Mapping[Path, Span] = field(default_factory=dict, repr=False, compare=False)
+    text: str = field(default="", repr=False, compare=False)
+
+    def place(self, path: Path, *, key: bool = False) -> Place:
+        """The place of the node at `path`, or of its key; of the nearest node above it where there is none.
+
+        Where the node itself is missing, that is the key of its parent: what to look at when something is absent.
+        """
+        if path in self.spans:
+            span = self.spans[path]
+            return span.key if key and span.key else span.value
+        while path:
+            path = path[:-1]
+            if path in self.spans:
+                span = self.spans[path]
+                return span.key or span.value._replace(end_line=span.value.line, end_column=span.value.column + 1)
+        return Place(self.file)
+
+
+class Report:
+    """Collects the diagnostics of one document; whoever finds something calls it with the path of the node."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.diagnostics: list[Diagnostic] = []
+
+    def __call__(
+        self,
+        code: str,
+        path: Path,
+        message: str,
+        *,
+        hint: str = "",
+        key: bool = False,
+        severity: Severity = Severity.ERROR,
+    ) -> None:
+        place = self.document.place(path, key=key)
+        self.diagnostics.append(Diagnostic(code, message, place, hint, severity))
+
+
+def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
+    """The document in `content`, or None, and what is wrong with it; never raises for what the file holds."""
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        column = error.start - (content.rfind(b"\n", 0, error.start) + 1) + 1
+        place = Place(file, line, column, line, column + 1)
+        return None, [Diagnostic("not-utf8", "the file is not UTF-8 text", place, "save it as UTF-8")]
+    loader = _Loader(text)
+    try:
+        node = loader.get_single_node()
+    except (yaml.MarkedYAMLError, yaml.reader.ReaderError, RecursionError) as error:
+        return None, [_syntax_error(file, text, error)]
+    finally:
+        loader.dispose()
+    if node is None:
+        return None, [Diagnostic("empty-file", "the file is empty", Place(file), "write its content, or delete it")]
+    reader = _Reader(file)
+    data = reader.read(node, (), None, 0)
+    return Document(file, data, reader.spans, text), reader.diagnostics
+
+
+def resolve(text: str) -> Any:
+    """What a plain scalar stands for by the YAML 1.2 core schema (10.3.2)."""
+    if text in _NULL:
+        return None
+    if text in _BOOL:
+        return _BOOL[text]
+    if text[0] not in "+-.0123456789":
+        return text
+    if _INT.fullmatch(text):
+        return int(text) if len(text) < 300 else float(text)
+    if _OCT.fullmatch(text):
+        return int(text[2:], 8)
+    if _HEX.fullmatch(text):
+        return int(text[2:], 16)
+    if _FLOAT.fullmatch(text):
+        return float(text)
+    if match := _INF.fullmatch(text):
+        return -inf if match[1] == "-" else inf
+    return nan if text in _NAN else text
+
+
+class _Reader:
+    """Turns composed nodes into plain data, remembering where each stood."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.spans: dict[Path, Span] = {}
+        self.diagnostics: list[Diagnostic] = []
+        self.full = False
+
+    def read(self, node: yaml.Node, path: Path, key: yaml.Node | None, depth: int) -> Any:
+        self.spans[path] = Span(self.place(key) if key else None, self.place(node))
+        if depth > MAX_DEPTH or len(self.spans) > MAX_NODES:
+            self.overflow(node, depth)
+            return None
+        if isinstance(node, yaml.ScalarNode):
+            return node.value if node.style else resolve(node.value)
+        if isinstance(node, yaml.SequenceNode):
+            return [self.read(child, (*path, i), None, depth + 1) for i, child in enumerate(node.value)]
+        return self.mapping(node, path, depth)
+
+    def mapping(self, node: yaml.Node, path: Path, depth: int) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        for key, value in node.value:
+            if not isinstance(key, yaml.ScalarNode):
+                hint = "put quotes around a text that begins with `{`"
+                self.say("complex-key", key, "a key has to be a single word or text", hint)
+            elif key.value in data:
+                first = self.spans[(*path, key.value)].key
+                hint = f"the first one stands in line {first.line}" if first else ""
+                self.say("duplicate-key", key, f"`{key.value}` stands twice in the same place", hint)
+            else:
+                data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
+        return data
+
+    def overflow(self, node: yaml.Node, depth: int) -> None:
+        if not self.full:
+            self.full = True
+            what = f"nested deeper than {MAX_DEPTH} levels" if depth > MAX_DEPTH else f"more than {MAX_NODES:,} values"
+            self.say("too-large", node, f"the file is too large to be read: {what}", "split it, or use fewer aliases")
+
+    def say(self, code: str, node: yaml.Node, message: str, hint: str) -> None:
+        self.diagnostics.append(Diagnostic(code, message, self.place(node), hint))
+
+    def place(self, node: yaml.Node) -> Place:
+        start, end = node.start_mark, node.end_mark
+        return Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+
+def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
+    if isinstance(error, yaml.reader.ReaderError):
+        line = text.count("\n", 0, error.position) + 1
+        place = Place(file, line, 1, line, 2)
+        return Diagnostic("yaml-syntax", "the file holds a character that YAML does not allow", place, "delete it")
+    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+    if mark is None:
+        return Diagnostic("too-large", "the file is nested too deeply to be read", Place(file), "use fewer levels")
+    place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2)
+    lines = text.splitlines()
+    source = lines[mark.line] if mark.line < len(lines) else ""
+    if "\t" in source[: mark.column + 1] and not source[: mark.column].strip():
+        column = source.index("\t") + 1
+        place = Place(file, mark.line + 1, column, mark.line + 1, column + 1)
+        return Diagnostic("tab", "a tab stands in the indentation", place, "YAML is indented with spaces: use two")
+    problem = " ".join(str(getattr(error, "problem", error)).split())
+    context = getattr(error, "context", None)
+    detail = f"{problem} {context}" if context else problem
+    hint = "look at the indentation, a missing colon, quote or bracket here or in the line above"
+    return Diagnostic("yaml-syntax", f"this is not YAML: {detail}", place, hint)

@@ -1,0 +1,176 @@
+"""What the runtime asks of the world: three seams, and the readings that cross them."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.events import Event
+from lumen.language.motions import Motion
+from lumen.language.stories import Visitor
+
+
+class Sense(StrEnum):
+    """The five kinds of data that Lumen Server acquires in parallel."""
+
+    IMAGE = "image"
+    JOINT = "joint"
+    SONAR = "sonar"
+    TACTILE = "tactile"
+    BATTERY = "battery"
+
+
+@dataclass(frozen=True, slots=True)
+class Image:
+    """A frame that is rendered or fetched only when `pixels` is called: Shape (height, width, 3), uint8 RGB."""
+
+    time: float
+    pixels: "Callable[[], NDArray[np.uint8]]"
+
+
+@dataclass(frozen=True, slots=True)
+class Joints:
+    """Measured angles [rad, hands 0..1] and stiffness [0..1], in the order of `names`."""
+
+    time: float
+    names: tuple[str, ...]
+    angles: tuple[float, ...]
+    stiffness: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Sonar:
+    """Distance of the nearest echo on either side [m]."""
+
+    time: float
+    left: float
+    right: float
+
+
+@dataclass(frozen=True, slots=True)
+class Tactile:
+    """1 where a sensor is pressed, else 0, in the order of `names`."""
+
+    time: float
+    names: tuple[str, ...]
+    values: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Battery:
+    """Charge [%] and where it goes."""
+
+    time: float
+    percentage: int
+    plugged: bool
+    charging: bool
+
+
+Reading = Image | Joints | Sonar | Tactile | Battery
+
+
+@dataclass(frozen=True, slots=True)
+class Perform:
+    """Play this motion; it is the value itself, so that a reload can't change it while it runs."""
+
+    motion: Motion
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """Move these joints towards angles [rad] at most at `speed` (a fraction of their greatest): NAOqi's `setAngles`."""
+
+    angles: Mapping[str, float]
+    speed: float = 0.3
+
+
+RobotCommand = Say | Perform | Posture | Walk | Look | Aim | Stop | Rest | Wake
+"""What a robot understands."""
+
+
+class Robot(Protocol):
+    """A body. Nothing here blocks, and nothing here raises for what the robot can't do: that is an answer.
+
+    `start` is answered through `poll` by `done.command.ID`, `error.command.ID` (data: `{"reason": …}`) or
+    `cancelled.command.ID`; `Aim` is not answered. `poll` also returns what the robot noticed by itself
+    (`ROBOT_EVENTS`), each with `at` [s] on the robot's clock.
+    """
+
+    def start(self, id: str, command: RobotCommand) -> None: ...
+
+    def cancel(self, id: str) -> None: ...
+
+    def poll(self) -> Sequence[Event]: ...
+
+    def read(self, sense: Sense) -> Reading | None:
+        """The newest reading of a sense, None where the robot lacks it."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class Hall(Protocol):
+    """What a story may do to a simulated world."""
+
+    def place(self, visitor: Visitor | None) -> None:
+        """Put a visitor there, move them, or (None) take them away."""
+        ...
+
+    def face(self) -> tuple[float, float] | None:
+        """Where the visitor's face stands in the top camera's image now [px], None where it can't be seen."""
+        ...
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        """Press or release a tactile sensor."""
+        ...
+
+
+class Clock(Protocol):
+    """The exhibition's time."""
+
+    def now(self) -> float:
+        """[s], never going back."""
+        ...
+
+    def wait(self, until: float) -> None:
+        """Return when `now()` has reached `until`; a simulated world lives through the time in between."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """What a subscriber is handed; `body` is JSON data."""
+
+    key: str
+    body: Any
+    reply_to: str = ""
+    correlation_id: str = ""
+
+
+Handler = Callable[[Message], None]
+
+
+class Bus(Protocol):
+    """Messages by topic: `*` in a pattern stands for one word of the key, `#` for any number."""
+
+    def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
+        """Hand every matching message to `handler`, one at a time, in the order published; returns the undoing.
+
+        An exception in a handler is logged and ends neither the bus nor the publisher.
+        """
+        ...
+
+    def publish(
+        self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
+    ) -> None:
+        """Send a body (JSON data); safe from any thread, never waits for a handler. Raises BusError once closed."""
+        ...
+
+    def close(self) -> None:
+        """Deliver what was published and end; harmless when repeated."""
+        ...
