@@ -83,11 +83,11 @@ class Operators:
 
 @dataclass(frozen=True, slots=True)
 class InputBinding:
-    """Where an input comes from: a field of the messages of a route."""
+    """Where an input comes from: `face.x` is the field `x` of the bodies of the route `face`."""
 
     variable: str
     route: str
-    field: str
+    path: tuple[str, ...]
     where: Path = field(default=(), compare=False)
 
 
