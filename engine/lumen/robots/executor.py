@@ -1,0 +1,147 @@
+"""Who moves what: commands wait until the parts of the body that they need are free.
+
+Head, arms, legs, voice and LEDs each have one owner at a time. `Rest` and `Stop` cancel what runs and come before
+everything; the others wait by rank, then in the order they came. A body supplies the activities; this keeps the order,
+the ownership and the answers, and is the same for every robot that executes commands itself.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Protocol
+
+from lumen.errors import RobotError
+from lumen.language.commands import Channel, Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.events import Event
+from lumen.ports import Perform, RobotCommand
+
+HEAD, ARMS, LEGS, VOICE, LEDS = PARTS = ("head", "arms", "legs", "voice", "leds")
+
+_RANK = {Stop: 0, Rest: 0, Wake: 1, Posture: 1, Walk: 1, Perform: 2, Say: 2, Look: 3}
+_CHANNELS: dict[Channel, tuple[type, ...]] = {"walk": (Walk,), "play": (Perform,), "say": (Say,)}
+
+
+class Activity(Protocol):
+    """A command under way."""
+
+    def advance(self, now: float) -> bool:
+        """Live until `now` [s]; true once finished. Raises RobotError where it failed."""
+        ...
+
+    def cancel(self) -> None:
+        """End early: `advance` turns true as soon as the body is balanced, at most 1 s later."""
+        ...
+
+
+@dataclass(eq=False)
+class _Task:
+    id: str
+    command: RobotCommand
+    parts: frozenset[str]
+    activity: Activity | None = None
+    cancelled: bool = False
+
+    @property
+    def rank(self) -> int:
+        return _RANK[type(self.command)]
+
+
+class _Ended:
+    """What `Stop` does: wait until these have ended."""
+
+    def __init__(self, tasks: Iterable[_Task], alive: list[_Task]) -> None:
+        self.tasks, self.alive = tuple(tasks), alive
+
+    def advance(self, now: float) -> bool:
+        return not any(task in self.alive for task in self.tasks)
+
+    def cancel(self) -> None:
+        """A stop can't be stopped."""
+
+
+class Executor:
+    """Starts, queues, cancels and answers commands.
+
+    `begin` makes the activity of a command at a time [s], or raises RobotError; `parts` tells what it moves.
+    """
+
+    def __init__(
+        self, begin: Callable[[RobotCommand, float], Activity], parts: Callable[[RobotCommand], frozenset[str]]
+    ) -> None:
+        self._begin, self._parts = begin, parts
+        self._tasks: list[_Task] = []
+        self._answers: list[tuple[str, _Task, dict[str, str] | None]] = []
+
+    def start(self, id: str, command: RobotCommand) -> None:
+        """Queue a command; it begins at the next `advance` for which its parts are free."""
+        task = _Task(id, command, self._parts(command))
+        if isinstance(command, Stop):
+            kinds = _CHANNELS.get(command.what, (object,))
+            ended = [t for t in self._tasks if isinstance(t.command, kinds) and not isinstance(t.command, Stop | Rest)]
+            task.activity = _Ended(ended, self._tasks)
+            self._cancel(ended)
+        elif isinstance(command, Rest):
+            self._cancel([t for t in self._tasks if not isinstance(t.command, Stop)])
+        self._tasks.append(task)
+        self._tasks.sort(key=lambda t: t.rank)
+
+    def cancel(self, id: str) -> None:
+        """End a command early; one that is unknown or over is left alone."""
+        self._cancel([t for t in self._tasks if t.id == id])
+
+    def fail(self, reason: str) -> None:
+        """Everything that runs or waits fails at once: the body can't go on."""
+        for task in self._tasks[:]:
+            self._end("error", task, {"reason": reason})
+
+    def owner(self, part: str) -> str:
+        """The id of the command that moves this part now, empty where it is free."""
+        return next((t.id for t in self._tasks if t.activity and part in t.parts), "")
+
+    @property
+    def busy(self) -> bool:
+        return bool(self._tasks)
+
+    def advance(self, now: float) -> list[Event]:
+        """Live until `now` [s]; the answers of what ended, in the order it ended."""
+        self._run(now)
+        self._admit(now)
+        answers = [Event(f"{kind}.command.{task.id}", data, now) for kind, task, data in self._answers]
+        self._answers.clear()
+        return answers
+
+    def _run(self, now: float) -> None:
+        for task in self._tasks[:]:
+            if task.activity is None:
+                continue
+            try:
+                finished = task.activity.advance(now)
+            except RobotError as error:
+                self._end("error", task, {"reason": str(error)})
+            else:
+                if finished:
+                    self._end("cancelled" if task.cancelled else "done", task)
+
+    def _admit(self, now: float) -> None:
+        """Begin what can; a command that waits keeps its parts from those behind it."""
+        taken: set[str] = set().union(*(t.parts for t in self._tasks if t.activity))
+        for task in self._tasks[:]:
+            if task.activity is None:
+                if taken.isdisjoint(task.parts):
+                    try:
+                        task.activity = self._begin(task.command, now)
+                    except RobotError as error:
+                        self._end("error", task, {"reason": str(error)})
+                        continue
+                taken |= task.parts
+
+    def _cancel(self, tasks: Iterable[_Task]) -> None:
+        for task in tasks:
+            if task.activity is None:
+                self._end("cancelled", task)
+            elif not task.cancelled:
+                task.cancelled = True
+                task.activity.cancel()
+
+    def _end(self, kind: str, task: _Task, data: dict[str, str] | None = None) -> None:
+        self._tasks.remove(task)
+        self._answers.append((kind, task, data))

@@ -1,0 +1,116 @@
+"""Ownership, order and answers, with activities that last as long as the test says."""
+
+import pytest
+
+from lumen.errors import RobotError
+from lumen.language.commands import Look, Posture, Rest, Say, Stop
+from lumen.ports import RobotCommand
+from lumen.robots.executor import Executor
+
+PARTS = {Say: {"voice"}, Posture: {"head", "arms", "legs"}, Look: {"head"}, Rest: {"head", "arms", "legs"}, Stop: set()}
+
+
+class Fake:
+    """Lasts until `until`; once cancelled, `balance` longer than the moment of cancelling."""
+
+    def __init__(self, command: RobotCommand, now: float, balance: float) -> None:
+        self.until, self.balance, self.now = now + 2.0, balance, now
+
+    def advance(self, now: float) -> bool:
+        self.now = now
+        return now >= self.until
+
+    def cancel(self) -> None:
+        self.until = self.now + self.balance
+
+
+def executor(balance: float = 0.0) -> Executor:
+    return Executor(lambda c, now: Fake(c, now, balance), lambda c: frozenset(PARTS[type(c)]))
+
+
+def names(events: list) -> list[str]:
+    return [e.name for e in events]
+
+
+def test_commands_on_different_parts_run_at_once() -> None:
+    ex = executor()
+    ex.start("a", Say("hello"))
+    ex.start("b", Look(0.1, 0))
+    assert ex.advance(0.0) == []
+    assert (ex.owner("voice"), ex.owner("head"), ex.owner("legs")) == ("a", "b", "")
+    assert names(ex.advance(2.0)) == ["done.command.a", "done.command.b"]
+    assert not ex.busy
+
+
+def test_a_command_waits_for_its_parts_and_keeps_them_from_those_behind() -> None:
+    ex = executor()
+    ex.start("look", Look(0.1, 0))
+    ex.advance(0.0)
+    ex.start("stand", Posture("Stand"))
+    ex.start("again", Look(0.2, 0))
+    ex.advance(1.0)
+    assert ex.owner("legs") == ""
+    ex.advance(2.0)
+    assert ex.owner("head") == "stand"
+    ex.advance(4.0)
+    assert ex.owner("head") == "again"
+
+
+def test_rest_cancels_everything_and_waits_only_for_balance() -> None:
+    ex = executor(balance=0.5)
+    ex.start("say", Say("a long story"))
+    ex.start("stand", Posture("Stand"))
+    ex.advance(0.0)
+    ex.start("later", Look(0, 0))
+    ex.start("rest", Rest())
+    assert names(ex.advance(0.1)) == ["cancelled.command.later"]
+    assert names(ex.advance(0.6)) == ["cancelled.command.stand", "cancelled.command.say"]
+    assert ex.owner("legs") == "rest"
+
+
+def test_stop_ends_only_its_channel_and_answers_when_that_is_over() -> None:
+    ex = executor(balance=0.5)
+    ex.start("say", Say("hello"))
+    ex.start("look", Look(0, 0))
+    ex.advance(0.0)
+    ex.start("stop", Stop("say"))
+    assert names(ex.advance(0.2)) == []
+    assert names(ex.advance(0.5)) == ["cancelled.command.say"]
+    assert names(ex.advance(0.6)) == ["done.command.stop"]
+    assert ex.owner("head") == "look"
+
+
+@pytest.mark.parametrize("cancelled", ["nobody", "a"])
+def test_cancelling_is_harmless_when_repeated_or_unknown(cancelled: str) -> None:
+    ex = executor()
+    ex.start("a", Say("x"))
+    ex.cancel(cancelled)
+    ex.cancel(cancelled)
+    events = names(ex.advance(0.0))
+    assert events == ([] if cancelled == "nobody" else ["cancelled.command.a"])
+
+
+def test_what_the_body_refuses_is_an_error_and_the_next_goes_on() -> None:
+    def begin(command: RobotCommand, now: float) -> Fake:
+        if isinstance(command, Posture):
+            raise RobotError("can't sit")
+        return Fake(command, now, 0)
+
+    ex = Executor(begin, lambda c: frozenset(PARTS[type(c)]))
+    ex.start("sit", Posture("Sit"))
+    ex.start("look", Look(0, 0))
+    [answer] = ex.advance(0.0)
+    assert (answer.name, answer.data) == ("error.command.sit", {"reason": "can't sit"})
+    assert ex.owner("head") == "look"
+
+
+def test_a_fall_fails_all() -> None:
+    ex = executor()
+    ex.start("a", Say("x"))
+    ex.start("b", Say("y"))
+    ex.advance(0.0)
+    ex.fail("the robot fell")
+    assert [(e.name, e.data) for e in ex.advance(0.1)] == [
+        ("error.command.a", {"reason": "the robot fell"}),
+        ("error.command.b", {"reason": "the robot fell"}),
+    ]
