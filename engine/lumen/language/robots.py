@@ -1,7 +1,7 @@
 """What is known of a robot's body without simulating it: joints, limits, parts, postures, camera."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 
 
@@ -38,11 +38,21 @@ class Camera:
 
 
 @dataclass(frozen=True, slots=True)
+class Ultrasound:
+    """What the sonars hear: echoes from `minimum` to `maximum` [m] inside a cone of that full angle [rad]."""
+
+    minimum: float
+    maximum: float
+    cone: float
+
+
+@dataclass(frozen=True, slots=True)
 class Body:
     """A robot model: `models/NAME.yaml` beside its MJCF.
 
     `joints` keeps the robot's own order of names. `parts` maps head, arms, legs to joint names. `postures` maps a
-    posture to angles [rad] of every joint.
+    posture to angles [rad] of every joint. `shared` maps a joint to the one whose motor moves it too; `hands` are the
+    joints that open (0..1) rather than turn.
     """
 
     name: str
@@ -53,3 +63,6 @@ class Body:
     coupled: tuple[CoupledLimit, ...]
     camera: Camera
     tactile: tuple[str, ...]
+    shared: Mapping[str, str] = field(default_factory=dict)
+    hands: tuple[str, ...] = ()
+    sonar: Ultrasound | None = None

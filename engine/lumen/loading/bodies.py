@@ -1,0 +1,140 @@
+"""The description of a robot's body, `models/NAME.yaml`, from its plain data to a `Body`."""
+
+from collections.abc import Mapping
+from math import inf, isfinite
+from typing import Any
+
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.robots import Body, Camera, CoupledLimit, Joint, Ultrasound
+from lumen.loading.source import Report
+from lumen.loading.units import ANGLES, LENGTHS
+
+SLACK = 2e-3
+"""How far a posture may lie outside a limit [rad]: published postures are rounded."""
+
+
+def build_body(data: Any, report: Report, *, name: str) -> Body | None:
+    """The body that the data of `models/NAME.yaml` describes, None where it has no joints or no camera."""
+    if not isinstance(data, Mapping) or not data.get("joints") or "camera" not in data:
+        return None
+    return _Builder(data, report).body(name)
+
+
+class _Builder:
+    """Reads one file; joints first, since everything else names them."""
+
+    def __init__(self, data: Mapping[str, Any], report: Report) -> None:
+        self.data, self.report = data, report
+        units = data.get("units") or {}
+        self.angle = ANGLES.get(units.get("angle", "rad"), 1.0)
+        self.length = LENGTHS.get(units.get("length", "m"), 1.0)
+        self.joints = {n: joint for n, spec in data["joints"].items() if (joint := self.joint(n, spec))}
+        self.hands = tuple(n for n in self.joints if data["joints"][n].get("opening"))
+
+    def body(self, name: str) -> Body:
+        data = self.data
+        return Body(
+            name=data.get("name", name),
+            mjcf=data.get("mjcf", f"{name}.xml"),
+            joints=self.joints,
+            parts=self.parts(),
+            postures={n: self.posture(n, angles) for n, angles in (data.get("postures") or {}).items()},
+            coupled=tuple(c for i, row in enumerate(data.get("coupled") or ()) if (c := self.coupled(i, row))),
+            camera=self.camera(data["camera"]),
+            tactile=tuple(data.get("tactile") or ()),
+            shared=self.shared(),
+            hands=self.hands,
+            sonar=self.sonar(data.get("sonar")),
+        )
+
+    def unit(self, name: str) -> float:
+        """What one of the file's units of this joint is in [rad]; the opening of a hand stays as it is."""
+        return 1.0 if self.data["joints"][name].get("opening") else self.angle
+
+    def joint(self, name: str, spec: Mapping[str, Any]) -> Joint | None:
+        if "range" not in spec:
+            return None
+        low, high = spec["range"]
+        if not low < high:
+            hint = f"write [{high}, {low}]" if high < low else "the second number has to be greater"
+            self.report("empty-range", ("joints", name, "range"), f"`{name}` can't move in [{low}, {high}]", hint=hint)
+            return None
+        unit = self.unit(name)
+        return Joint(name, low * unit, high * unit, spec.get("speed", inf) * unit, spec.get("effort", inf))
+
+    def known(self, name: str, path: Path) -> bool:
+        """Whether that joint exists, saying so where it does not."""
+        if name in self.joints:
+            return True
+        if name not in self.data["joints"]:
+            hint = did_you_mean(name, self.joints, "the joints are")
+            self.report("unknown-joint", path, f"`{name}` is not a joint of this robot", hint=hint)
+        return False
+
+    def parts(self) -> dict[str, tuple[str, ...]]:
+        parts, owner = {}, dict[str, str]()
+        for part, names in (self.data.get("parts") or {}).items():
+            for i, name in enumerate(names):
+                if self.known(name, ("parts", part, i)) and owner.setdefault(name, part) != part:
+                    message = f"`{name}` stands in `{owner[name]}` and in `{part}`"
+                    self.report("joint-in-two-parts", ("parts", part, i), message, hint="a joint has one owner")
+            parts[part] = tuple(n for n in names if owner.get(n) == part)
+        for name in self.joints.keys() - owner.keys():
+            self.report("joint-without-part", ("joints", name), f"no part moves `{name}`", hint="name it in `parts`")
+        return parts
+
+    def shared(self) -> dict[str, str]:
+        pairs = (self.data.get("shared") or {}).items()
+        known = [self.known(a, ("shared", a)) and self.known(b, ("shared", a)) for a, b in pairs]
+        return {a: b for (a, b), good in zip(pairs, known, strict=True) if good}
+
+    def coupled(self, index: int, spec: Mapping[str, Any]) -> CoupledLimit | None:
+        path: Path = ("coupled", index)
+        if not {"joint", "on", "rows"} <= spec.keys():
+            return None
+        joint, on, rows = spec["joint"], spec["on"], spec["rows"]
+        if not (self.known(joint, (*path, "joint")) and self.known(on, (*path, "on"))):
+            return None
+        if any(a[0] >= b[0] for a, b in zip(rows, rows[1:], strict=False)):
+            message = f"the angles of `{on}` do not rise from row to row"
+            self.report("unsorted-rows", (*path, "rows"), message, hint="sort the rows by their first number")
+            return None
+        scaled = tuple((a * self.unit(on), b * self.unit(joint), c * self.unit(joint)) for a, b, c in rows)
+        return CoupledLimit(joint, on, scaled)
+
+    def posture(self, posture: str, spec: Mapping[str, float]) -> dict[str, float]:
+        path: Path = ("postures", posture)
+        for name in spec:
+            self.known(name, (*path, name))
+        if missing := [n for n in self.joints if n not in spec]:
+            names = ", ".join(f"`{n}`" for n in missing)
+            hint = "a posture holds every joint"
+            self.report("incomplete-posture", path, f"`{posture}` says nothing of {names}", hint=hint, key=True)
+        return {n: self.angle_of(n, spec[n], (*path, n)) for n in self.joints if n in spec}
+
+    def angle_of(self, name: str, value: float, path: Path) -> float:
+        """The angle [rad] inside the joint's limits; reported where the file's lies outside."""
+        joint, unit = self.joints[name], self.unit(name)
+        angle = value * unit
+        if not (isfinite(angle) and joint.minimum - SLACK <= angle <= joint.maximum + SLACK):
+            message = f"`{name}` can't stand at {value}"
+            hint = f"it moves between {joint.minimum / unit:.6g} and {joint.maximum / unit:.6g}"
+            self.report("angle-out-of-range", path, message, hint=hint)
+        return min(max(angle, joint.minimum), joint.maximum)
+
+    def camera(self, spec: Mapping[str, Any]) -> Camera:
+        x, y, z = (c * self.length for c in spec.get("position", (0.0, 0.0, 0.0)))
+        return Camera(
+            width=spec.get("width", 320),
+            height=spec.get("height", 240),
+            horizontal_fov=spec.get("horizontal_fov", 1.0641 / self.angle) * self.angle,
+            vertical_fov=spec.get("vertical_fov", 0.83147 / self.angle) * self.angle,
+            position=(x, y, z),
+            pitch=spec.get("pitch", 0.0) * self.angle,
+        )
+
+    def sonar(self, spec: Mapping[str, Any] | None) -> Ultrasound | None:
+        if not spec or not {"range", "cone"} <= spec.keys():
+            return None
+        low, high = spec["range"]
+        return Ultrasound(low * self.length, high * self.length, spec["cone"] * self.angle)
