@@ -1,0 +1,69 @@
+"""Where a point in the robot's torso frame appears in the image of its head camera, and the head that centres it.
+
+Frames are NAO's: x forward, y left, z up, in [m]. The head turns about the neck by yaw (positive to the left), then by
+pitch (positive is down), in [rad]. In the image u grows to the right and v down, in [px], from the upper left corner.
+"""
+
+from math import asin, atan2, cos, hypot, sin, tan
+
+from lumen.language.robots import Camera
+
+Vector = tuple[float, float, float]
+Matrix = tuple[Vector, Vector, Vector]
+
+NECK: Vector = (0.0, 0.0, 0.1265)
+"""NAO's neck, where HeadYaw and HeadPitch meet, in the torso frame [m]."""
+
+
+def project(point: Vector, camera: Camera) -> tuple[float, float] | None:
+    """The pixel (u, v) of a point in the camera's frame; None behind the camera or outside the image.
+
+    The camera's frame keeps the robot's axes: x looks out of the lens, y left, z up.
+    """
+    x, y, z = point
+    if x <= 0:
+        return None
+    u = camera.width / 2 * (1 - y / (x * tan(camera.horizontal_fov / 2)))
+    v = camera.height / 2 * (1 - z / (x * tan(camera.vertical_fov / 2)))
+    return (u, v) if 0 <= u < camera.width and 0 <= v < camera.height else None
+
+
+def camera_pose(camera: Camera, yaw: float, pitch: float, neck: Vector = NECK) -> tuple[Vector, Matrix]:
+    """The camera's place in the torso frame [m], and its rotation: the columns are its x, y, z in that frame."""
+    place = _times(_head(yaw, pitch), camera.position)
+    return (neck[0] + place[0], neck[1] + place[1], neck[2] + place[2]), _head(yaw, pitch + camera.pitch)
+
+
+def into_camera(point: Vector, camera: Camera, yaw: float, pitch: float, neck: Vector = NECK) -> Vector:
+    """A point of the torso frame in the camera's frame, with the head at `yaw`, `pitch`."""
+    place, rotation = camera_pose(camera, yaw, pitch, neck)
+    offset = (point[0] - place[0], point[1] - place[1], point[2] - place[2])
+    columns: Matrix = tuple(zip(*rotation, strict=True))  # type: ignore[assignment]
+    return _times(columns, offset)
+
+
+def seen(point: Vector, camera: Camera, yaw: float, pitch: float, neck: Vector = NECK) -> tuple[float, float] | None:
+    """The pixel of a point of the torso frame, with the head at `yaw`, `pitch`; None where it can't be seen."""
+    return project(into_camera(point, camera, yaw, pitch, neck), camera)
+
+
+def centring(point: Vector, camera: Camera, neck: Vector = NECK) -> tuple[float, float]:
+    """The yaw and pitch that bring a point of the torso frame to the middle of the image, whatever the joints allow.
+
+    Exact for a camera in the head's plane of symmetry, as NAO's are; the point must be farther from the neck than it.
+    """
+    x, y, z = point[0] - neck[0], point[1] - neck[1], point[2] - neck[2]
+    ahead = hypot(x, y)
+    lift = sin(camera.pitch) * camera.position[0] + cos(camera.pitch) * camera.position[2]
+    return atan2(y, x), asin(lift / hypot(ahead, z)) - atan2(z, ahead) - camera.pitch
+
+
+def _head(yaw: float, pitch: float) -> Matrix:
+    """Rotation by `yaw` about z, then by `pitch` about the new y; rows."""
+    cy, sy, cp, sp = cos(yaw), sin(yaw), cos(pitch), sin(pitch)
+    return (cy * cp, -sy, cy * sp), (sy * cp, cy, sy * sp), (-sp, 0.0, cp)
+
+
+def _times(matrix: Matrix, vector: Vector) -> Vector:
+    a, b, c = (row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2] for row in matrix)
+    return a, b, c
