@@ -1,0 +1,47 @@
+# Lumen. `make run` shows it, `make test` proves it; both set themselves up and need no root.
+
+PYTHON ?= python3
+BIN := .venv/bin
+STORY ?= visitor
+SPEED ?= 4
+
+.PHONY: help run test soak check packages clean
+
+help:
+	@echo "make run      a visitor meets the simulated robot (STORY=visitor, SPEED=1|4|max)"
+	@echo "make test     everything, under 10 minutes"
+	@echo "make check    style, types and floors only"
+	@echo "make soak     the long tests in full"
+
+run: .venv/run
+	@$(BIN)/lumen run --story $(STORY) --speed $(SPEED)
+
+test: packages check
+	@$(BIN)/lumen lint --strict
+	@$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not soak"
+
+soak: packages check
+	@$(BIN)/python -m pytest -m soak -s
+
+check: .venv/test
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check -q .
+	@$(BIN)/mypy
+	@$(BIN)/lint-imports --no-logo | tail -n 3
+
+packages:
+	@sh scripts/packages.sh packages.txt
+
+.venv/run: requirements.txt pyproject.toml
+	@echo "setting up .venv (once, a minute or two) …"
+	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	@$(BIN)/python -m pip install -q --disable-pip-version-check -r requirements.txt
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -e .
+	@touch $@
+
+.venv/test: .venv/run requirements-test.txt
+	@$(BIN)/python -m pip install -q --disable-pip-version-check -r requirements-test.txt
+	@touch $@
+
+clean:
+	rm -rf .venv .lumen .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

@@ -1,0 +1,7 @@
+"""`python -m lumen`."""
+
+import sys
+
+from lumen.cli.main import main
+
+sys.exit(main())

@@ -1,0 +1,55 @@
+"""The command line: one module for each verb, imported when it is called."""
+
+import argparse
+import importlib
+import logging
+import os
+import sys
+from collections.abc import Sequence
+
+import lumen
+from lumen.errors import LumenError, ProjectError
+
+VERBS = {
+    "new": "start a project of your own",
+    "run": "run an exhibition",
+    "lint": "say what is wrong in a project, and where",
+    "play": "show a motion on the simulated robot",
+    "graph": "draw a behaviour (Mermaid)",
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run `lumen` with these arguments: 0 all well, 1 findings or a failed story, 2 could not run."""
+    logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.WARNING)
+    arguments = sys.argv[1:] if argv is None else list(argv)
+    parser = argparse.ArgumentParser(
+        prog="lumen", description="Give a humanoid robot its behaviour in YAML.", epilog="lumen VERB --help says more."
+    )
+    parser.add_argument("--version", action="version", version=f"lumen {lumen.__version__}")
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
+    for verb, summary in VERBS.items():
+        command = verbs.add_parser(verb, help=summary, description=summary[0].upper() + summary[1:] + ".")
+        if verb in arguments[:1]:
+            module = importlib.import_module(f"lumen.cli.{verb}")
+            module.configure(command)
+            command.set_defaults(run=module.run)
+    options = parser.parse_args(arguments)
+    try:
+        return int(options.run(options))
+    except ProjectError as error:
+        from lumen.cli.report import report
+
+        return report(error.diagnostics)
+    except LumenError as error:
+        print(f"lumen {options.verb}: {error}", file=sys.stderr)
+        return 2
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

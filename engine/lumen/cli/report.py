@@ -1,0 +1,14 @@
+"""Diagnostics on a terminal, as `lumen lint` shows them."""
+
+import sys
+from collections.abc import Iterable
+
+from lumen.language.diagnostics import Diagnostic, has_errors
+
+
+def report(diagnostics: Iterable[Diagnostic]) -> int:
+    """Print them to standard error; 1 where one is an error, else 0."""
+    found = list(diagnostics)
+    for diagnostic in found:
+        print(diagnostic, file=sys.stderr)
+    return 1 if has_errors(found) else 0

@@ -1,0 +1,19 @@
+"""Colours where there is a terminal, plain text elsewhere."""
+
+import os
+import sys
+from typing import TextIO
+
+CODES = {"bold": "1", "dim": "2", "red": "31", "green": "32", "yellow": "33", "blue": "34", "magenta": "35", "cyan": "36"}
+
+
+def coloured(stream: TextIO | None = None) -> bool:
+    """Whether to colour what goes to `stream`: a terminal, and nobody said NO_COLOR."""
+    return (stream or sys.stdout).isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
+
+
+def paint(text: str, *styles: str, on: bool) -> str:
+    """The text in these styles, where `on`."""
+    if not on or not styles:
+        return text
+    return f"\x1b[{';'.join(CODES[s] for s in styles)}m{text}\x1b[0m"

@@ -1,0 +1,143 @@
+"""A robot that performs nothing, remembers everything, and takes its time: for stories, tests and authors."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot
+
+from lumen.errors import RobotError
+from lumen.interpreters.projection import face_pixel
+from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.events import Event
+from lumen.language.robots import Body
+from lumen.language.stories import Visitor
+from lumen.ports import Aim, Battery, Image, Joints, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.robots.executor import ARMS, HEAD, LEDS, LEGS, VOICE, Executor
+
+_VERBS: Mapping[type, str] = {
+    Say: "say", Perform: "play", Posture: "posture", Walk: "walk", Look: "look", Rest: "rest", Wake: "wake",
+}  # fmt: skip
+_PARTS: Mapping[type, frozenset[str]] = {
+    Say: frozenset((VOICE,)),
+    Walk: frozenset((LEGS,)),
+    Look: frozenset((HEAD,)),
+    Stop: frozenset(),
+    Perform: frozenset((HEAD, ARMS, LEGS, LEDS)),
+}
+_WHOLE = frozenset((HEAD, ARMS, LEGS))
+
+
+@dataclass
+class _Lasting:
+    """Takes until `until` [s], and no time at all once cancelled."""
+
+    until: float
+
+    def advance(self, now: float) -> bool:
+        return now >= self.until
+
+    def cancel(self) -> None:
+        self.until = 0.0
+
+
+class RecordingRobot:
+    """Every command takes as long as the real one would: a motion its duration, speech 0.4 s and 0.06 s a character.
+
+    `behaves` maps a verb to `fails`, `hangs` or another duration [s]. `performed` lists (time [s], command) in the
+    order begun. `advance` is its passing of time; the head goes where it is told, so that faces move in its camera.
+    """
+
+    def __init__(self, body: Body, behaves: Mapping[str, str | float] | None = None) -> None:
+        self.body = body
+        self.performed: list[tuple[float, RobotCommand]] = []
+        self.time = 0.0
+        self._behaves = behaves or {}
+        self._angles = dict(body.postures["Stand"])
+        self._pressed: set[str] = set()
+        self._visitor: Visitor | None = None
+        self._noticed: list[Event] = []
+        self._executor = Executor(self._begin, lambda command: _PARTS.get(type(command), _WHOLE))
+
+    def start(self, id: str, command: RobotCommand) -> None:
+        if isinstance(command, Aim):
+            self._turn(command.angles)
+        else:
+            self._executor.start(id, command)
+
+    def cancel(self, id: str) -> None:
+        self._executor.cancel(id)
+
+    def poll(self) -> Sequence[Event]:
+        events, self._noticed = self._noticed, []
+        return events
+
+    def advance(self, dt: float) -> None:
+        """Let `dt` [s] pass."""
+        self.time += dt
+        self._noticed += self._executor.advance(self.time)
+
+    def read(self, sense: Sense) -> Reading | None:
+        match sense:
+            case Sense.JOINT:
+                names = tuple(self.body.joints)
+                angles = tuple(self._angles.get(name, 0.0) for name in names)
+                return Joints(self.time, names, angles, (1.0,) * len(names))
+            case Sense.SONAR:
+                distance = hypot(self._visitor.x, self._visitor.y) if self._visitor else 2.55
+                return Sonar(self.time, distance, distance)
+            case Sense.TACTILE:
+                names = self.body.tactile
+                return Tactile(self.time, names, tuple(int(name in self._pressed) for name in names))
+            case Sense.BATTERY:
+                return Battery(self.time, 100, plugged=False, charging=False)
+            case Sense.IMAGE:
+                return None
+
+    def close(self) -> None:
+        """Nothing to let go of."""
+
+    def place(self, visitor: Visitor | None) -> None:
+        self._visitor = visitor
+
+    def face(self) -> tuple[float, float] | None:
+        if self._visitor is None:
+            return None
+        return face_pixel(self.body, self._visitor, self._angles["HeadYaw"], self._angles["HeadPitch"])
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        if pressed != (sensor in self._pressed):
+            self._pressed ^= {sensor}
+            self._noticed.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time))
+
+    def _begin(self, command: RobotCommand, now: float) -> _Lasting:
+        self.performed.append((now, command))
+        behaves = self._behaves.get(_VERBS[type(command)])
+        if behaves == "fails":
+            raise RobotError(f"{_VERBS[type(command)]} fails in this story")
+        if isinstance(command, Posture):
+            if command.name not in self.body.postures:
+                raise RobotError(f"no posture `{command.name}`")
+            self._angles.update(self.body.postures[command.name])
+        elif isinstance(command, Look):
+            self._turn({"HeadYaw": command.yaw, "HeadPitch": command.pitch})
+        return _Lasting(float("inf") if behaves == "hangs" else now + _duration(command, behaves))
+
+    def _turn(self, angles: Mapping[str, float]) -> None:
+        for name, angle in angles.items():
+            joint = self.body.joints[name]
+            self._angles[name] = min(max(angle, joint.minimum), joint.maximum)
+
+
+def _duration(command: RobotCommand, behaves: str | float | None) -> float:
+    if isinstance(behaves, float | int):
+        return float(behaves)
+    match command:
+        case Say(text):
+            return 0.4 + 0.06 * len(text)
+        case Perform(motion):
+            return motion.duration
+        case Walk(x, y, _):
+            return hypot(x, y) / 0.1
+        case Look():
+            return 1.0
+        case _:
+            return 2.0

@@ -1,0 +1,99 @@
+"""A running exhibition: the loop that owns the order of things, fifty times a second."""
+
+from collections.abc import Callable, Sequence
+
+from lumen.language.commands import Command
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.ports import Bus, Clock, Robot
+from lumen.runtime.inbox import Inbox
+from lumen.runtime.performer import Performer
+from lumen.runtime.runtime import Observer, Runtime
+from lumen.runtime.tracking import Tracking
+
+TICK = 0.02
+BRAIN_LOST = 5.0
+
+Part = Callable[[float], None]
+"""Something that lives with the exhibition: called at each tick with its time [s]."""
+
+
+class Exhibition:
+    """A project on a robot, a bus and a clock.
+
+    At each tick: the clock waits, the parts live, what happened becomes events, the behaviour steps, its commands are
+    performed. `answered` sees every event of the robot before the behaviour does. Where ticks stop for 5 s of the
+    clock the behaviour is told (`brain.lost`).
+    """
+
+    def __init__(
+        self,
+        project: Project,
+        robot: Robot,
+        bus: Bus,
+        clock: Clock,
+        *,
+        parts: Sequence[Part] = (),
+        observe: Observer = lambda _: None,
+        performing: Callable[[Command, float], None] = lambda *_: None,
+        answered: Callable[[Event], None] = lambda _: None,
+    ) -> None:
+        self.robot, self.bus, self.clock = robot, bus, clock
+        self.parts = list(parts)
+        self.runtime = Runtime(project, observe)
+        self.inbox = Inbox(bus)
+        self.tracking = Tracking(project, robot, bus)
+        self._performer = Performer(robot, bus, self.tracking.switch)
+        self._performing, self._answered = performing, answered
+        self._events: list[Event] = []
+        self._last = clock.now()
+
+    @property
+    def project(self) -> Project:
+        return self.runtime.project
+
+    def start(self, *, language: str = "", epoch: float = 0.0) -> None:
+        """Listen, and enter the initial states."""
+        self.inbox.listen(self.project)
+        self._perform(self.runtime.start(self._last, language=language, epoch=epoch), self._last)
+
+    def happen(self, event: Event) -> None:
+        """Let something happen at the next tick."""
+        self._events.append(event)
+
+    def tick(self) -> float:
+        """Live through one tick; its time [s]."""
+        self.clock.wait(self._last + TICK)
+        now = self.clock.now()
+        if now - self._last > BRAIN_LOST:
+            self._events.append(Event("brain.lost", {"seconds": now - self._last}, now))
+        self._last = now
+        for part in self.parts:
+            part(now)
+        self.tracking.tick(now)
+        self._perform(self.runtime.tick(now, self._gather(now)), now)
+        return now
+
+    def reload(self, project: Project) -> str:
+        """Go on with another bundle from the next tick on; empty, or why not."""
+        refusal = self.runtime.reload(project)
+        if refusal:
+            return refusal.reason
+        self.inbox.listen(project)
+        self.tracking.reload(project)
+        return ""
+
+    def _gather(self, now: float) -> list[Event]:
+        answers = list(self.robot.poll())
+        for event in answers:
+            self._answered(event)
+        happened, self._events = self._events, []
+        ended, self._performer.events = self._performer.events, []
+        return [*ended, *answers, *(e._replace(at=now) for e in happened), *self.inbox.drain(now)]
+
+    def _perform(self, commands: Sequence[Command], now: float) -> None:
+        for command in commands:
+            self._performing(command, now)
+            self._performer.perform(self.project, command, now)
+
+

@@ -1,0 +1,41 @@
+"""From messages to events: what arrives on any thread waits here for the next tick."""
+
+from collections import deque
+from collections.abc import Callable
+
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.ports import Bus, Message
+
+CAPACITY = 10_000
+
+
+class Inbox:
+    """Subscribes to every route that becomes an event; bounded, the oldest gives way."""
+
+    def __init__(self, bus: Bus) -> None:
+        self._bus = bus
+        self._waiting: deque[tuple[str, object]] = deque(maxlen=CAPACITY)
+        self._undo: dict[tuple[str, str], Callable[[], None]] = {}
+
+    def listen(self, project: Project) -> None:
+        """Listen to the routes of this project: new ones first, then no longer to those that are gone."""
+        wanted = {(route.key_for(project.robot), route.event) for route in project.routes.values() if route.event}
+        for key, event in sorted(wanted - self._undo.keys()):
+            self._undo[key, event] = self._bus.subscribe(key, self._receiver(event))
+        for gone in sorted(self._undo.keys() - wanted):
+            self._undo.pop(gone)()
+
+    def drain(self, now: float) -> list[Event]:
+        """Everything that has arrived, as events at `now` [s]."""
+        events = []
+        while self._waiting:
+            name, body = self._waiting.popleft()
+            events.append(Event(name, body, now))
+        return events
+
+    def _receiver(self, event: str) -> Callable[[Message], None]:
+        def receive(message: Message) -> None:
+            self._waiting.append((event, message.body))
+
+        return receive

@@ -1,0 +1,55 @@
+"""The edge: performs what a step asked for, and answers what no robot has to."""
+
+import logging
+from collections.abc import Callable
+
+from lumen.errors import BusError
+from lumen.language.commands import Cancel, Command, Language, Log, Play, Publish, Start, Track
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.ports import Bus, Perform, Robot
+
+_log = logging.getLogger(__name__)
+
+
+class Performer:
+    """Hands commands to the robot and the bus.
+
+    `track` switches a controller on or off. `events` are answers for the next tick: of commands that end at once, and
+    of those that can't even begin.
+    """
+
+    def __init__(self, robot: Robot, bus: Bus, track: Callable[[Track], None]) -> None:
+        self._robot, self._bus, self._track = robot, bus, track
+        self.events: list[Event] = []
+
+    def perform(self, project: Project, command: Command, now: float) -> None:
+        match command:
+            case Start(id, Play(name)) if name not in project.motions:
+                self._answer("error", id, now, f"there is no motion `{name}`")
+            case Start(id, Play(name)):
+                self._robot.start(id, Perform(project.motions[name]))
+            case Start(id, Track() as track):
+                self._track(track)
+                self._answer("done", id, now)
+            case Start(id, Language()):
+                self._answer("done", id, now)
+            case Start(id, body_command):
+                self._robot.start(id, body_command)
+            case Cancel(id):
+                self._robot.cancel(id)
+            case Publish(name, body):
+                self._publish(project, name, body, now)
+            case Log(text):
+                _log.info(text)
+
+    def _publish(self, project: Project, name: str, body: object, now: float) -> None:
+        try:
+            route = project.routes[name]
+            self._bus.publish(route.key_for(project.robot), body, ttl=route.ttl)
+        except (KeyError, BusError) as error:
+            reason = f"there is no route `{name}`" if isinstance(error, KeyError) else str(error)
+            self.events.append(Event("error.communication", {"route": name, "reason": reason}, now))
+
+    def _answer(self, kind: str, id: str, now: float, reason: str = "") -> None:
+        self.events.append(Event(f"{kind}.command.{id}", {"reason": reason} if reason else None, now))

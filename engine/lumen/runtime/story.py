@@ -1,0 +1,141 @@
+"""Plays a story: does what it says, waits for what it expects, and tells where it failed."""
+
+from dataclasses import dataclass, field
+from typing import assert_never
+
+from lumen.interpreters.statechart import Step
+from lumen.language.commands import Command, Play, Publish, Say, Start
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.language.stories import Arrive, Expect, Happen, Leave, Pause, Send, Speak, Story, Touch
+from lumen.ports import Bus, Hall
+from lumen.runtime.exhibition import Exhibition
+from lumen.runtime.visitor import Walker
+
+
+@dataclass
+class Witness:
+    """What has been seen: the states now, and since the last expectation that held what was said, played, published."""
+
+    states: frozenset[str] = frozenset()
+    context: dict[str, object] = field(default_factory=dict)
+    said: list[str] = field(default_factory=list)
+    played: list[str] = field(default_factory=list)
+    published: list[str] = field(default_factory=list)
+    playing: dict[str, str] = field(default_factory=dict)
+
+    def lacks(self, expected: Expect) -> str:
+        """What of `expected` does not hold, in words; empty where all does."""
+        if missing := [s for s in expected.states if s not in self.states]:
+            return f"state `{missing[0]}`, but active are {_names(self.states)}"
+        if expected.said is not None and not any(expected.said.lower() in text.lower() for text in self.said):
+            return f"to hear “{expected.said}”, but it said {_texts(self.said)}"
+        if expected.played is not None and expected.played not in self.played:
+            return f"the motion `{expected.played}`, but it played {_names(self.played)}"
+        if expected.published is not None and expected.published not in self.published:
+            return f"a message on `{expected.published}`, but it sent {_names(self.published)}"
+        for key, value in expected.context.items():
+            if self.context.get(key) != value:
+                return f"{key} = {value!r}, but it is {self.context.get(key)!r}"
+        return ""
+
+    def forget(self) -> None:
+        self.said, self.played, self.published = [], [], []
+
+
+class StoryPlayer:
+    """One story on an exhibition; call `tick` with its time, and the three observers with what happens.
+
+    It is `finished` when its last step is done or one has failed; `failure` says in a line what was expected where.
+    """
+
+    def __init__(self, story: Story, project: Project, hall: Hall, bus: Bus, walker: Walker) -> None:
+        self.story = story
+        self.failure = ""
+        self.scene = 0
+        self._project, self._hall, self._bus, self._walker = project, hall, bus, walker
+        self._witness = Witness()
+        self._since = 0.0
+        self._exhibition: Exhibition | None = None
+
+    @property
+    def finished(self) -> bool:
+        return bool(self.failure) or self.scene >= len(self.story.scenes)
+
+    def attach(self, exhibition: Exhibition) -> None:
+        """Where events from nowhere go."""
+        self._exhibition = exhibition
+
+    def observe(self, step: Step) -> None:
+        """A step was taken."""
+        self._witness.states = step.snapshot.configuration_names
+        self._witness.context = dict(step.snapshot.context)
+        if bad := self._witness.states.intersection(self.story.never):
+            self._fail(f"never state {_names(bad)}, but it was entered")
+
+    def performing(self, command: Command) -> None:
+        """A command is about to be performed."""
+        match command:
+            case Start(_, Say(text)):
+                self._witness.said.append(text)
+            case Start(id, Play(motion)):
+                self._witness.playing[id] = motion
+            case Publish(route):
+                self._witness.published.append(route)
+
+    def answered(self, event: Event) -> None:
+        """The robot said something; a motion that finished was played."""
+        if event.name.startswith("done.command."):
+            motion = self._witness.playing.pop(event.name.removeprefix("done.command."), None)
+            if motion:
+                self._witness.played.append(motion)
+
+    def tick(self, now: float) -> None:
+        """Do every step that can be done by `now` [s]."""
+        while not self.finished and self._do(now):
+            self.scene += 1
+            self._since = now
+
+    def _do(self, now: float) -> bool:
+        deed = self.story.scenes[self.scene].deed
+        match deed:
+            case Pause(seconds):
+                return now >= self._since + seconds
+            case Expect():
+                return self._expect(deed, now)
+            case Arrive(visitor):
+                self._walker.arrive(visitor)
+            case Leave():
+                self._walker.leave()
+            case Speak(text, language):
+                self._walker.speak(text, language)
+            case Touch(sensor, pressed):
+                self._hall.touch(sensor, pressed)
+            case Happen(name, data):
+                assert self._exhibition
+                self._exhibition.happen(Event(name, data, now))
+            case Send(name, body):
+                self._bus.publish(self._project.routes[name].key_for(self._project.robot), body)
+            case _:
+                assert_never(deed)
+        return True
+
+    def _expect(self, expected: Expect, now: float) -> bool:
+        lacking = self._witness.lacks(expected)
+        if not lacking:
+            self._witness.forget()
+        elif now >= self._since + expected.within:
+            self._fail(f"expected within {expected.within:g} s {lacking}")
+        return not lacking
+
+    def _fail(self, why: str) -> None:
+        self.failure = self.failure or f"step {self.scene + 1} of `{self.story.name}`: {why}"
+
+
+def _names(names: object) -> str:
+    listed = ", ".join(f"`{n}`" for n in sorted(names))  # type: ignore[call-overload]
+    return listed or "nothing"
+
+
+def _texts(texts: list[str]) -> str:
+    return "; ".join(f"“{t}”" for t in texts) or "nothing"

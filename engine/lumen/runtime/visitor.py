@@ -1,0 +1,64 @@
+"""A visitor who walks up, speaks and leaves: what modules and people do in a real hall."""
+
+from dataclasses import replace
+
+from lumen.language.projects import Project
+from lumen.language.stories import Visitor
+from lumen.ports import Bus, Hall
+
+PACE = 1.0
+APPROACH = 1.5
+SPEECH = "heard"
+
+
+class Walker:
+    """Moves a visitor through the hall at 1 m/s, and lets them speak.
+
+    What is said goes out as the speech module's message, on the route `heard`.
+    """
+
+    def __init__(self, project: Project, hall: Hall, bus: Bus) -> None:
+        self._project, self._hall, self._bus = project, hall, bus
+        self._visitor: Visitor | None = None
+        self._goal: Visitor | None = None
+        self._leaving = False
+        self._last = 0.0
+
+    def arrive(self, visitor: Visitor) -> None:
+        """Come from further off to where `visitor` stands; who is there already walks over."""
+        if self._visitor is None:
+            self._visitor = replace(visitor, x=visitor.x + APPROACH)
+        self._visitor = replace(self._visitor, height=visitor.height)
+        self._goal, self._leaving = visitor, False
+
+    def leave(self) -> None:
+        """Walk away, and be gone."""
+        if self._visitor:
+            self._goal, self._leaving = replace(self._visitor, x=self._visitor.x + APPROACH), True
+
+    def speak(self, text: str, language: str = "") -> None:
+        """Say something the speech module understands at once."""
+        route = self._project.routes.get(SPEECH)
+        if route:
+            body = {"name": "visitor", "result": text, "date": "", "language": language}
+            self._bus.publish(route.key_for(self._project.robot), body)
+
+    def tick(self, now: float) -> None:
+        dt, self._last = now - self._last, now
+        if self._visitor is None or self._goal is None:
+            return
+        self._visitor = _towards(self._visitor, self._goal, PACE * dt)
+        arrived = self._visitor == self._goal
+        if arrived:
+            self._goal = None
+            if self._leaving:
+                self._visitor = None
+        self._hall.place(self._visitor)
+
+
+def _towards(visitor: Visitor, goal: Visitor, distance: float) -> Visitor:
+    dx, dy = goal.x - visitor.x, goal.y - visitor.y
+    left = float((dx * dx + dy * dy) ** 0.5)
+    if left <= distance:
+        return goal
+    return replace(visitor, x=visitor.x + dx * distance / left, y=visitor.y + dy * distance / left)
