@@ -13,9 +13,12 @@ from lumen.loading.bodies import build_body
 from lumen.loading.source import Document, Report, parse
 
 ROOT = Path(__file__).parents[2]
-NAOQI = """HeadYaw HeadPitch LShoulderPitch LShoulderRoll LElbowYaw LElbowRoll LWristYaw LHand LHipYawPitch LHipRoll
-LHipPitch LKneePitch LAnklePitch LAnkleRoll RHipYawPitch RHipRoll RHipPitch RKneePitch RAnklePitch RAnkleRoll
-RShoulderPitch RShoulderRoll RElbowYaw RElbowRoll RWristYaw RHand""".split()
+NAOQI = [
+    "HeadYaw", "HeadPitch", "LShoulderPitch", "LShoulderRoll", "LElbowYaw", "LElbowRoll", "LWristYaw", "LHand",
+    "LHipYawPitch", "LHipRoll", "LHipPitch", "LKneePitch", "LAnklePitch", "LAnkleRoll", "RHipYawPitch", "RHipRoll",
+    "RHipPitch", "RKneePitch", "RAnklePitch", "RAnkleRoll", "RShoulderPitch", "RShoulderRoll", "RElbowYaw",
+    "RElbowRoll", "RWristYaw", "RHand",
+]  # fmt: skip
 
 
 def document() -> Document:

@@ -1,6 +1,7 @@
 """The description of a robot's body, `models/NAME.yaml`, from its plain data to a `Body`."""
 
 from collections.abc import Mapping
+from itertools import pairwise
 from math import inf, isfinite
 from typing import Any
 
@@ -95,7 +96,7 @@ class _Builder:
         joint, on, rows = spec["joint"], spec["on"], spec["rows"]
         if not (self.known(joint, (*path, "joint")) and self.known(on, (*path, "on"))):
             return None
-        if any(a[0] >= b[0] for a, b in zip(rows, rows[1:], strict=False)):
+        if any(a[0] >= b[0] for a, b in pairwise(rows)):
             message = f"the angles of `{on}` do not rise from row to row"
             self.report("unsorted-rows", (*path, "rows"), message, hint="sort the rows by their first number")
             return None
