@@ -18,7 +18,11 @@ class Interpolation(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """At `time` [s] the joint stands at `angle` [rad; a hand 0..1]; handles are (dt [s], da [rad]) for Bezier."""
+    """At `time` [s] the joint stands at `angle` [rad; a hand 0..1], come to by `interpolation`.
+
+    Handles are (dt [s], da [rad]) for Bezier, `handle_in` with dt < 0, `handle_out` with dt > 0, as in NAOqi's
+    `angleInterpolationBezier`; one with dt = 0 is chosen so that the curve is smooth and does not overshoot.
+    """
 
     time: float
     angle: float
@@ -40,10 +44,17 @@ class Cue:
 
 @dataclass(frozen=True)
 class Motion:
-    """A gesture; `duration` [s]; `start` the posture it begins and, unless the file says otherwise, ends in."""
+    """A gesture: for every joint that it moves its keys in time, and the cues beside them.
+
+    `duration` [s]. `start` is the posture that it begins in, `end` the one that it returns to; each is empty where the
+    file names none. `origin` holds the angles of `start` [rad], for the joints of `tracks`. Keys of one track have
+    increasing times above 0: where a joint comes from is known only when the motion is played.
+    """
 
     name: str
     duration: float
     tracks: Mapping[str, tuple[Key, ...]]
     cues: tuple[Cue, ...] = ()
     start: str = ""
+    end: str = ""
+    origin: Mapping[str, float] = field(default_factory=dict)

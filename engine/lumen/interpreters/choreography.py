@@ -1,0 +1,71 @@
+"""Motions made of motions: mirrored, faster, one after another. All of it is pure and leaves its arguments alone."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+
+from lumen.language.diagnostics import Path
+from lumen.language.motions import Cue, Key, Motion
+
+_SIDE = re.compile(r"([LR])(?=[A-Z])")
+_LED_SIDE = re.compile(r"(left|right)(?=_)")
+_OTHER = {"L": "R", "R": "L", "left": "right", "right": "left"}
+
+
+def mirrored_joint(joint: str) -> tuple[str, float]:
+    """The joint on the other side and the sign that its angle takes there: rolls and yaws turn the other way."""
+    sign = -1.0 if joint.endswith(("Roll", "Yaw")) else 1.0
+    match = _SIDE.match(joint)
+    return (_OTHER[match[1]] + joint[1:] if match else joint), sign
+
+
+def mirrored(motion: Motion) -> Motion:
+    """The motion as a mirror shows it, left and right exchanged; twice is the motion itself."""
+    tracks, origin = {}, {}
+    for joint, keys in motion.tracks.items():
+        other, sign = mirrored_joint(joint)
+        tracks[other] = tuple(_turned(key, sign) for key in keys)
+        if joint in motion.origin:
+            origin[other] = sign * motion.origin[joint]
+    cues = tuple(_mirrored_cue(cue) for cue in motion.cues)
+    return replace(motion, tracks=tracks, origin=origin, cues=cues)
+
+
+def at_speed(motion: Motion, speed: float) -> Motion:
+    """The motion `speed` times as fast; `speed` > 0."""
+    tracks = {joint: tuple(_faster(key, speed) for key in keys) for joint, keys in motion.tracks.items()}
+    cues = tuple(replace(cue, time=cue.time / speed) for cue in motion.cues)
+    return replace(motion, duration=motion.duration / speed, tracks=tracks, cues=cues)
+
+
+def placed(motion: Motion, where: Path) -> Motion:
+    """The motion with every key and cue said to stand at `where`: for one that another file plays."""
+    tracks = {joint: tuple(replace(key, where=where) for key in keys) for joint, keys in motion.tracks.items()}
+    return replace(motion, tracks=tracks, cues=tuple(replace(cue, where=where) for cue in motion.cues))
+
+
+def joined(parts: Iterable[tuple[float, Motion]], duration: float) -> Motion:
+    """One motion of parts, each with the time [s] that it begins at, in that order and not overlapping."""
+    tracks: dict[str, list[Key]] = {}
+    cues: list[Cue] = []
+    for begin, part in parts:
+        for joint, keys in part.tracks.items():
+            tracks.setdefault(joint, []).extend(replace(key, time=begin + key.time) for key in keys)
+        cues.extend(replace(cue, time=begin + cue.time) for cue in part.cues)
+    return Motion("", duration, {joint: tuple(keys) for joint, keys in tracks.items()}, tuple(cues))
+
+
+def _turned(key: Key, sign: float) -> Key:
+    (dt_in, da_in), (dt_out, da_out) = key.handle_in, key.handle_out
+    return replace(key, angle=sign * key.angle, handle_in=(dt_in, sign * da_in), handle_out=(dt_out, sign * da_out))
+
+
+def _faster(key: Key, speed: float) -> Key:
+    (dt_in, da_in), (dt_out, da_out) = key.handle_in, key.handle_out
+    return replace(key, time=key.time / speed, handle_in=(dt_in / speed, da_in), handle_out=(dt_out / speed, da_out))
+
+
+def _mirrored_cue(cue: Cue) -> Cue:
+    if cue.kind != "leds" or not isinstance(cue.value, dict):
+        return cue
+    return replace(cue, value={_LED_SIDE.sub(lambda m: _OTHER[m[1]], group): v for group, v in cue.value.items()})

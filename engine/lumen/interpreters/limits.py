@@ -1,0 +1,82 @@
+"""What a motion asks of a body beyond what it can give."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from math import inf
+from typing import NamedTuple
+
+from lumen.interpreters.trajectory import Trajectory
+from lumen.language.motions import Key, Motion
+from lumen.language.robots import Body, CoupledLimit
+
+TOLERANCE = 1e-6
+"""[rad] that an angle may lie beyond its limit, and the part by which a speed may: files round."""
+
+COUPLED_TOLERANCE = 1e-3
+"""[rad] that an angle may lie beyond a coupled limit: the published tables disagree with the limits by as much."""
+
+
+class Excess(NamedTuple):
+    """On the way to `key` the joint would reach `value` where `limit` is the most: [rad], or [rad/s] of a speed."""
+
+    joint: str
+    key: Key
+    value: float
+    limit: float
+
+
+def beyond_limits(motion: Motion, body: Body) -> list[Excess]:
+    """Where a joint leaves its limits [rad], coupled ones included: in its keys, or on a Bezier curve between them."""
+    return [*_beyond(motion, body), *(e for limit in body.coupled for e in _beyond_coupled(motion, limit))]
+
+
+def overspeed(motion: Motion, body: Body) -> list[Excess]:
+    """Where a joint would move faster than it can [rad/s], begun in the motion's start posture.
+
+    One for each key that can't be reached in time; without a start posture the way to the first key is not judged.
+    """
+    found = []
+    for track in Trajectory(motion).tracks:
+        limit = body.joints[track.joint].speed if track.joint in body.joints else inf
+        for key, segment in zip(motion.tracks[track.joint], track.segments, strict=True):
+            if (speed := segment.peak_speed()) > limit * (1 + TOLERANCE):
+                found.append(Excess(track.joint, key, speed, limit))
+    return found
+
+
+def coupled_range(limit: CoupledLimit, on: float) -> tuple[float, float]:
+    """The least and the greatest angle [rad] of `limit.joint` while `limit.on` stands at `on` [rad]."""
+    rows = limit.rows
+    if on <= rows[0][0]:
+        return rows[0][1:]
+    for (x0, low0, high0), (x1, low1, high1) in pairwise(rows):
+        if on <= x1:
+            w = (on - x0) / (x1 - x0) if x1 > x0 else 1.0
+            return low0 + w * (low1 - low0), high0 + w * (high1 - high0)
+    return rows[-1][1:]
+
+
+def _beyond(motion: Motion, body: Body) -> Iterator[Excess]:
+    for track in Trajectory(motion).tracks:
+        if joint := body.joints.get(track.joint):
+            for key, segment in zip(motion.tracks[track.joint], track.segments, strict=True):
+                low, high = segment.extremes()
+                if min(low, key.angle) < joint.minimum - TOLERANCE:
+                    yield Excess(track.joint, key, min(low, key.angle), joint.minimum)
+                elif max(high, key.angle) > joint.maximum + TOLERANCE:
+                    yield Excess(track.joint, key, max(high, key.angle), joint.maximum)
+
+
+def _beyond_coupled(motion: Motion, limit: CoupledLimit) -> Iterator[Excess]:
+    """Judged at the keys of both joints: moving either may close the range of the other."""
+    if limit.on not in motion.tracks or limit.joint not in motion.tracks:
+        return
+    tracks = {track.joint: track for track in Trajectory(motion).tracks}
+    keys = {key.time: key for joint in (limit.on, limit.joint) for key in motion.tracks[joint]}
+    for time, key in sorted(keys.items()):
+        angle = tracks[limit.joint].at(time)
+        low, high = coupled_range(limit, tracks[limit.on].at(time))
+        if angle < low - COUPLED_TOLERANCE:
+            yield Excess(limit.joint, key, angle, low)
+        elif angle > high + COUPLED_TOLERANCE:
+            yield Excess(limit.joint, key, angle, high)

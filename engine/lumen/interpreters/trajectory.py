@@ -1,0 +1,192 @@
+"""Where a motion has every joint at any time.
+
+A track is compiled once into segments, one before each key: polynomials of the time in the segment for `linear`,
+`cubic` and `minimum-jerk`, a curve in time and angle for `bezier`. Only Bezier handles can carry a joint beyond its
+keys: `cubic` has Fritsch and Butland's tangents (SIAM J. Sci. Stat. Comput. 5, 1984), level at every extreme.
+"""
+
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from lumen.language.motions import Interpolation, Key, Motion
+
+_SMOOTH = (Interpolation.CUBIC, Interpolation.BEZIER)
+
+
+class Polynomial(NamedTuple):
+    """c0 + c1 u + … + c5 u^5, with u from 0 to 1 between `start` and `start + duration` [s]."""
+
+    start: float
+    duration: float
+    c0: float
+    c1: float
+    c2: float = 0.0
+    c3: float = 0.0
+    c4: float = 0.0
+    c5: float = 0.0
+
+    def at(self, t: float) -> float:
+        u = (t - self.start) / self.duration
+        return self.c0 + u * (self.c1 + u * (self.c2 + u * (self.c3 + u * (self.c4 + u * self.c5))))
+
+    def peak_speed(self) -> float:
+        """The greatest speed in the segment [rad/s]; exact for lines, cubics and minimum jerk."""
+        moments = [0.0, 0.5, 1.0]
+        if self.c3 and 0.0 < (vertex := -self.c2 / (3 * self.c3)) < 1.0:
+            moments.append(vertex)
+        return max(abs(self._slope(u)) for u in moments) / self.duration
+
+    def extremes(self) -> tuple[float, float]:
+        """The least and the greatest angle: its ends, for no polynomial here leaves them."""
+        first, last = self.c0, self.c0 + self.c1 + self.c2 + self.c3 + self.c4 + self.c5
+        return min(first, last), max(first, last)
+
+    def _slope(self, u: float) -> float:
+        return self.c1 + u * (2 * self.c2 + u * (3 * self.c3 + u * (4 * self.c4 + u * 5 * self.c5)))
+
+
+class Bezier(NamedTuple):
+    """A cubic Bezier curve; `x1`, `x2` place its inner points in time, from 0 to 1, `a0` to `a3` are angles [rad]."""
+
+    start: float
+    duration: float
+    x1: float
+    x2: float
+    a0: float
+    a1: float
+    a2: float
+    a3: float
+
+    def at(self, t: float) -> float:
+        return _bezier(self._parameter((t - self.start) / self.duration), self.a0, self.a1, self.a2, self.a3)
+
+    def peak_speed(self) -> float:
+        """The greatest speed in the segment [rad/s], from 64 samples."""
+        times = [self.start + self.duration * i / 64 for i in range(65)]
+        angles = [self.at(t) for t in times]
+        return max(abs(b - a) for a, b in pairwise(angles)) * 64 / self.duration
+
+    def extremes(self) -> tuple[float, float]:
+        """The least and the greatest angle, from 64 samples."""
+        angles = [_bezier(i / 64, self.a0, self.a1, self.a2, self.a3) for i in range(65)]
+        return min(angles), max(angles)
+
+    def _parameter(self, x: float) -> float:
+        """The curve's parameter where it has reached `x` of its time: bisection, kept fast by Newton's steps."""
+        low, high, u = 0.0, 1.0, x
+        for _ in range(40):
+            error = _bezier(u, 0.0, self.x1, self.x2, 1.0) - x
+            if abs(error) < 1e-12:
+                break
+            low, high = (low, u) if error > 0 else (u, high)
+            slope = 3 * ((1 - u) ** 2 * self.x1 + 2 * (1 - u) * u * (self.x2 - self.x1) + u * u * (1 - self.x2))
+            step = u - error / slope if slope > 1e-9 else low
+            u = step if low < step < high else (low + high) / 2
+        return u
+
+
+Segment = Polynomial | Bezier
+
+
+class Track(NamedTuple):
+    """One joint's way: `segments[i]` leads to the key at `ends[i]` [s]; after the last it stays at `last` [rad]."""
+
+    joint: str
+    first: float
+    last: float
+    ends: Sequence[float]
+    segments: Sequence[Segment]
+
+    def at(self, t: float) -> float:
+        if t <= 0.0:
+            return self.first
+        i = bisect_left(self.ends, t)
+        return self.segments[i].at(t) if i < len(self.segments) else self.last
+
+
+class Trajectory:
+    """A motion compiled for one performance, from the angles `start` [rad] that the joints have when it begins.
+
+    Joints missing in `start` begin in the motion's start posture, or at their first key where it has none.
+    """
+
+    def __init__(self, motion: Motion, start: Mapping[str, float] | None = None) -> None:
+        start = {} if start is None else start
+        self.motion, self.duration = motion, motion.duration
+        self.tracks = tuple(
+            track(joint, keys, start.get(joint, motion.origin.get(joint, keys[0].angle)))
+            for joint, keys in motion.tracks.items()
+            if keys
+        )
+
+    def sample(self, t: float) -> dict[str, float]:
+        """The angle [rad; a hand 0..1] at `t` [s] of every joint that the motion moves; it stays at either end."""
+        return {track.joint: track.at(t) for track in self.tracks}
+
+
+def sample(motion: Motion, t: float, start: Mapping[str, float] | None = None) -> dict[str, float]:
+    """One sample of `Trajectory(motion, start)`; who needs many of them keeps the Trajectory."""
+    return Trajectory(motion, start).sample(t)
+
+
+def track(joint: str, keys: Sequence[Key], start: float) -> Track:
+    """The track through `keys` from the angle `start` [rad] at time 0."""
+    points = [Key(0.0, start, keys[0].interpolation), *keys]
+    slopes = _slopes(points)
+    segments = [
+        _segment(a, b, slope_a, slope_b)
+        for a, b, slope_a, slope_b in zip(points, points[1:], slopes, slopes[1:], strict=False)
+    ]
+    return Track(joint, start, keys[-1].angle, [key.time for key in keys], segments)
+
+
+def _segment(a: Key, b: Key, slope_a: float, slope_b: float) -> Segment:
+    h, d = b.time - a.time, b.angle - a.angle
+    match b.interpolation:
+        case Interpolation.LINEAR:
+            return Polynomial(a.time, h, a.angle, d)
+        case Interpolation.MINIMUM_JERK:  # Flash and Hogan, J. Neurosci. 5, 1985: at rest in both keys
+            return Polynomial(a.time, h, a.angle, 0.0, 0.0, 10 * d, -15 * d, 6 * d)
+        case Interpolation.CUBIC:
+            return _hermite(a, h, d, slope_a, slope_b)
+        case Interpolation.BEZIER:
+            if not a.handle_out[0] and not b.handle_in[0]:
+                return _hermite(a, h, d, slope_a, slope_b)
+            dt_out, da_out = _handle(a.handle_out, h, slope_a * h / 3)
+            dt_in, da_in = _handle((-b.handle_in[0], b.handle_in[1]), h, -slope_b * h / 3)
+            angles = (a.angle, a.angle + da_out, b.angle + da_in, b.angle)
+            return Bezier(a.time, h, dt_out / h, 1 - dt_in / h, *angles)
+
+
+def _hermite(a: Key, h: float, d: float, slope_a: float, slope_b: float) -> Polynomial:
+    m0, m1 = h * slope_a, h * slope_b
+    return Polynomial(a.time, h, a.angle, m0, 3 * d - 2 * m0 - m1, m0 + m1 - 2 * d)
+
+
+def _handle(given: tuple[float, float], h: float, automatic: float) -> tuple[float, float]:
+    """A handle (time from its key [s], angle [rad]) shortened to the segment, so that time never runs back."""
+    dt, da = given
+    if dt <= 0.0:
+        return h / 3, automatic
+    return (dt, da) if dt <= h else (h, da * h / dt)
+
+
+def _slopes(points: Sequence[Key]) -> list[float]:
+    """The speed in which a smooth curve passes each key [rad/s]: 0 at an extreme and beside any other kind."""
+    slopes = [0.0] * len(points)
+    for i in range(1, len(points) - 1):
+        a, b, c = points[i - 1], points[i], points[i + 1]
+        if b.interpolation in _SMOOTH and c.interpolation in _SMOOTH:
+            before = (b.angle - a.angle) / (b.time - a.time)
+            after = (c.angle - b.angle) / (c.time - b.time)
+            if before * after > 0.0:
+                weight = (1 + (c.time - b.time) / (c.time - a.time)) / 3
+                slopes[i] = before * after / (weight * after + (1 - weight) * before)
+    return slopes
+
+
+def _bezier(u: float, p0: float, p1: float, p2: float, p3: float) -> float:
+    v = 1.0 - u
+    return v * v * v * p0 + 3.0 * v * u * (v * p1 + u * p2) + u * u * u * p3

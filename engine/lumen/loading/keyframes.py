@@ -1,0 +1,176 @@
+"""The list under `keyframes:`, from plain data to one flat motion, its blocks unrolled."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from lumen.interpreters.choreography import at_speed, joined, mirrored, placed
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.motions import Cue, Interpolation, Key, Motion
+from lumen.loading.poses import PoseReader
+from lumen.loading.source import Report
+from lumen.loading.units import seconds
+
+MAX_KEYS = 200_000
+"""Of all joints together, unrolled; an hour of dancing with every joint on every beat has as many."""
+
+_CUES = ("say", "sound", "leds")
+_SOON = 1e-9
+
+
+@dataclass(frozen=True)
+class KeyframeReader:
+    """Reads the keyframes of one file. `beat` is the length of a beat [s], None without a tempo.
+
+    `motions` are those that `play` may name; what is wrong with one in `broken` has been said where it stands.
+    """
+
+    report: Report
+    name: str
+    poses: PoseReader
+    beat: float | None
+    motions: Mapping[str, Motion]
+    broken: Collection[str] = ()
+
+    def read(self, items: list[Any], path: Path, interpolation: Interpolation) -> Motion:
+        """The motion that a list of keyframes and blocks makes, its times from the list's own beginning."""
+        parts: list[tuple[float, Motion]] = []
+        now, moved, count = 0.0, 0.0, 0
+        for i, item in enumerate(items):
+            here = (*path, i)
+            begin = self._moment(item, here)
+            if "keyframes" in item or "play" in item:
+                begin = now if begin is None else begin
+                part = self._block(item, here, interpolation)
+            elif begin is None:
+                self._no_time(item, here)
+                continue
+            else:
+                part = self._keyframe(item, here, interpolation)
+            if begin < now - _SOON or (part.tracks and not part.duration and begin <= moved + _SOON):
+                self._too_early(item, here, begin, now)
+                continue
+            count += _size(part)
+            if count > MAX_KEYS:
+                self._too_many(here)
+                break
+            parts.append((begin, part))
+            now = begin + part.duration
+            moved = now if part.tracks else moved
+        return joined(parts, now)
+
+    def _keyframe(self, item: Mapping[str, Any], here: Path, interpolation: Interpolation) -> Motion:
+        """One keyframe at time 0."""
+        how = Interpolation(item.get("interpolation", interpolation))
+        handles = self.poses.handles(item, here)
+        tracks = {
+            joint: (Key(0.0, angle, how, *handles.get(joint, ((0.0, 0.0), (0.0, 0.0))), where),)
+            for joint, (angle, where) in self.poses.read(item, here).items()
+        }
+        for joint in handles.keys() - tracks.keys():
+            hint = f"give `{joint}` an angle under `joints`, or delete its handles"
+            self.report(
+                "handles-without-key", (*here, "handles", joint), f"`{joint}` has no key here", hint=hint, key=True
+            )
+        cues = tuple(Cue(0.0, kind, item[kind], (*here, kind)) for kind in _CUES if kind in item)
+        return Motion("", 0.0, tracks, cues)
+
+    def _block(self, item: Mapping[str, Any], here: Path, interpolation: Interpolation) -> Motion:
+        """A block or another motion, as often, as fast and on the side that the item says."""
+        for word in (
+            "joints",
+            "hands",
+            "posture",
+            "pose",
+            "handles",
+            *_CUES,
+            *(("play",) if "keyframes" in item else ()),
+        ):
+            if word in item:
+                hint = "put it into a keyframe of its own, with its own time"
+                what = "`keyframes`" if "keyframes" in item else "`play`"
+                self.report("mixed-keyframe", (*here, word), f"`{word}` can't stand beside {what}", hint=hint, key=True)
+        if "play" in item:
+            part = self._played(item["play"], here)
+        else:
+            how = Interpolation(item.get("interpolation", interpolation))
+            part = self.read(item["keyframes"], (*here, "keyframes"), how)
+        if "speed" in item and self.poses.number(item["speed"], (*here, "speed")):
+            part = at_speed(part, item["speed"])
+        return self._repeated(part, item.get("repeat", 1), item.get("mirror", False), here)
+
+    def _played(self, name: str, here: Path) -> Motion:
+        path = (*here, "play")
+        if name in self.motions:
+            return placed(self.motions[name], path)
+        if name == self.name:
+            self.report("motion-cycle", path, f"`{name}` plays itself", hint="play another motion, or use `repeat`")
+        elif name not in self.broken:
+            hint = did_you_mean(name, {*self.motions, *self.broken}, "motions/ has")
+            self.report("unknown-motion", path, f"there is no motion `{name}`", hint=hint)
+        return Motion(name, 0.0, {})
+
+    def _repeated(self, part: Motion, times: int, mirror: bool | str, here: Path) -> Motion:
+        if times > 1 and part.duration <= 0.0:
+            hint = "its last keyframe says how long a round takes: give it a time above 0"
+            self.report("zero-duration", here, "a block that is repeated needs a length", hint=hint)
+            return part
+        if _size(part) * times > MAX_KEYS:
+            self._too_many(here)
+            return part
+        other = mirrored(part) if mirror else part
+        rounds = [other if mirror is True or (mirror and i % 2) else part for i in range(times)]
+        return joined(((i * part.duration, round) for i, round in enumerate(rounds)), part.duration * times)
+
+    def _moment(self, item: Mapping[str, Any], here: Path) -> float | None:
+        """When an item begins, from the beginning of its list [s]; None where it says nothing that can be used."""
+        if "at" in item and "beat" in item:
+            hint = "keep one of them"
+            self.report("two-times", (*here, "beat"), "a keyframe has `at` or `beat`, not both", hint=hint, key=True)
+        if "at" in item:
+            return seconds(item["at"])
+        if "beat" not in item:
+            return None
+        if self.beat is None:
+            hint = "write `tempo: 120` (beats per minute) at the top, or use `at`"
+            self.report("no-tempo", (*here, "beat"), "`beat` needs the motion's tempo", hint=hint, key=True)
+            return None
+        return item["beat"] * self.beat if self.poses.number(item["beat"], (*here, "beat")) else None
+
+    def _no_time(self, item: Mapping[str, Any], here: Path) -> None:
+        if "at" not in item and "beat" not in item:
+            hint = "write `at: 1.5s`" if self.beat is None else "write `beat: 4` or `at: 1.5s`"
+            self.report("no-time", here, "this keyframe does not say when", hint=hint)
+
+    def _too_early(self, item: Mapping[str, Any], here: Path, begin: float, now: float) -> None:
+        path = (*here, "at") if "at" in item else (*here, "beat") if "beat" in item else here
+        if begin <= 0.0:
+            message, hint = "no joint can be there at once", "give the robot time: begin at 0.5s or later"
+        else:
+            beats = f" (beat {now / self.beat:g})" if self.beat and "beat" in item else ""
+            message = f"at {begin:g} s is not after what stands before it"
+            hint = f"that lasts until {now:g} s{beats}; times count from the beginning of their list and increase"
+        self.report("time-not-increasing", path, message, hint=hint)
+
+    def _too_many(self, here: Path) -> None:
+        hint = "use fewer keyframes, joints or rounds"
+        self.report("too-many-keys", here, f"the motion would have more than {MAX_KEYS:,} keys", hint=hint)
+
+
+def returning(part: Motion, angles: Mapping[str, float], pause: float, where: Path) -> Motion:
+    """The motion with a way of `pause` [s] back to `angles` behind it, where it does not stand there already."""
+    away = [j for j, keys in part.tracks.items() if j in angles and abs(keys[-1].angle - angles[j]) > 1e-3]
+    if not away:
+        return part
+    hold = {
+        j: (replace(part.tracks[j][-1], time=0.0),) for j in away if part.tracks[j][-1].time < part.duration - _SOON
+    }
+    back = {j: (Key(pause, angles[j], where=where),) for j in away}
+    return joined(
+        [(0.0, part), (part.duration, Motion("", 0.0, hold)), (part.duration, Motion("", pause, back))],
+        part.duration + pause,
+    )
+
+
+def _size(part: Motion) -> int:
+    return sum(len(keys) for keys in part.tracks.values()) + len(part.cues)

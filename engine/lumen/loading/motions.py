@@ -1,0 +1,110 @@
+"""A motion file, `motions/NAME.yaml`, from its plain data to a `Motion`."""
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import fields
+from graphlib import CycleError, TopologicalSorter
+from typing import Any, TypeVar
+
+from lumen.interpreters.choreography import at_speed, mirrored
+from lumen.language.diagnostics import Path
+from lumen.language.motions import Interpolation, Motion
+from lumen.language.robots import Body
+from lumen.loading.keyframes import KeyframeReader, returning
+from lumen.loading.poses import PoseReader
+from lumen.loading.source import Report
+from lumen.loading.units import ANGLES, seconds
+
+STANDING = "Stand"
+"""The posture that a motion begins in where its file does not say."""
+
+M = TypeVar("M", bound=Motion)
+
+
+def build_motion(
+    data: Any,
+    report: Report,
+    *,
+    name: str,
+    body: Body,
+    motions: Mapping[str, Motion] | None = None,
+    broken: Collection[str] = (),
+    into: type[M] = Motion,  # type: ignore[assignment]
+) -> M | None:
+    """The motion that the data of `motions/NAME.yaml` describes, None where it moves nothing.
+
+    `motions` are those that it may `play`, built before it; `broken` are names of files that can't be.
+    """
+    if not isinstance(data, Mapping) or not data.get("keyframes"):
+        return None
+    unit = (data.get("units") or {}).get("angle", "rad")
+    poses = PoseReader(report, body, unit, ANGLES.get(unit, 1.0))
+    poses.define(data.get("poses") or {}, ("poses",))
+    tempo = data.get("tempo")
+    beat = 60.0 / tempo if tempo and poses.number(tempo, ("tempo",)) else None
+    reader = KeyframeReader(report, name, poses, beat, motions or {}, broken)
+    how = Interpolation(data.get("interpolation", Interpolation.MINIMUM_JERK))
+    part = reader.read(data["keyframes"], ("keyframes",), how)
+    if part.duration <= 0.0:
+        hint = "give its last keyframe a time above 0"
+        report("zero-duration", ("keyframes",), "the motion takes no time", hint=hint, key=True)
+        return None
+    return _finished(part, data, poses, name, into)
+
+
+def build_motions(files: Mapping[str, tuple[Any, Report]], body: Body, *, into: type[M] = Motion) -> dict[str, M]:  # type: ignore[assignment]
+    """Every motion of a project that can be built, from the data and the report of each by its name.
+
+    Motions are built after those that they play; a circle of them is reported where it closes.
+    """
+    plays = {name: dict(_played(data)) for name, (data, _) in files.items()}
+    order, circles = _order({name: set(played) & files.keys() - {name} for name, played in plays.items()})
+    for name, other in circles:
+        message = f"`{name}` plays `{other}`, which in the end plays `{name}`"
+        files[name][1]("motion-cycle", plays[name][other], message, hint="let one of them play something else")
+    built: dict[str, M] = {}
+    for name in order:
+        data, report = files[name]
+        motion = build_motion(data, report, name=name, body=body, motions=built, broken=files.keys(), into=into)
+        if motion is not None:
+            built[name] = motion
+    return {name: built[name] for name in files if name in built}
+
+
+def _finished(part: Motion, data: Mapping[str, Any], poses: PoseReader, name: str, into: type[M]) -> M:
+    """The whole motion: its speed, its side, the way back and where it comes from."""
+    if "speed" in data and poses.number(data["speed"], ("speed",)):
+        part = at_speed(part, data["speed"])
+    part = mirrored(part) if data.get("mirror") else part
+    start = data.get("start", STANDING if STANDING in poses.body.postures else None)
+    end = data.get("end", start)
+    origin = (poses.posture(start, ("start",)) if start else None) or {}
+    home = origin if end == start else (poses.posture(end, ("end",)) if end else None) or {}
+    part = returning(part, home, seconds(data.get("return")) or 1.0, ("end",) if "end" in data else ("keyframes",))
+    values = {f.name: getattr(part, f.name) for f in fields(Motion)}
+    values |= {"name": name, "start": start or "", "end": end or ""}
+    values["origin"] = {joint: origin[joint] for joint in part.tracks if joint in origin}
+    return into(**values)
+
+
+def _played(data: Any) -> Iterator[tuple[str, Path]]:
+    """Every motion that a file plays, and where."""
+    waiting: list[tuple[Any, Path]] = [(data, ())]
+    while waiting:
+        item, path = waiting.pop()
+        if isinstance(item, Mapping):
+            if isinstance(item.get("play"), str):
+                yield item["play"], (*path, "play")
+            if isinstance(item.get("keyframes"), list):
+                waiting.extend((child, (*path, "keyframes", i)) for i, child in enumerate(item["keyframes"]))
+
+
+def _order(plays: dict[str, set[str]]) -> tuple[list[str], list[tuple[str, str]]]:
+    """The names, each after those that it plays, and the steps that had to be taken out because they close a circle."""
+    circles: list[tuple[str, str]] = []
+    while True:
+        try:
+            return list(TopologicalSorter(plays).static_order()), circles
+        except CycleError as error:
+            played, player = error.args[1][:2]  # each name in the list is played by the next
+            plays[player].discard(played)
+            circles.append((player, played))

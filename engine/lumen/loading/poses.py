@@ -1,0 +1,140 @@
+"""Where joints stand in a keyframe: postures of the body, the file's own poses, joints and hands, in [rad] and 0..1."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import Any
+
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.robots import Body
+from lumen.loading.source import Report
+from lumen.loading.units import seconds
+
+Angles = dict[str, tuple[float, Path]]
+"""For every joint its angle [rad; a hand 0..1] and where it stands in the file."""
+
+Handles = dict[str, tuple[tuple[float, float], tuple[float, float]]]
+
+TOLERANCE = 1e-6
+_SIDES = {"left": "L", "right": "R"}
+
+
+@dataclass
+class PoseReader:
+    """Reads what places joints. `unit` is the name of the file's angle, `factor` what one of it is in [rad]."""
+
+    report: Report
+    body: Body
+    unit: str
+    factor: float
+    poses: dict[str, Angles] = field(default_factory=dict)
+
+    def define(self, poses: Mapping[str, Any], path: Path) -> None:
+        """Learn the poses under `poses:`; one may build on those above it."""
+        for name, pose in poses.items():
+            self.poses[name] = self.read(pose, (*path, name))
+
+    def read(self, item: Mapping[str, Any], here: Path) -> Angles:
+        """The joints of a keyframe or pose: posture, then poses, then `joints` and `hands`, the later ones winning."""
+        angles: Angles = {}
+        if "posture" in item:
+            angles |= self._posture(item["posture"], (*here, "posture"))
+        names = item.get("pose", [])
+        for i, name in enumerate([names] if isinstance(names, str) else names):
+            angles |= self._pose(name, (*here, "pose") if isinstance(names, str) else (*here, "pose", i))
+        own = self._joints(item.get("joints") or {}, (*here, "joints"))
+        own |= self._hands(item.get("hands") or {}, (*here, "hands"))
+        return self._shared(angles | own, own)
+
+    def posture(self, name: str, path: Path) -> Mapping[str, float] | None:
+        """The angles of a posture [rad], None (and a diagnostic) where the robot does not know it."""
+        if name in self.body.postures:
+            return self.body.postures[name]
+        hint = did_you_mean(name, self.body.postures, f"{self.body.name} knows")
+        self.report("unknown-posture", path, f"there is no posture `{name}`", hint=hint)
+        return None
+
+    def number(self, value: float, path: Path) -> bool:
+        """Whether a number is one to count with."""
+        if not isfinite(value):
+            self.report("not-a-number", path, f"`{value}` can't be used here", hint="write an ordinary number")
+        return isfinite(value)
+
+    def handles(self, item: Mapping[str, Any], here: Path) -> Handles:
+        """The Bezier handles of a keyframe, as (dt [s], da [rad]) before and after the key."""
+        found: Handles = {}
+        for joint, sides in (item.get("handles") or {}).items():
+            path = (*here, "handles", joint)
+            if self._known(joint, path):
+                found[joint] = self._handle(sides, "in", "before", path), self._handle(sides, "out", "after", path)
+        return found
+
+    def _handle(self, sides: Mapping[str, Any], side: str, word: str, path: Path) -> tuple[float, float]:
+        handle = sides.get(side) or {}
+        dt, da = seconds(handle.get(word)), handle.get("angle", 0)
+        if dt is None or not self.number(da, (*path, side, "angle")):
+            return 0.0, 0.0
+        return (-dt if side == "in" else dt), da * self.factor
+
+    def _posture(self, name: str, path: Path) -> Angles:
+        return {joint: (angle, path) for joint, angle in (self.posture(name, path) or {}).items()}
+
+    def _pose(self, name: str, path: Path) -> Angles:
+        if name not in self.poses:
+            hint = did_you_mean(name, self.poses, "`poses` has")
+            self.report("unknown-pose", path, f"there is no pose `{name}` above", hint=hint)
+        return {joint: (angle, path) for joint, (angle, _) in self.poses.get(name, {}).items()}
+
+    def _joints(self, joints: Mapping[str, float], path: Path) -> Angles:
+        found: Angles = {}
+        for name, value in joints.items():
+            here = (*path, name)
+            if not self._known(name, here) or not self.number(value, here):
+                continue
+            if name in self.body.hands:
+                found |= self._hand(name, value, here)
+            elif self._inside(name, value, here):
+                found[name] = value * self.factor, here
+        return found
+
+    def _known(self, joint: str, path: Path) -> bool:
+        if joint not in self.body.joints:
+            hint = did_you_mean(joint, self.body.joints, f"{self.body.name} has")
+            self.report("unknown-joint", path, f"there is no joint `{joint}`", hint=hint, key=True)
+        return joint in self.body.joints
+
+    def _inside(self, name: str, value: float, path: Path) -> bool:
+        joint = self.body.joints[name]
+        if joint.minimum - TOLERANCE <= value * self.factor <= joint.maximum + TOLERANCE:
+            return True
+        low, high = (round(limit / self.factor, 4) for limit in (joint.minimum, joint.maximum))
+        hint = f"it goes from {low:g} to {high:g} {self.unit}"
+        self.report("angle-out-of-range", path, f"`{name}` can't go to {value:g} {self.unit}", hint=hint)
+        return False
+
+    def _hands(self, hands: Mapping[str, float], path: Path) -> Angles:
+        found: Angles = {}
+        for side, value in hands.items():
+            if self.number(value, (*path, side)):
+                for joint in self.body.hands:
+                    if joint.startswith(_SIDES.get(side, "?")):
+                        found |= self._hand(joint, value, (*path, side))
+        return found
+
+    def _hand(self, joint: str, value: float, path: Path) -> Angles:
+        if 0.0 <= value <= 1.0:
+            return {joint: (value, path)}
+        hint = "0 is closed, 1 is open"
+        self.report("hand-out-of-range", path, f"a hand can't be opened to {value:g}", hint=hint)
+        return {}
+
+    def _shared(self, angles: Angles, own: Angles) -> Angles:
+        """Joints on one drive move together: what is said of one holds for both."""
+        for follower, leader in self.body.shared.items():
+            if follower in own and leader in own and abs(own[follower][0] - own[leader][0]) > TOLERANCE:
+                message = f"`{leader}` and `{follower}` share one motor and can't stand at different angles"
+                self.report("shared-drive", own[follower][1], message, hint=f"give only `{leader}`")
+            chosen = next((source[j] for source in (own, angles) for j in (leader, follower) if j in source), None)
+            if chosen:
+                angles |= {leader: chosen, follower: chosen}
+        return angles
