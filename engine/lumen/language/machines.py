@@ -28,6 +28,8 @@ class Transition:
 
     `event` is a descriptor (`heard`, `error.*`, `*`), empty for `always`; `delay` [s] is set for `after`. `targets`
     are the paths of existing states, empty for a targetless transition. `reenter` is SCXML's `type="external"`.
+    Where `exact`, the event's name has to be the whole descriptor, not begin with it: `onDone` of `talk` has nothing
+    to do with `done.state.talk.ask`.
     """
 
     source: str
@@ -37,6 +39,7 @@ class Transition:
     actions: tuple[Step, ...] = ()
     reenter: bool = False
     delay: float | None = None
+    exact: bool = False
     where: Path = field(default=(), compare=False)
 
 

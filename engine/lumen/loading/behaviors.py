@@ -1,0 +1,155 @@
+"""A behaviour file, `behaviors/NAME.yaml`, from its plain data to a `Machine`."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.machines import Answer, Kind, Machine, State
+from lumen.loading.actions import Actions
+from lumen.loading.expressions import Expressions
+from lumen.loading.outline import Entry, Outline
+from lumen.loading.shapes import check_shapes
+from lumen.loading.source import Report
+from lumen.loading.transitions import Transitions
+
+M = TypeVar("M", bound=Machine)
+
+
+def build_machine(data: Any, report: Report, *, name: str, into: type[M]) -> M | None:
+    """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
+
+    `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out. `into` is the
+    class of the result: `Machine`, or one derived from it.
+    """
+    if not isinstance(data, Mapping) or not data.get("states"):
+        return None
+    return into(**_Builder(data, report, name).fields())
+
+
+def fingerprint(data: Any) -> str:
+    """The hash of plain data; order counts, since candidates are tried in the order written."""
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+class _Builder:
+    """Reads one file: first the tree of its states, then what stands in each."""
+
+    def __init__(self, data: Mapping[str, Any], report: Report, name: str) -> None:
+        self.data, self.report = data, report
+        self.outline = Outline(data, name, report)
+        self.expressions = Expressions(report, data.get("context") or {})
+        self.actions = Actions(report, self.expressions, data.get("units") or {})
+        self.transitions = Transitions(report, self.outline, self.actions, self.expressions)
+        self.beginnings: dict[str, tuple[str, ...]] = {}
+
+    def fields(self) -> dict[str, Any]:
+        """Everything that a `Machine` holds."""
+        data = self.data
+        check_shapes(self.outline, self.report)
+        return {
+            "id": self.outline.root.alias,
+            "states": {path: self.state(entry) for path, entry in self.outline.entries.items()},
+            "context": dict(data.get("context") or {}),
+            "types": {k: v for k, v in (data.get("types") or {}).items() if self.expressions.key(k, ("types", k))},
+            "events": dict(data.get("events") or {}),
+            "phrases": {key: _phrases(body) for key, body in (data.get("phrases") or {}).items()},
+            "answers": {key: _answers(rows) for key, rows in (data.get("answers") or {}).items()},
+            "renamed": {o: n for o, n in (data.get("renamed") or {}).items() if self.renamed(n, ("renamed", o))},
+            "hash": fingerprint(data),
+        }
+
+    def state(self, entry: Entry) -> State:
+        data, where = entry.data, entry.where
+        if "invoke" in data:
+            hint = "put its states into this file for now"
+            self.report("unsupported", (*where, "invoke"), "`invoke` can't be run yet", hint=hint, key=True)
+        return State(
+            path=entry.path,
+            kind=entry.kind,
+            parent=entry.parent.path if entry.parent else None,
+            alias=entry.alias,
+            children=tuple(child.path for child in entry.children.values()),
+            initial=self.initial(entry),
+            deep=data.get("history") == "deep",
+            entry=self.actions.block(data.get("entry"), (*where, "entry")),
+            do=self.actions.block(data.get("do"), (*where, "do"), do=True),
+            exit=self.actions.block(data.get("exit"), (*where, "exit")),
+            transitions=self.transitions.of(entry),
+            output=self.expressions.value(data.get("output"), (*where, "output")),
+            on_reload=self.on_reload(entry),
+            where=where,
+        )
+
+    def initial(self, entry: Entry) -> tuple[str, ...]:
+        """The paths entered by default: what the file says, else the first child."""
+        if entry.path not in self.beginnings:
+            self.beginnings[entry.path] = self.remembered(entry) if entry.kind is Kind.HISTORY else self.begin(entry)
+        return self.beginnings[entry.path]
+
+    def begin(self, entry: Entry) -> tuple[str, ...]:
+        if entry.kind is not Kind.COMPOUND:
+            return ()
+        where = (*entry.where, "initial")
+        if "initial" in entry.data:
+            rows = entry.data["initial"]
+            body = [_child(text) for text in rows] if isinstance(rows, list) else _child(rows)
+            if found := self.within(entry, entry, body, where):
+                return tuple(state.path for state in found)
+        return _children(entry)[:1]
+
+    def remembered(self, entry: Entry) -> tuple[str, ...]:
+        """Where a history state leads before there is a history: its target, else as its parent begins."""
+        parent = entry.parent
+        assert parent is not None  # the schema lets no behaviour be a history state
+        if "target" in entry.data:
+            where = (*entry.where, "target")
+            found = self.within(parent, entry, entry.data["target"], where)
+            if any(state.kind is Kind.HISTORY for state in found):
+                self.report("not-within", where, "a history can't lead to a history", hint="name a state")
+                return ()
+            return tuple(state.path for state in found)
+        begin = _children(parent) if parent.kind is Kind.PARALLEL else self.initial(parent)
+        return begin if entry.path not in begin else _children(parent)[:1]
+
+    def within(self, home: Entry, source: Entry, body: Any, where: Path) -> list[Entry]:
+        """The states named, all of them below `home`; none (and reported) where one is wrong."""
+        found = self.transitions.targets(source, body, where) or []
+        for state in found:
+            if state is home or not state.lies_in(home):
+                hint = did_you_mean(state.path, home.children, "it has")
+                self.report("not-within", where, f"`{state.path}` does not lie in {home.title}", hint=hint)
+                return []
+        return found
+
+    def on_reload(self, entry: Entry) -> str:
+        if "onReload" not in entry.data:
+            return ""
+        found = self.outline.resolve(entry, entry.data["onReload"], (*entry.where, "onReload"))
+        return found.path if found else ""
+
+    def renamed(self, path: str, where: Path) -> bool:
+        if path in self.outline.entries:
+            return True
+        hint = did_you_mean(path, self.outline.entries)
+        self.report("unknown-state", where, f"there is no state `{path}`", hint=hint)
+        return False
+
+
+def _children(entry: Entry) -> tuple[str, ...]:
+    return tuple(child.path for child in entry.children.values() if child.kind is not Kind.HISTORY)
+
+
+def _child(target: str) -> str:
+    return target if target.startswith(("#", ".")) else f".{target}"
+
+
+def _phrases(body: Any) -> dict[str, tuple[str, ...]]:
+    table = body if isinstance(body, Mapping) else {"": body}
+    return {language: (rows,) if isinstance(rows, str) else tuple(rows) for language, rows in table.items()}
+
+
+def _answers(rows: Any) -> tuple[Answer, ...]:
+    return tuple(Answer(_phrases(row["phrases"]), row["value"]) for row in rows)

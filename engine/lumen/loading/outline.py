@@ -1,0 +1,119 @@
+"""The tree of a behaviour's states before anything in them is read, so that every target can be resolved."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.machines import Kind
+from lumen.loading.source import Report
+
+
+@dataclass(slots=True)
+class Entry:
+    """A state's place in the tree, and what the file says of it."""
+
+    path: str
+    parent: "Entry | None"
+    data: Mapping[str, Any]
+    where: Path
+    kind: Kind
+    alias: str = ""
+    children: "dict[str, Entry]" = field(default_factory=dict)
+
+    def lies_in(self, other: "Entry") -> bool:
+        """Whether it is the other one or anywhere below it."""
+        entry: Entry | None = self
+        while entry is not None and entry is not other:
+            entry = entry.parent
+        return entry is other
+
+    @property
+    def name(self) -> str:
+        return self.alias or self.path
+
+    @property
+    def title(self) -> str:
+        """What a message calls it."""
+        return f"`{self.path}`" if self.path else "the behaviour itself"
+
+
+class Outline:
+    """All states by path, in document order, and by alias."""
+
+    def __init__(self, data: Mapping[str, Any], name: str, report: Report) -> None:
+        self.report = report
+        self.entries: dict[str, Entry] = {}
+        self.aliases: dict[str, Entry] = {}
+        self.root = self._enter("", None, data, ())
+        self.root.alias = data.get("id", name)
+        for entry in self.entries.values():
+            self._alias(entry)
+
+    def resolve(self, source: Entry, target: str, where: Path) -> Entry | None:
+        """The state that `target` means in a transition of `source`; reported where there is none.
+
+        A state that was itself reported as broken is not missed a second time.
+        """
+        if target.startswith("#"):
+            found, known = self._by_id(target[1:]), [f"#{n}" for n in (*self.aliases, *self.entries) if n]
+        elif target.startswith("."):
+            found, known = _descend(source, target[1:]), [f".{key}" for key in source.children]
+        else:
+            siblings = source.parent.children if source.parent else {}
+            found = _descend(source.parent, target) if source.parent else None
+            known = [*siblings, *(f".{key}" for key in source.children), *(f"#{n}" for n in self.aliases if n)]
+        if found is None and target.rpartition(".")[2].lstrip("#") not in self.report.lost:
+            message = f"there is no state `{target}` to go to from {source.title}"
+            self.report("unknown-state", where, message, hint=self._hint(source, target, known))
+        return found
+
+    def _hint(self, source: Entry, target: str, known: Iterable[str]) -> str:
+        key = target.lstrip("#.")
+        if key in source.children:
+            return f"a child is written `.{key}`"
+        if self._by_id(key):
+            return f"a state elsewhere in the tree is written `#{key}`"
+        if deeper := [e for e in self.entries.values() if e.path.rpartition(".")[2] == key]:
+            return f"a state elsewhere in the tree is written `#{deeper[0].name}`"
+        return did_you_mean(target, known)
+
+    def _by_id(self, name: str) -> Entry | None:
+        if found := self.aliases.get(name) or (self.entries.get(name) if name else None):
+            return found
+        head, _, rest = name.partition(".")
+        return _descend(self.aliases[head], rest) if rest and head in self.aliases else None
+
+    def _enter(self, path: str, parent: Entry | None, data: Mapping[str, Any], where: Path) -> Entry:
+        entry = Entry(path, parent, data, where, _kind(data), "" if parent is None else data.get("id", ""))
+        self.entries[path] = entry
+        for key, child in (data.get("states") or {}).items():
+            below = f"{path}.{key}" if path else key
+            entry.children[key] = self._enter(below, entry, child or {}, (*where, "states", key))
+        return entry
+
+    def _alias(self, entry: Entry) -> None:
+        alias = entry.alias
+        if not alias:
+            return
+        first = self.aliases.get(alias) or self.entries.get(alias)
+        if first is None or first is entry or entry.parent is None:
+            self.aliases.setdefault(alias, entry)
+        elif first.parent is None and first is self.aliases.get(alias):
+            self.aliases[alias] = entry  # the behaviour's own name gives way to a state's
+        else:
+            message = f"the id `{alias}` of `{entry.path}` already belongs to {first.title}"
+            self.report("duplicate-id", (*entry.where, "id"), message, hint="give each state an id of its own")
+            entry.alias = ""
+
+
+def _kind(data: Mapping[str, Any]) -> Kind:
+    if kind := data.get("type"):
+        return Kind(kind)
+    return Kind.COMPOUND if data.get("states") else Kind.ATOMIC
+
+
+def _descend(entry: Entry | None, path: str) -> Entry | None:
+    for key in path.split("."):
+        entry = entry.children.get(key) if entry else None
+    return entry

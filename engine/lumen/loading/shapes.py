@@ -1,0 +1,66 @@
+"""What a state may hold, by its type; a schema can say it only in riddles."""
+
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.machines import Kind
+from lumen.loading.outline import Entry, Outline
+from lumen.loading.source import Report
+
+_COMMON = {"id", "description", "type"}
+_HISTORY = {*_COMMON, "history", "target"}
+_FINAL = {*_COMMON, "entry", "exit", "output"}
+_MACHINE = {"units", "context", "types", "events", "phrases", "answers", "renamed"}
+_STATE = {
+    *_COMMON, *_MACHINE, "on", "always", "after", "onDone", "onError", "onReload", "entry", "do", "exit", "invoke"
+}  # fmt: skip
+_ALLOWED = {
+    Kind.HISTORY: _HISTORY,
+    Kind.FINAL: _FINAL,
+    Kind.ATOMIC: _STATE,
+    Kind.PARALLEL: {*_STATE, "states"},
+    Kind.COMPOUND: {*_STATE, "states", "initial"},
+}
+_ARTICLES = {"atomic": "an atomic"}
+
+
+def check_shapes(outline: Outline, report: Report) -> None:
+    """Reports keys that mean nothing in a state of that type, and states that lack what their type needs."""
+    for entry in outline.entries.values():
+        _check_keys(entry, report)
+        _check_children(entry, report)
+        _check_parent(entry, report)
+        _check_done(entry, report)
+
+
+def _check_keys(entry: Entry, report: Report) -> None:
+    allowed = _ALLOWED[entry.kind]
+    for key in entry.data:
+        if key in allowed:
+            continue
+        hint = did_you_mean(key, allowed - _MACHINE, "it may have")
+        if key in ("history", "target"):
+            hint = "add `type: history`" if key == "history" else "transitions stand under `on`, `always` or `after`"
+        message = f"{_ARTICLES.get(entry.kind, f'a {entry.kind}')} state has no `{key}`"
+        report("misplaced-key", (*entry.where, key), message, hint=hint, key=True)
+
+
+def _check_children(entry: Entry, report: Report) -> None:
+    if entry.kind not in (Kind.COMPOUND, Kind.PARALLEL):
+        return
+    if all(child.kind is Kind.HISTORY for child in entry.children.values()):
+        hint = "give it `states`, or leave out its `type`"
+        report("no-states", entry.where, f"{entry.title} has no states to be in", hint=hint, key=True)
+
+
+def _check_parent(entry: Entry, report: Report) -> None:
+    parent = entry.parent
+    if entry.kind is Kind.FINAL and parent and parent.kind is Kind.PARALLEL:
+        hint = "a parallel state is done when each of its regions has reached a final state of its own"
+        report("final-in-parallel", entry.where, f"`{entry.path}` is final in a parallel state", hint=hint, key=True)
+
+
+def _check_done(entry: Entry, report: Report) -> None:
+    if entry.kind is Kind.ATOMIC and "onDone" in entry.data and "do" not in entry.data:
+        hint = "give it a `do`, or use `always`"
+        report(
+            "never-done", (*entry.where, "onDone"), f"{entry.title} has no `do` to be done with", hint=hint, key=True
+        )

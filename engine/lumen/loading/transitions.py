@@ -1,0 +1,112 @@
+"""Transitions of a behaviour: `on`, `always`, `after`, `onDone` and `onError`, their targets resolved."""
+
+from collections.abc import Iterator, Mapping
+from itertools import combinations
+from typing import Any
+
+from lumen.language.diagnostics import Path
+from lumen.language.machines import Kind, Transition
+from lumen.loading.actions import Actions
+from lumen.loading.expressions import Expressions
+from lumen.loading.outline import Entry, Outline
+from lumen.loading.source import Report
+
+Row = tuple[Path, Any]
+
+
+class Transitions:
+    """Reads the transitions of one document's states."""
+
+    def __init__(self, report: Report, outline: Outline, actions: Actions, expressions: Expressions) -> None:
+        self.report, self.outline = report, outline
+        self.actions, self.expressions = actions, expressions
+
+    def of(self, entry: Entry) -> tuple[Transition, ...]:
+        """The candidates of a state, in the order of the file; broken ones are left out."""
+        return tuple(found for key, body in entry.data.items() for found in self._under(entry, key, body))
+
+    def targets(self, entry: Entry, body: Any, where: Path) -> list[Entry] | None:
+        """The states that a target or a list of them names; None (and reported) where one is wrong."""
+        rows = _rows(body, where)
+        found = [self.outline.resolve(entry, text, place) for place, text in rows]
+        states = [state for state in found if state is not None]
+        if len(states) < len(found) or not self._together(states, where):
+            return None
+        return states
+
+    def _under(self, entry: Entry, key: str, body: Any) -> Iterator[Transition]:
+        where = (*entry.where, key)
+        match key:
+            case "on":
+                for event, rows in body.items():
+                    yield from self._candidates(entry, rows, (*where, event), event=event)
+            case "always":
+                yield from self._candidates(entry, body, where)
+            case "after":
+                yield from self._after(entry, body, where)
+            case "onDone":
+                kind = "do" if entry.kind is Kind.ATOMIC else "state"
+                yield from self._candidates(entry, body, where, event=f"done.{kind}.{entry.name}", exact=True)
+            case "onError":
+                yield from self._candidates(entry, body, where, event=f"error.do.{entry.name}", exact=True)
+
+    def _after(self, entry: Entry, body: Mapping[str, Any], where: Path) -> Iterator[Transition]:
+        for text, rows in body.items():
+            delay = self.actions.duration(text, (*where, text), key=True)
+            if delay is not None:
+                event = f"after.{text.replace(' ', '')}.{entry.name}"
+                yield from self._candidates(entry, rows, (*where, text), event=event, exact=True, delay=delay)
+
+    def _candidates(
+        self,
+        entry: Entry,
+        body: Any,
+        where: Path,
+        *,
+        event: str = "",
+        exact: bool = False,
+        delay: float | None = None,
+    ) -> Iterator[Transition]:
+        for place, row in _rows(body, where):
+            if found := self._one(entry, row, place, event):
+                yield Transition(
+                    entry.path, event, found.targets, found.guard, found.actions, found.reenter, delay, exact, place
+                )
+
+    def _one(self, entry: Entry, row: Any, where: Path, event: str) -> Transition | None:
+        if isinstance(row, str):
+            row, place = {"target": row}, where
+        else:
+            place = (*where, "target")
+        targets = self.targets(entry, row["target"], place) if "target" in row else []
+        guard = self.expressions.expression(row["guard"], (*where, "guard")) if "guard" in row else None
+        actions = self.actions.block(row.get("actions"), (*where, "actions"))
+        if targets is None or (guard is None and "guard" in row):
+            return None
+        if not (event or targets or guard):
+            hint = "give it a `target` or a `guard`"
+            self.report("endless-always", where, "an `always` without target and guard would run for ever", hint=hint)
+            return None
+        paths = tuple(target.path for target in targets)
+        return Transition(entry.path, event, paths, guard, actions, row.get("reenter", False))
+
+    def _together(self, states: list[Entry], where: Path) -> bool:
+        for one, other in combinations(states, 2):
+            if not (one.lies_in(other) or other.lies_in(one) or _meeting(one, other).kind is Kind.PARALLEL):
+                message = f"`{one.path}` and `{other.path}` can't be active together"
+                hint = "the targets of a list have to lie in different regions of a parallel state"
+                self.report("conflicting-targets", where, message, hint=hint)
+                return False
+        return True
+
+
+def _meeting(one: Entry, other: Entry) -> Entry:
+    """The nearest state that holds both."""
+    while not one.lies_in(other):
+        assert other.parent is not None  # every state lies in the root
+        other = other.parent
+    return other
+
+
+def _rows(body: Any, where: Path) -> list[Row]:
+    return [((*where, i), row) for i, row in enumerate(body)] if isinstance(body, list | tuple) else [(where, body)]
