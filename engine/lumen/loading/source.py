@@ -25,6 +25,7 @@ _OCT = re.compile(r"0o[0-7]+")
 _HEX = re.compile(r"0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _INF = re.compile(r"([-+]?)\.(inf|Inf|INF)")
+_QUOTED = re.compile(r"(?<=[`.#])[^`.#]+(?=[`.])")
 _NAN = frozenset((".nan", ".NaN", ".NAN"))
 
 
@@ -69,11 +70,17 @@ class Document:
 
 
 class Report:
-    """Collects the diagnostics of one document; whoever finds something calls it with the path of the node."""
+    """Collects the diagnostics of one document; whoever finds something calls it with the path of the node.
+
+    `pruned` are the paths of nodes that were taken out because they are broken, and `lost` the names that stood in
+    them: that such a name is unknown (`unknown-…`) follows from what has been said, and is not said.
+    """
 
     def __init__(self, document: Document) -> None:
         self.document = document
         self.diagnostics: list[Diagnostic] = []
+        self.pruned: set[Path] = set()
+        self.lost: set[str] = set()
 
     def __call__(
         self,
@@ -85,6 +92,8 @@ class Report:
         key: bool = False,
         severity: Severity = Severity.ERROR,
     ) -> None:
+        if self.lost and code.startswith("unknown-") and self.lost.intersection(_QUOTED.findall(message)):
+            return
         place = self.document.place(path, key=key)
         self.diagnostics.append(Diagnostic(code, message, place, hint, severity))
 

@@ -1,0 +1,66 @@
+"""A report's document without some of its nodes; the others keep their places."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from lumen.language.diagnostics import Path
+from lumen.loading.source import Document, Report, Span
+
+
+def prune(report: Report, doomed: set[Path]) -> None:
+    """Take these nodes out of the report's document, and remember what was lost with them.
+
+    Items of lists move up, and their places with them.
+    """
+    document = report.document
+    for path in doomed:
+        report.lost.update(_names(_at(document.data, path)))
+        if path and isinstance(path[-1], str):
+            report.lost.add(path[-1])
+    copy = _Copy(document, doomed)
+    data = copy.of(document.data, (), ())
+    gone = {(*copy.moved.get(path[:-1], path[:-1]), path[-1]) for path in doomed}
+    report.pruned = {copy.moved.get(path, path) for path in report.pruned} | gone
+    report.document = Document(document.file, data, copy.spans, document.text)
+
+
+class _Copy:
+    """A copy of a document's data without what is doomed; `moved` maps old paths to new ones."""
+
+    def __init__(self, document: Document, doomed: set[Path]) -> None:
+        self._document, self._doomed = document, doomed
+        self.spans: dict[Path, Span] = {}
+        self.moved: dict[Path, Path] = {}
+
+    def of(self, data: Any, old: Path, new: Path) -> Any:
+        """The copy of what stood at `old`, its places under `new`."""
+        self.moved[old] = new
+        if old in self._document.spans:
+            self.spans[new] = self._document.spans[old]
+        if isinstance(data, dict):
+            kept = [key for key in data if (*old, key) not in self._doomed]
+            return {key: self.of(data[key], (*old, key), (*new, key)) for key in kept}
+        if isinstance(data, list):
+            left = [i for i in range(len(data)) if (*old, i) not in self._doomed]
+            return [self.of(data[i], (*old, i), (*new, n)) for n, i in enumerate(left)]
+        return data
+
+
+def _at(data: Any, path: Path) -> Any:
+    for step in path:
+        data = data[step]
+    return data
+
+
+def _names(data: Any) -> Iterator[str]:
+    """Every name that `data` could have told of: its keys and its texts."""
+    waiting = [data]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, str):
+            yield item
+        elif isinstance(item, dict):
+            yield from item
+            waiting.extend(item.values())
+        elif isinstance(item, list):
+            waiting.extend(item)

@@ -1,0 +1,80 @@
+"""Documents against the JSON Schema of their kind: every error at its node, and the data without its broken nodes."""
+
+import json
+from collections.abc import Iterator
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from lumen.language.diagnostics import Path
+from lumen.loading.complaints import Complaint, complaints
+from lumen.loading.packaged import schema_folder
+from lumen.loading.pruning import prune
+from lumen.loading.source import Document, Report
+
+if TYPE_CHECKING:
+    from jsonschema import Draft202012Validator
+
+KINDS = ("lumen", "behavior", "story", "controller", "motion", "body")
+"""The kinds of YAML file; each has a `schemas/KIND.schema.json`."""
+
+ROUNDS = 20
+
+
+def check_schema(document: Document, kind: str, report: Report) -> Any:
+    """The document's data without what its schema refuses; each error is reported at its node.
+
+    A broken node is taken out with its key, or as an item of its list; one that lacks a required key is taken out
+    whole, but never the root: a builder asks for the root's required keys itself. None where nothing is left. The
+    report's document becomes the pruned one, so that paths into the returned data have the right places; its `lost`
+    names stand in what was taken out.
+    """
+    validator = _validator(kind)
+    said: set[Path] = set()
+    for _ in range(ROUNDS):
+        try:
+            found = list(_complaints(validator, report.document.data))
+        except RecursionError:
+            report("too-large", (), "the file is nested too deeply to be read", hint="use fewer levels")
+            return None
+        doomed = _judge(found, report, said)
+        if () in doomed:
+            return None
+        if not doomed:
+            return report.document.data
+        prune(report, doomed)
+    return None
+
+
+def load_schema(kind: str) -> Any:
+    """The JSON Schema of a kind of file, as data."""
+    return json.loads((schema_folder() / f"{kind}.schema.json").read_bytes())
+
+
+@cache
+def _validator(kind: str) -> "Draft202012Validator":
+    from jsonschema import Draft202012Validator  # takes 0.1 s: only where something is loaded
+
+    return Draft202012Validator(load_schema(kind))
+
+
+def _complaints(validator: "Draft202012Validator", data: Any) -> Iterator[Complaint]:
+    for error in validator.iter_errors(data):
+        yield from complaints(error)
+
+
+def _judge(found: list[Complaint], report: Report, said: set[Path]) -> set[Path]:
+    """The nodes that have to go. What follows from a node that went before, and what was said, is not said again."""
+    suggested = {(c.path[:-1], c.suggestion) for c in found if c.suggestion}
+    doomed = {c.doomed for c in found if c.doomed is not None}
+    spoken: set[Path] = set()
+    for complaint in found:
+        about = complaint.about
+        follows = any(path[: len(about)] == about for path in report.pruned) if about else False
+        lost = bool(complaint.missing) and (*about, complaint.missing) in report.pruned
+        meant = bool(complaint.missing) and (about, complaint.missing) in suggested
+        if not (follows or lost or meant or complaint.path in spoken or complaint.path in said):
+            report(complaint.code, complaint.path, complaint.message, hint=complaint.hint, key=complaint.key)
+        spoken.add(complaint.path)
+        if complaint.doomed is None:
+            said.add(complaint.path)
+    return doomed
