@@ -1,0 +1,7 @@
+"""The NAO in MuJoCo, through dm_control. Importing this imports them; OpenGL is chosen just before."""
+
+from lumen.robots.simulation import gl as gl  # first of all: it chooses what mujoco draws with
+from lumen.robots.simulation.rendering import available
+from lumen.robots.simulation.robot import SimulatedRobot
+
+__all__ = ["SimulatedRobot", "available"]

@@ -1,0 +1,40 @@
+"""What the camera in the robot's forehead sees."""
+
+from lumen.interpreters.projection import project
+from lumen.language.robots import Camera
+from lumen.ports import Image
+from lumen.robots.simulation.model import ROBOT
+from lumen.robots.simulation.rendering import CAMERA, Pixels, Scene, Studio, available
+from lumen.robots.simulation.world import World
+
+NAME = f"{ROBOT}/CameraTop"
+
+
+class TopCamera:
+    """Takes images, to be drawn later by another thread, and tells where a point appears in them."""
+
+    def __init__(self, world: World, camera: Camera) -> None:
+        self._world, self._camera = world, camera
+        self._studio = None if available() else Studio(world.model, CAMERA)
+
+    def image(self, now: float) -> Image | None:
+        """The image of this moment; None where nothing can be drawn."""
+        if self._studio is None:
+            return None
+        studio, camera, scene = self._studio, self._camera, Scene.of(self._world.model, self._world.data)
+
+        def pixels() -> Pixels:
+            return studio.draw(scene, NAME, camera.width, camera.height)
+
+        return Image(now, pixels)
+
+    def pixel(self, point: tuple[float, float, float]) -> tuple[float, float] | None:
+        """Where a point of the hall [m] appears [px]; None outside the image or behind."""
+        view = self._world.data.camera(NAME)
+        right, up, back = view.xmat.reshape(3, 3).T @ (point - view.xpos)
+        return project((-float(back), -float(right), float(up)), self._camera)
+
+    def close(self) -> None:
+        """Let go of this thread's OpenGL context."""
+        if self._studio:
+            self._studio.close()

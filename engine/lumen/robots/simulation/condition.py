@@ -1,0 +1,62 @@
+"""How the robot fares: battery and the heat of its motors."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.language.events import Event
+
+CAPACITY = 48.6 * 3600
+"""A full battery [J]: 48.6 Wh, from NAO V5's data sheet."""
+
+IDLE_POWER = 15.0
+"""What computer and sensors take [W]; with the motors at work it lasts 60 to 90 minutes."""
+
+LOSS = 4.0
+"""What a motor takes [W] to give its greatest torque without moving."""
+
+LOW, HOT, COOLED = 20, 75.0, 70.0
+"""Charge [%] and temperatures [degrees Celsius] at which the robot speaks up, and may do so again."""
+
+AMBIENT, RISE, TIME_CONSTANT = 38.0, 60.0, 600.0
+"""Where motors begin, how far they heat up at their greatest torque, in what time [s]. Chosen, not measured."""
+
+
+class Condition:
+    """Integrates what the motors do; `temperatures` [degrees Celsius] in the order of the joints."""
+
+    def __init__(self, names: Sequence[str], efforts: Sequence[float], charge: float = 1.0) -> None:
+        self._names = names
+        self._efforts = np.array(efforts)
+        self._energy = charge * CAPACITY
+        self._low = False
+        self._hot: set[int] = set()
+        self.temperatures: NDArray[np.float64] = np.full(len(names), AMBIENT)
+
+    @property
+    def percentage(self) -> int:
+        return max(0, round(100 * self._energy / CAPACITY))
+
+    def live(self, torques: NDArray[np.float64], speeds: NDArray[np.float64], dt: float, now: float) -> list[Event]:
+        """Spend energy and heat up for `dt` [s] of such torques [N m] and speeds [rad/s]; the events of it."""
+        load = np.square(torques / self._efforts)
+        power = IDLE_POWER + LOSS * float(load.sum()) + float(np.abs(torques * speeds).sum())
+        self._energy = max(0.0, self._energy - power * dt)
+        self.temperatures += (AMBIENT + RISE * load - self.temperatures) * (dt / TIME_CONSTANT)
+        return [*self._battery(now), *self._motors(now)]
+
+    def _battery(self, now: float) -> list[Event]:
+        if self._low or self.percentage > LOW:
+            return []
+        self._low = True
+        return [Event("battery.low", {"percentage": self.percentage}, now)]
+
+    def _motors(self, now: float) -> list[Event]:
+        self._hot = {i for i in self._hot if self.temperatures[i] > COOLED}
+        newly = [int(i) for i in np.flatnonzero(self.temperatures >= HOT) if i not in self._hot]
+        self._hot.update(newly)
+        return [
+            Event("motors.hot", {"joint": self._names[i], "temperature": round(float(self.temperatures[i]), 1)}, now)
+            for i in newly
+        ]

@@ -1,0 +1,55 @@
+"""A film of a run, by simulated time."""
+
+from collections.abc import Generator
+from pathlib import Path
+
+from lumen.errors import RobotError
+from lumen.robots.simulation.rendering import FILM, Scene, Studio, available
+from lumen.robots.simulation.robot import SimulatedRobot
+
+RATE = 25
+WIDTH, HEIGHT = 640, 480
+
+
+class Film:
+    """Writes an MP4 of what a camera of the hall sees; `tick` whenever time has passed, `close` at the end.
+
+    Raises RobotError where nothing can be drawn, saying which package to install.
+    """
+
+    def __init__(self, path: Path, robot: SimulatedRobot, camera: str = "observer") -> None:
+        if reason := available():
+            raise RobotError(reason)
+        self._robot, self._camera = robot, camera
+        self._studio = Studio(robot.world.model, FILM)
+        self._writer = _writer(path)
+        self.frames = 0
+
+    def frame_due(self, now: float) -> bool:
+        """Whether it is time [s] for the next frame."""
+        return now + 1e-9 >= self.frames / RATE
+
+    def tick(self, now: float) -> None:
+        """Take the frames that are due by `now` [s]; the run waits for them."""
+        if not self.frame_due(now):
+            return
+        world = self._robot.world
+        pixels = self._studio.draw(Scene.of(world.model, world.data), self._camera, WIDTH, HEIGHT)
+        while self.frame_due(now):
+            self._writer.send(pixels.tobytes())
+            self.frames += 1
+
+    def close(self) -> None:
+        """Finish the file; harmless when repeated."""
+        self._writer.close()
+        self._studio.close()
+
+
+def _writer(path: Path) -> Generator[None, bytes, None]:
+    import imageio_ffmpeg
+
+    writer: Generator[None, bytes, None] = imageio_ffmpeg.write_frames(
+        str(path), (WIDTH, HEIGHT), fps=RATE, codec="libx264", quality=7, macro_block_size=2, ffmpeg_log_level="error"
+    )
+    writer.send(None)  # type: ignore[arg-type]  # starts the generator
+    return writer

@@ -1,0 +1,67 @@
+"""The only way to a joint."""
+
+from collections.abc import Iterable, Mapping
+from math import isfinite
+
+import numpy as np
+
+from lumen.errors import RobotError
+from lumen.robots.simulation.limits import Angles, Envelope
+from lumen.robots.simulation.world import World
+
+
+class Motors:
+    """Takes goals, and drives every joint there inside the body's limits and speeds.
+
+    `goal` is where the joints are wanted, `command` what their servos are told: Shape (joints,), [rad; hands 0..1].
+    """
+
+    def __init__(self, world: World) -> None:
+        body = world.body
+        self._world = world
+        self.names = tuple(body.joints)
+        self.index = {name: i for i, name in enumerate(self.names)}
+        self.envelope = Envelope(body)
+        self._leader = dict(body.shared)
+        self._effort = world.model.actuator_forcerange[world.actuators].copy()
+        self.stiffness = np.ones(len(self.names))
+        self.goal: Angles = world.angles.copy()
+        self.command: Angles = self.goal.copy()
+
+    def aim(self, targets: Mapping[str, float]) -> None:
+        """Want these joints there. Raises RobotError, and changes nothing, for an unknown joint or what is no number.
+
+        A joint that shares a motor moves its twin too; where both are named, the one that has the motor decides.
+        """
+        self.check(targets)
+        for name, angle in targets.items():
+            self.goal[self.index[name]] = angle
+        for follower, leader in self._leader.items():
+            if follower in targets and leader not in targets:
+                self.goal[self.index[leader]] = targets[follower]
+            self.goal[self.index[follower]] = self.goal[self.index[leader]]
+
+    def check(self, targets: Mapping[str, float]) -> None:
+        """Raises RobotError where these are no goals for this body."""
+        for name, angle in targets.items():
+            if name not in self.index:
+                raise RobotError(f"`{name}` is not a joint of this robot")
+            if not isfinite(angle):
+                raise RobotError(f"`{name}` can't be moved to {angle}")
+
+    def wanted(self, names: Iterable[str]) -> dict[str, float]:
+        """The goals of these joints."""
+        return {name: float(self.goal[self.index[name]]) for name in names}
+
+    def stiffen(self, stiffness: float) -> None:
+        """Let all motors give at most that part (0..1) of their torque; what was limp starts from where it is."""
+        if not self.stiffness.any():
+            self.goal = np.clip(self._world.angles, self.envelope.low, self.envelope.high)
+            self.command = self._world.angles.copy()
+        self.stiffness[:] = stiffness
+        self._world.model.actuator_forcerange[self._world.actuators] = stiffness * self._effort
+
+    def drive(self, trim: Angles, dt: float) -> None:
+        """Tell the servos where to be `dt` [s] from now; `trim` [rad] is added to the goal, not kept."""
+        self.command = self.envelope.step(self.command, self.goal + trim, dt)
+        self._world.data.ctrl[self._world.actuators] = self.command[self._world.driven]

@@ -1,0 +1,98 @@
+"""What the robot does while it plays a motion or speaks."""
+
+from collections.abc import Mapping
+from math import isfinite
+
+from lumen.errors import RobotError
+from lumen.interpreters.trajectory import Trajectory
+from lumen.language.motions import Cue, Motion
+from lumen.robots.simulation.lights import Lights
+from lumen.robots.simulation.motors import Motors
+from lumen.robots.simulation.transition import Transition
+
+APPROACH, RECOVERY = 1.2, 0.8
+"""How long it takes to the posture that a motion begins in, and back to it from a cancelled one [s]."""
+
+PAUSE, PER_CHARACTER = 0.4, 0.06
+"""How long a text takes to say [s], and each of its characters."""
+
+_NEAR = 0.05
+
+
+class Performance:
+    """A motion: to the posture it begins in where the robot is not there, then along its keys, cues beside them.
+
+    `home` holds that posture's angles [rad] of the joints that the motion owns. Raises RobotError for a motion that
+    names other joints than the robot's, or angles that are no numbers.
+    """
+
+    def __init__(self, motors: Motors, lights: Lights, motion: Motion, home: Mapping[str, float], now: float) -> None:
+        _check(motors, motion)
+        self._motors, self._lights, self._motion, self._home = motors, lights, motion, home
+        self._begin = self._now = now
+        self._cues = sorted(motion.cues, key=lambda cue: cue.time)
+        self._trajectory: Trajectory | None = None
+        self._approach = Transition(motors, home, now, APPROACH) if self._away() else None
+        self._recovery: Transition | None = None
+
+    def advance(self, now: float) -> bool:
+        self._now = now
+        if self._recovery:
+            return self._recovery.advance(now)
+        if self._approach:
+            if not self._approach.advance(now):
+                return False
+            self._approach = None
+        if self._trajectory is None:
+            self._begin = now
+            self._trajectory = Trajectory(self._motion, self._motors.wanted(self._motion.tracks))
+        return self._play(self._trajectory, now - self._begin)
+
+    def cancel(self) -> None:
+        """Back to where it began, which takes `RECOVERY`."""
+        self._lights.reset()
+        self._recovery = Transition(self._motors, self._home, self._now, RECOVERY)
+
+    def _away(self) -> bool:
+        wanted = self._motors.wanted(self._home)
+        legs = (n for n in self._home if "Hip" in n or "Knee" in n or "Ankle" in n)
+        return any(abs(wanted[n] - self._home[n]) > _NEAR for n in legs)
+
+    def _play(self, trajectory: Trajectory, t: float) -> bool:
+        while self._cues and self._cues[0].time <= t:
+            self._cue(self._cues.pop(0))
+        self._motors.aim(trajectory.sample(t))
+        if t < self._motion.duration:
+            return False
+        self._lights.hold(())
+        return True
+
+    def _cue(self, cue: Cue) -> None:
+        if cue.kind == "leds" and isinstance(cue.value, Mapping):
+            self._lights.show(cue.value)
+        elif cue.kind == "hold":
+            self._lights.hold((str(cue.value),))
+
+
+class Speech:
+    """Time, as much as a text takes to say; the robot's ears glow meanwhile."""
+
+    def __init__(self, lights: Lights, text: str, now: float) -> None:
+        self._lights, self._until = lights, now + PAUSE + PER_CHARACTER * len(text)
+        lights.speak(True)
+
+    def advance(self, now: float) -> bool:
+        if now < self._until:
+            return False
+        self._lights.speak(False)
+        return True
+
+    def cancel(self) -> None:
+        self._until = 0.0
+
+
+def _check(motors: Motors, motion: Motion) -> None:
+    numbers = (x for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle))
+    if not (isfinite(motion.duration) and all(map(isfinite, numbers))):
+        raise RobotError(f"`{motion.name}` holds an angle or a time that is no number")
+    motors.check(dict.fromkeys(motion.tracks, 0.0))

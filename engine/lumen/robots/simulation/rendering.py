@@ -1,0 +1,110 @@
+"""Pictures of the simulated world, drawn by whichever thread asks for them."""
+
+import copy
+import threading
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.robots.simulation import gl
+
+Pixels = NDArray[np.uint8]
+"""Shape (height, width, 3), RGB."""
+
+
+def available() -> str | None:
+    """Why nothing can be drawn and which package to install; None where it can."""
+    return gl.missing()
+
+
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """What a picture costs: shadow map and antialiasing samples, 0 for none. Reflections go with the shadows."""
+
+    shadows: int = 0
+    samples: int = 0
+
+
+CAMERA = Quality()
+FILM = Quality(shadows=2048, samples=4)
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """All that a picture of this moment depends on, copied: drawing it later disturbs nobody."""
+
+    positions: NDArray[np.float64]
+    visitor_place: NDArray[np.float64]
+    visitor_turn: NDArray[np.float64]
+    colours: NDArray[np.float32]
+    sizes: NDArray[np.float64]
+    places: NDArray[np.float64]
+    bounds: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> "Scene":
+        """The scene as it is now; about 15 kB are copied."""
+        return cls(
+            data.qpos.copy(),
+            data.mocap_pos.copy(),
+            data.mocap_quat.copy(),
+            model.mat_rgba.copy(),
+            model.geom_size.copy(),
+            model.geom_pos.copy(),
+            model.geom_rbound.copy(),
+        )
+
+
+class Studio:
+    """Draws scenes of one model; every thread that uses it gets its own OpenGL context, made at its first picture."""
+
+    def __init__(self, model: mujoco.MjModel, quality: Quality) -> None:
+        self._model, self._quality = model, quality
+        self._local = threading.local()
+
+    def draw(self, scene: Scene, camera: str, width: int, height: int) -> Pixels:
+        """The scene through a camera of the model."""
+        cameras: dict[tuple[int, int], _Canvas] = self._local.__dict__.setdefault("canvases", {})
+        canvas = cameras.get((width, height))
+        if canvas is None:
+            canvas = cameras[width, height] = _Canvas(self._model, self._quality, width, height)
+        return canvas.draw(scene, camera)
+
+    def close(self) -> None:
+        """Let go of this thread's contexts; those of other threads end with them."""
+        for canvas in self._local.__dict__.pop("canvases", {}).values():
+            canvas.close()
+
+
+class _Canvas:
+    """A renderer with a model and a state of its own, for one thread and one size."""
+
+    def __init__(self, model: mujoco.MjModel, quality: Quality, width: int, height: int) -> None:
+        self._model = copy.copy(model)
+        self._model.vis.quality.shadowsize = quality.shadows
+        self._model.vis.quality.offsamples = quality.samples
+        self._model.vis.global_.offwidth = max(width, self._model.vis.global_.offwidth)
+        self._model.vis.global_.offheight = max(height, self._model.vis.global_.offheight)
+        self._data = mujoco.MjData(self._model)
+        self._renderer = mujoco.Renderer(self._model, height, width, max_geom=2000)
+        flags = self._renderer.scene.flags
+        for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
+            flags[flag] = bool(quality.shadows)
+
+    def draw(self, scene: Scene, camera: str) -> Pixels:
+        model, data = self._model, self._data
+        data.qpos[:] = scene.positions
+        data.mocap_pos[:], data.mocap_quat[:] = scene.visitor_place, scene.visitor_turn
+        model.mat_rgba[:] = scene.colours
+        model.geom_size[:], model.geom_pos[:], model.geom_rbound[:] = scene.sizes, scene.places, scene.bounds
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_camlight(model, data)
+        self._renderer.update_scene(data, camera)
+        pixels: Pixels = self._renderer.render()
+        return pixels
+
+    def close(self) -> None:
+        self._renderer.close()

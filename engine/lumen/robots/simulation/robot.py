@@ -1,0 +1,163 @@
+"""The simulated NAO behind the `Robot` seam, in a hall behind the `Hall` seam."""
+
+import logging
+from collections.abc import Sequence
+from math import degrees
+from pathlib import Path
+
+from lumen.errors import RobotError, UsageError
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.events import Event
+from lumen.language.robots import Body
+from lumen.language.stories import Visitor
+from lumen.ports import Aim, Battery, Joints, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.robots.executor import Executor
+from lumen.robots.simulation.balance import Balance
+from lumen.robots.simulation.camera import TopCamera
+from lumen.robots.simulation.condition import Condition
+from lumen.robots.simulation.figure import Figure
+from lumen.robots.simulation.lights import Lights
+from lumen.robots.simulation.model import Variation
+from lumen.robots.simulation.motors import Motors
+from lumen.robots.simulation.repertoire import Repertoire
+from lumen.robots.simulation.sonar import Sonars
+from lumen.robots.simulation.steering import Steering
+from lumen.robots.simulation.world import FALLEN, PERIOD, World
+
+_log = logging.getLogger(__name__)
+
+_CONDITION_EVERY = 10
+"""Control periods between two looks at battery and heat."""
+
+
+class SimulatedRobot:
+    """A NAO that stands on its stage and lives when `advance` is called, by the thread that calls it.
+
+    `models` is the folder of the MJCF files and `hall` the name of one. The same seed and the same calls give the same
+    run. Raises RobotError where the models can't be used.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        models: Path,
+        hall: str = "hall.xml",
+        *,
+        seed: int = 0,
+        posture: str = "Stand",
+        variation: Variation | None = None,
+    ) -> None:
+        self.body = body
+        self.world = World(body, Path(models), hall, variation)
+        self.world.set_up(body.postures[posture])
+        self.motors = Motors(self.world)
+        self.lights = Lights(self.world.model)
+        self.condition = Condition(tuple(body.joints), [joint.effort for joint in body.joints.values()])
+        self.greatest_tilt = 0.0
+        self._balance = Balance(self.motors)
+        self._steering = Steering(self.motors)
+        self._repertoire = Repertoire(self.world, self.motors, self.lights)
+        self._executor = Executor(self._repertoire.begin, self._repertoire.parts)
+        self._figure = Figure(self.world.model, self.world.data)
+        self._camera = TopCamera(self.world, body.camera)
+        self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
+        self._pressed = dict.fromkeys(body.tactile, False)
+        self._events: list[Event] = []
+        self._ticks = 0
+        self._until = 0.0
+
+    @property
+    def time(self) -> float:
+        """How long the robot has lived [s]."""
+        return self._ticks * PERIOD
+
+    @property
+    def fallen(self) -> bool:
+        return self._repertoire.fallen
+
+    @property
+    def awake(self) -> bool:
+        """Whether the motors are on."""
+        return self._repertoire.awake
+
+    def advance(self, dt: float) -> None:
+        """Live `dt` [s] of physics, in whole control periods: what is left over is lived next time."""
+        self._until += dt
+        while self.time + PERIOD <= self._until + 1e-9:
+            self._tick()
+
+    def start(self, id: str, command: RobotCommand) -> None:
+        if not isinstance(command, Aim):
+            self._executor.start(id, command)
+            return
+        try:
+            if self.awake and not self.fallen:
+                self._steering.aim(command)
+        except RobotError as error:
+            _log.warning("an aim was refused: %s", error)
+
+    def cancel(self, id: str) -> None:
+        self._executor.cancel(id)
+
+    def poll(self) -> Sequence[Event]:
+        events, self._events = self._events, []
+        return events
+
+    def read(self, sense: Sense) -> Reading | None:
+        now = self.time
+        match sense:
+            case Sense.IMAGE:
+                return self._camera.image(now)
+            case Sense.JOINT:
+                angles, stiffness = self.world.angles.tolist(), self.motors.stiffness.tolist()
+                return Joints(now, self.motors.names, tuple(angles), tuple(stiffness))
+            case Sense.SONAR:
+                return Sonar(now, *self._sonars.measure()) if self._sonars else None
+            case Sense.TACTILE:
+                return Tactile(now, tuple(self._pressed), tuple(map(int, self._pressed.values())))
+            case Sense.BATTERY:
+                return Battery(now, self.condition.percentage, plugged=False, charging=False)
+
+    def close(self) -> None:
+        self._camera.close()
+
+    def place(self, visitor: Visitor | None) -> None:
+        self._figure.place(visitor)
+
+    def face(self) -> tuple[float, float] | None:
+        face = self._figure.face()
+        return self._camera.pixel(face) if face else None
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        """Press or release a tactile sensor. Raises UsageError for one that the robot does not have."""
+        if sensor not in self._pressed:
+            raise UsageError(f"no sensor `{sensor}`: {did_you_mean(sensor, self._pressed, 'there are')}")
+        if self._pressed[sensor] != pressed:
+            self._pressed[sensor] = pressed
+            self._events.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time))
+
+    def _tick(self) -> None:
+        now = self.time
+        self._events += self._executor.advance(now)
+        self._steering.advance(PERIOD, self._free)
+        if self.awake:
+            self.motors.drive(self._balance.trim(self.world), PERIOD)
+        self.world.step()
+        self._ticks += 1
+        self._watch(self.time)
+
+    def _free(self, joint: str) -> bool:
+        """Whether no command owns that joint and it has power."""
+        return self.awake and not self._executor.owner(self._repertoire.part(joint))
+
+    def _watch(self, now: float) -> None:
+        """Notice a fall; every now and then, battery and heat."""
+        tilt = self.world.tilt
+        self.greatest_tilt = max(self.greatest_tilt, degrees(tilt))
+        if tilt > FALLEN and not self.fallen:
+            self._repertoire.fall()
+            self._executor.fail("the robot fell")
+            self._events.append(Event("fallen", {}, now))
+        if self._ticks % _CONDITION_EVERY == 0:
+            world = self.world
+            self._events += self.condition.live(world.torques, world.speeds, _CONDITION_EVERY * PERIOD, now)

@@ -1,0 +1,52 @@
+"""Two ultrasonic sensors, as rays in a cone."""
+
+from math import cos, pi, sin
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.language.robots import Ultrasound
+from lumen.robots.simulation.model import ROBOT
+
+_ECHOING = np.array([0, 1, 0, 0, 0, 0], dtype=np.uint8)
+"""Geom group 1, what stands in the hall; the ground throws sound away from the robot, and it does not hear itself."""
+
+_RINGS = ((0.0, 1), (0.45, 6), (0.9, 8))
+RESOLUTION, NOISE = 0.01, 0.003
+
+
+class Sonars:
+    """Measures the nearest echo on either side [m], with a little noise."""
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, sensor: Ultrasound, seed: int) -> None:
+        self._model, self._data, self._sensor = model, data, sensor
+        self._rays = _cone(sensor.cone / 2)
+        self._noise = np.random.default_rng(seed)
+        self._hit = np.zeros(1, dtype=np.int32)
+
+    def measure(self) -> tuple[float, float]:
+        """Left and right; the farthest that can be heard where nothing is."""
+        return self._side("LSonar"), self._side("RSonar")
+
+    def _side(self, name: str) -> float:
+        site = self._data.site(f"{ROBOT}/{name}")
+        rays = self._rays @ site.xmat.reshape(3, 3).T
+        found = [self._ray(site.xpos, ray) for ray in rays]
+        nearest = min((d for d in found if d >= 0), default=self._sensor.maximum)
+        heard = round((nearest + self._noise.normal(0, NOISE)) / RESOLUTION) * RESOLUTION
+        return round(min(max(heard, self._sensor.minimum), self._sensor.maximum), 3)
+
+    def _ray(self, origin: NDArray[np.float64], direction: NDArray[np.float64]) -> float:
+        return float(mujoco.mj_ray(self._model, self._data, origin, direction, _ECHOING, 1, -1, self._hit))
+
+
+def _cone(half: float) -> NDArray[np.float64]:
+    """Directions around x inside a cone of that half angle [rad]: Shape (rays, 3)."""
+    rays = []
+    for part, count in _RINGS:
+        angle = part * half
+        for k in range(count):
+            around = 2 * pi * k / count
+            rays.append((cos(angle), sin(angle) * cos(around), sin(angle) * sin(around)))
+    return np.array(rays)

@@ -1,0 +1,115 @@
+"""The simulated world while it runs: where everything is, and time."""
+
+from collections.abc import Mapping
+from math import acos, pi
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from dm_control import mjcf
+from numpy.typing import NDArray
+
+from lumen.language.robots import Body
+from lumen.robots.simulation.limits import Angles
+from lumen.robots.simulation.model import ROBOT, Variation, load
+
+PERIOD = 0.01
+"""Time between two commands to the joints [s]."""
+
+_FEET = (f"{ROBOT}/LSole", f"{ROBOT}/RSole")
+
+
+class World:
+    """MuJoCo's model and state, by the body's own order of joints; whoever steps it owns it.
+
+    `model` and `data` are MuJoCo's; `physics` is dm_control's view of the same memory.
+    """
+
+    def __init__(self, body: Body, models: Path, hall: str, variation: Variation | None = None) -> None:
+        self.body = body
+        self.physics = mjcf.Physics.from_mjcf_model(load(body, models, hall, variation))
+        self.model: mujoco.MjModel = self.physics.model.ptr
+        self.data: mujoco.MjData = self.physics.data.ptr
+        joints = [self.model.joint(f"{ROBOT}/{name}") for name in body.joints]
+        self._angles = np.array([j.qposadr[0] for j in joints])
+        self._speeds = np.array([j.dofadr[0] for j in joints])
+        driven = [i for i, name in enumerate(body.joints) if name not in body.shared]
+        names = list(body.joints)
+        self.driven = np.array(driven)
+        self.actuators = np.array([self.model.actuator(f"{ROBOT}/{names[i]}").id for i in driven])
+        self.torso = self.model.body(f"{ROBOT}/Torso").id
+        self._root = self.model.joint(f"{ROBOT}/").qposadr[0]
+        self._gyro = self.model.sensor(f"{ROBOT}/gyro").adr[0]
+        self._torso_axes = self.data.xmat[self.torso]
+        self._substeps = round(PERIOD / self.model.opt.timestep)
+        self._start: NDArray[np.float64] = self.data.qpos[self._root : self._root + 7].copy()
+
+    def step(self) -> None:
+        """Live one control period."""
+        self.physics.step(self._substeps)
+
+    @property
+    def angles(self) -> Angles:
+        """Where the joints are."""
+        measured: Angles = self.data.qpos[self._angles]
+        return measured
+
+    @property
+    def speeds(self) -> Angles:
+        """How fast they turn, per second."""
+        measured: Angles = self.data.qvel[self._speeds]
+        return measured
+
+    @property
+    def torques(self) -> Angles:
+        """What the motors give [N m]; nothing at a joint that shares another's motor."""
+        torques = np.zeros(len(self.body.joints))
+        torques[self.driven] = self.data.actuator_force[self.actuators]
+        return torques
+
+    @property
+    def gyro(self) -> tuple[float, float]:
+        """How fast the torso rolls to the right and pitches forward [rad/s]."""
+        return float(self.data.sensordata[self._gyro]), float(self.data.sensordata[self._gyro + 1])
+
+    @property
+    def tilt(self) -> float:
+        """How far the torso leans from upright [rad]."""
+        return acos(min(1.0, max(-1.0, float(self._torso_axes[8]))))
+
+    def set_up(self, angles: Mapping[str, float]) -> None:
+        """Put the robot on its stage in this posture, both soles flat, the point between its feet at the stage's site.
+
+        Only for the beginning of a run: nothing moves the robot but its motors afterwards.
+        """
+        data, root = self.data, self._root
+        data.qpos[self._angles] = [angles[name] for name in self.body.joints]
+        data.qpos[root : root + 7] = self._start
+        mujoco.mj_kinematics(self.model, data)
+        axes = data.site(_FEET[0]).xmat.reshape(3, 3), data.site(_FEET[1]).xmat.reshape(3, 3)
+        data.qpos[root + 3 : root + 7] = _upright(axes[0], axes[1])
+        mujoco.mj_kinematics(self.model, data)
+        soles = np.array([data.site(name).xpos for name in _FEET])
+        middle = np.array([*soles[:, :2].mean(axis=0), soles[:, 2].min()])
+        data.qpos[root : root + 3] += self._start[:3] - middle
+        data.ctrl[self.actuators] = data.qpos[self._angles][self.driven]
+        self.physics.forward()
+
+
+def _upright(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The rotation that lays the left sole flat and lets both soles point evenly to either side of straight ahead.
+
+    Shape (3, 3) each, of the torso upright; a quaternion.
+    """
+    flat = left.T
+    other = flat @ right
+    turn = -0.5 * np.arctan2(other[1, 0], other[0, 0])
+    cos, sin = np.cos(turn), np.sin(turn)
+    ahead = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    quaternion = np.zeros(4)
+    mujoco.mju_mat2Quat(quaternion, (ahead @ flat).ravel())
+    return quaternion
+
+
+FALLEN = pi / 4
+"""The torso leans farther than anything it does on purpose [rad]."""
