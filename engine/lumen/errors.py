@@ -3,6 +3,7 @@
 LumenError
  ├── ProjectError      the YAML can't be used; carries the diagnostics that say why
  ├── UsageError        a flag, a name or a path given to Lumen is wrong
+ ├── ExpressionError   an expression can't be read, or has no value here
  ├── SnapshotError     a snapshot belongs to another machine
  ├── RobotError        the robot can't do what was asked, or is gone
  └── BusError          the broker is gone, or refuses
@@ -35,6 +36,18 @@ class ProjectError(LumenError):
 
 class UsageError(LumenError):
     """What the caller asked for can't be: a missing folder, an unknown name, options that exclude each other."""
+
+
+class ExpressionError(LumenError):
+    """An expression that can't be read, or that has no value in this scope.
+
+    `offset` counts the characters of the expression's source (of the whole text, in a template) from 0; `hint` says
+    what would be right, and is empty where there is nothing to say.
+    """
+
+    def __init__(self, message: str, offset: int = 0, hint: str = "") -> None:
+        self.message, self.offset, self.hint = message, offset, hint
+        super().__init__(f"{message} ({hint})" if hint else message)
 
 
 class SnapshotError(LumenError):

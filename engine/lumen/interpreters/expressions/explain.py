@@ -1,0 +1,85 @@
+"""What went wrong while an expression was evaluated, in words, and where."""
+
+from collections.abc import Mapping
+from types import TracebackType
+from typing import Any
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions.scope import Scope
+from lumen.interpreters.expressions.tree import Call, Field, Index, Node, children, path_of, walk
+from lumen.interpreters.expressions.values import IN_WORDS, FaultError, MismatchError, WrongKindError, kind_of
+from lumen.language.diagnostics import did_you_mean
+
+FILE = "<expression>"
+"""The file name that compiled expressions carry, by which their frames are known."""
+
+UNKNOWN = object()
+
+
+def explain(error: Exception, source: str, tree: Node, scope: Scope) -> ExpressionError:
+    """The error as its author should read it; any exception of the evaluation can be handed in."""
+    node = _failing(error.__traceback__, tree)
+    match error:
+        case ExpressionError(message=message, hint=hint):
+            return ExpressionError(message, node.offset, hint)
+        case FaultError(message=message, hint=hint):
+            return ExpressionError(message, node.offset, hint)
+        case WrongKindError(operand=operand, kind=kind, wanted=wanted):
+            culprit = children(node)[operand] if operand >= 0 else node
+            return wrong_kind(source, node, culprit, kind, wanted)
+        case MismatchError(left=left, right=right):
+            return ExpressionError(f"{IN_WORDS[left]} and {IN_WORDS[right]} don't go together here", node.offset)
+        case KeyError() | TypeError() if isinstance(node, Field | Index):
+            return _missing(error, source, node, scope)
+        case RecursionError():
+            return ExpressionError("a value here is nested too deeply", node.offset)
+    return ExpressionError(f"this has no value: {error}", node.offset)
+
+
+def wrong_kind(source: str, node: Node, culprit: Node, kind: str, wanted: tuple[str, ...]) -> ExpressionError:
+    """`culprit`, an operand of `node` or the node itself, is of `kind` where something else is needed."""
+    needed = " or ".join(IN_WORDS[k] for k in wanted)
+    asks = f", and `{_sign(node)}` needs {needed}" if culprit is not node else f", and {needed} is needed"
+    return ExpressionError(f"`{source[culprit.offset : culprit.end]}` is {IN_WORDS[kind]}{asks}", culprit.offset)
+
+
+def _sign(node: Node) -> str:
+    if isinstance(node, Call):
+        return node.function
+    return "[…]" if isinstance(node, Index) else str(getattr(node, "sign", "?"))
+
+
+def _failing(traceback: TracebackType | None, tree: Node) -> Node:
+    """The node whose instruction raised: the innermost frame of ours names it by its line."""
+    number = 1
+    while traceback is not None:
+        if traceback.tb_frame.f_code.co_filename == FILE:
+            number = traceback.tb_lineno
+        traceback = traceback.tb_next
+    nodes = [node for node, _ in walk(tree)]
+    return nodes[min(number, len(nodes)) - 1]
+
+
+def _missing(error: KeyError | TypeError, source: str, node: Field | Index, scope: Scope) -> ExpressionError:
+    base = source[node.base.offset : node.base.end]
+    at = node.end - len(node.name) if isinstance(node, Field) else node.key.offset
+    name = node.name if isinstance(node, Field) else source[node.key.offset : node.key.end]
+    value = _value(node.base, scope)
+    if base == "event" and value is None:
+        return ExpressionError("there is no event here", node.offset)
+    if isinstance(error, KeyError):
+        hint = did_you_mean(name, map(str, value), f"`{base}` has") if isinstance(value, Mapping) else ""
+        return ExpressionError(f"`{base}` has no `{name}`", at, hint)
+    kind = IN_WORDS[kind_of(value)] if value is not UNKNOWN else "not a map"
+    return ExpressionError(f"`{base}` is {kind}, so it has no `{name}`", at)
+
+
+def _value(node: Node, scope: Scope) -> Any:
+    """What a path leads to; UNKNOWN for anything else."""
+    path = path_of(node)
+    if path is None:
+        return UNKNOWN
+    value = getattr(scope, path[0])
+    for key in path[1:]:
+        value = value[key]
+    return value

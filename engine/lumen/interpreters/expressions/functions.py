@@ -1,0 +1,127 @@
+"""The functions of the language: what each takes, gives and does."""
+
+from collections.abc import Callable
+from math import floor
+from typing import Any, NamedTuple
+
+from lumen.interpreters.expressions import phrases
+from lumen.interpreters.expressions.patterns import compile_pattern
+from lumen.interpreters.expressions.scope import CUT, Scope
+from lumen.interpreters.expressions.values import (
+    BOOLEAN,
+    KINDS,
+    LIST,
+    MAP,
+    NUMBER,
+    TEXT,
+    FaultError,
+    WrongKindError,
+    bounded_text,
+    has,
+    kind_of,
+)  # fmt: skip
+from lumen.language.diagnostics import did_you_mean
+
+Kinds = frozenset[str]
+
+
+class Function(NamedTuple):
+    """`parameters` are the kinds that each argument may be of; a `scoped` one is handed the Scope before them."""
+
+    parameters: tuple[Kinds, ...]
+    returns: Kinds
+    call: Callable[..., Any]
+    scoped: bool = False
+
+
+def _texts(*values: Any) -> None:
+    for position, value in enumerate(values):
+        if not isinstance(value, str):
+            raise WrongKindError(position, value, TEXT)
+
+
+def size(value: Any) -> int:
+    """How many characters, elements or keys."""
+    if kind_of(value) not in (TEXT, LIST, MAP):
+        raise WrongKindError(0, value, TEXT, LIST, MAP)
+    return len(value)
+
+
+def lower(text: Any) -> str:
+    _texts(text)
+    return str(text[:CUT].lower())
+
+
+def trim(text: Any) -> str:
+    _texts(text)
+    return str(text[:CUT].strip())
+
+
+def contains(text: Any, part: Any) -> bool:
+    _texts(text, part)
+    return part[:CUT] in text[:CUT]
+
+
+def replace(text: Any, old: Any, new: Any) -> str:
+    _texts(text, old, new)
+    replaced = str(text[:CUT].replace(old[:CUT], new[:CUT]))
+    bounded_text(len(replaced))
+    return replaced
+
+
+def after(text: Any, phrase: Any) -> str:
+    _texts(text, phrase)
+    return phrases.after(text, phrase)
+
+
+def words(text: Any) -> list[str]:
+    _texts(text)
+    return phrases.words(text)
+
+
+def matches(text: Any, pattern: Any) -> bool:
+    _texts(text, pattern)
+    return compile_pattern(pattern).search(text[:CUT])
+
+
+def hour(scope: Scope) -> int:
+    """The local hour of the event, 0 to 23."""
+    return floor((scope.epoch + scope.at) / 3600) % 24
+
+
+def heard(scope: Scope, text: Any, name: Any) -> bool:
+    _texts(text, name)
+    if name not in scope.phrases:
+        raise FaultError(f"there are no phrases named `{name}`", did_you_mean(name, scope.phrases, "`phrases` has"))
+    return phrases.is_heard(text, scope.phrases[name])
+
+
+def lookup(scope: Scope, text: Any, table: Any) -> Any:
+    _texts(text, table)
+    if table not in scope.answers:
+        raise FaultError(f"there are no answers named `{table}`", did_you_mean(table, scope.answers, "`answers` has"))
+    return phrases.answer(scope, text, scope.answers[table])
+
+
+def active(scope: Scope, state: Any) -> bool:
+    _texts(state)
+    return bool(scope.configuration(state))
+
+
+_TEXT, _BOOLEAN, _NUMBER = frozenset((TEXT,)), frozenset((BOOLEAN,)), frozenset((NUMBER,))
+
+FUNCTIONS: dict[str, Function] = {
+    "size": Function((frozenset((TEXT, LIST, MAP)),), _NUMBER, size),
+    "has": Function((KINDS,), _BOOLEAN, has),
+    "lower": Function((_TEXT,), _TEXT, lower),
+    "trim": Function((_TEXT,), _TEXT, trim),
+    "contains": Function((_TEXT, _TEXT), _BOOLEAN, contains),
+    "replace": Function((_TEXT, _TEXT, _TEXT), _TEXT, replace),
+    "after": Function((_TEXT, _TEXT), _TEXT, after),
+    "matches": Function((_TEXT, _TEXT), _BOOLEAN, matches),
+    "words": Function((_TEXT,), frozenset((LIST,)), words),
+    "hour": Function((), _NUMBER, hour, scoped=True),
+    "heard": Function((_TEXT, _TEXT), _BOOLEAN, heard, scoped=True),
+    "lookup": Function((_TEXT, _TEXT), KINDS, lookup, scoped=True),
+    "In": Function((_TEXT,), _BOOLEAN, active, scoped=True),
+}

@@ -1,0 +1,127 @@
+"""Hearing phrases in what somebody said: whole words, whatever their case and punctuation, in every script."""
+
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any
+from unicodedata import category, normalize
+
+from lumen.interpreters.expressions.scope import CUT, Scope
+
+_APOSTROPHES = frozenset("'’ʼ‘`´")
+_AROUND = " \t\r\n.,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
+_TABLES = 256
+
+
+class _WordsOnly(dict[int, str | int]):
+    """For `str.translate`: letters, digits, marks and apostrophes stay, everything else becomes a blank."""
+
+    def __missing__(self, code: int) -> str | int:
+        character = chr(code)
+        kept = code if category(character)[0] in "LNM" or character in _APOSTROPHES else " "
+        if len(self) < 4096:
+            self[code] = kept
+        return kept
+
+
+_WORDS_ONLY = _WordsOnly()
+_NO_APOSTROPHES = dict.fromkeys(map(ord, _APOSTROPHES))
+
+
+@lru_cache(maxsize=512)
+def folded(text: str) -> tuple[str, ...]:
+    """The words of a text as they are compared: without case and apostrophes, so that "Don't" is "dont"."""
+    plain = normalize("NFKC", normalize("NFKC", text).casefold()).translate(_WORDS_ONLY)
+    return tuple(plain.translate(_NO_APOSTROPHES).split())
+
+
+@lru_cache(maxsize=512)
+def padded(text: str) -> str:
+    """The compared words between blanks, so that `" no " in " i know "` is false; empty where there is no word."""
+    found = folded(text)
+    return f" {' '.join(found)} " if found else ""
+
+
+def words(text: str) -> list[str]:
+    """The words of a text as they are written, without punctuation."""
+    cleaned = (word.strip("'’ʼ‘`´") for word in text[:CUT].translate(_WORDS_ONLY).split())
+    return [word for word in cleaned if word]
+
+
+class _ByIdentity:
+    """What was prepared from a table, for as long as it is among the last few hundred asked for.
+
+    Tables are frozen values, so an identity stands for its content; keeping the table keeps its identity its own.
+    """
+
+    def __init__(self) -> None:
+        self.kept: dict[int, tuple[Any, Any]] = {}
+
+    def get(self, table: Any) -> Any:
+        found = self.kept.get(id(table))
+        return found[1] if found and found[0] is table else None
+
+    def put(self, table: Any, prepared: Any) -> Any:
+        if len(self.kept) >= _TABLES:
+            self.kept.clear()
+        self.kept[id(table)] = (table, prepared)
+        return prepared
+
+
+_phrases = _ByIdentity()
+_answers = _ByIdentity()
+
+
+def _prepared(phrases: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
+    return tuple({p: None for texts in phrases.values() for text in texts if (p := padded(text))})
+
+
+def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]]) -> bool:
+    """Whether any of the phrases, of whatever language, stands in the text as whole words."""
+    prepared = _phrases.get(phrases)
+    if prepared is None:
+        prepared = _phrases.put(phrases, _prepared(phrases))
+    said = padded(text[:CUT])
+    return any(phrase in said for phrase in prepared)
+
+
+def answer(scope: Scope, text: str, table: Any) -> Any:
+    """The value of the first entry of an `answers:` table one of whose phrases is heard, else null.
+
+    Of a value that is a map of languages, the current one's, or the first where that is missing. A map counts as one
+    of languages where every key of it is a language that the table has phrases in, or the current one.
+    """
+    prepared = _answers.get(table)
+    if prepared is None:
+        entries = tuple((_prepared(entry.phrases), entry.value) for entry in table)
+        languages = frozenset(language for entry in table for language in entry.phrases)
+        prepared = _answers.put(table, (entries, languages))
+    entries, languages = prepared
+    said = padded(text[:CUT])
+    for phrases, value in entries:
+        if any(phrase in said for phrase in phrases):
+            return _in_language(value, scope.language, languages)
+    return None
+
+
+def _in_language(value: Any, language: str, languages: frozenset[str]) -> Any:
+    if not isinstance(value, Mapping) or not value or not value.keys() <= languages | {language}:
+        return value
+    return value[language] if language in value else next(iter(value.values()))
+
+
+def after(text: str, phrase: str) -> str:
+    """What follows the phrase in the text, without the blanks and punctuation around it; "" where it is not there."""
+    text, sought = text[:CUT], list(folded(phrase[:CUT]))
+    found: list[str] = []
+    ends: list[int] = []
+    position = 0
+    blanked = text.translate(_WORDS_ONLY)
+    for word in blanked.split():
+        position = blanked.index(word, position) + len(word)
+        parts = folded(word)
+        found.extend(parts)
+        ends.extend([position] * len(parts))
+    for start in range(len(found) - len(sought) + 1) if sought else ():
+        if found[start : start + len(sought)] == sought:
+            return text[ends[start + len(sought) - 1] :].strip(_AROUND)
+    return ""

@@ -1,0 +1,51 @@
+"""What an expression can see, and how large it and its values may be."""
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from lumen.language.machines import Answer
+
+MAX_SOURCE = 2_000
+"""Characters in an expression."""
+
+MAX_DEPTH = 50
+"""Levels of an expression's tree."""
+
+MAX_TEXT = 10_000
+"""Characters in a text that an expression or a template builds."""
+
+MAX_VALUES = 10_000
+"""Values inside a list or map that an expression builds, those inside them included."""
+
+CUT = 1_000
+"""Characters of a text that the text functions look at."""
+
+_NOTHING: Mapping[str, Any] = MappingProxyType({})
+
+
+def _nowhere(state: str) -> bool:
+    return False
+
+
+class Scope(NamedTuple):
+    """The values that names and functions stand for; plain JSON data throughout.
+
+    `event` is `{"name": …, "data": …}`, or None where no event has arrived; `state` is `{"path": …, "language": …}`.
+    `configuration` says whether a state is active, for `In()`. `at` [s] is the time of the event, and `epoch` [s] the
+    local time of the clock's zero, counted from any midnight. `language` is the one that `lookup` answers in.
+    """
+
+    context: Mapping[str, Any] = _NOTHING
+    event: Mapping[str, Any] | None = None
+    state: Mapping[str, Any] = _NOTHING
+    configuration: Callable[[str], bool] = _nowhere
+    at: float = 0.0
+    language: str = ""
+    phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = _NOTHING
+    answers: Mapping[str, tuple[Answer, ...]] = _NOTHING
+    epoch: float = 0.0
+
+
+ROOTS = ("context", "event", "state")
+"""The names that an expression begins with; they are the first fields of `Scope`."""

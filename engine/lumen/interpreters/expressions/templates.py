@@ -1,0 +1,119 @@
+"""Texts with `{{ expression }}` in them."""
+
+import json
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions.checker import Finding, check_expression
+from lumen.interpreters.expressions.compiler import compile_expression
+from lumen.interpreters.expressions.scope import MAX_TEXT, Scope
+from lumen.interpreters.expressions.tokens import token_at
+from lumen.interpreters.expressions.values import FaultError, bounded
+
+
+class Hole(NamedTuple):
+    """An expression in a text, and the offset in the text where its source begins."""
+
+    source: str
+    offset: int
+
+
+@lru_cache(maxsize=8192)
+def compile_template(text: str) -> Callable[[Scope], str]:
+    """The text as a function of a Scope that fills its holes in; offsets of errors count from the text's begin.
+
+    null prints as nothing, true and false as such, whole numbers without a fraction (1.0 is "1"), lists and maps as
+    JSON.
+    """
+    parts = split_template(text)
+    if all(isinstance(part, str) for part in parts):
+        return lambda scope: text
+    fillers = [_constant(part) if isinstance(part, str) else _filler(part) for part in parts]
+
+    def fill(scope: Scope) -> str:
+        filled = "".join([filler(scope) for filler in fillers])
+        if len(filled) > MAX_TEXT:
+            raise ExpressionError("the text becomes too long", 0, f"at most {MAX_TEXT:,} characters are allowed")
+        return filled
+
+    return fill
+
+
+def _constant(text: str) -> Callable[[Scope], str]:
+    return lambda scope: text
+
+
+def _filler(hole: Hole) -> Callable[[Scope], str]:
+    try:
+        evaluate = compile_expression(hole.source)
+    except ExpressionError as error:
+        raise moved(error, hole.offset) from None
+
+    def fill(scope: Scope) -> str:
+        try:
+            return printed(evaluate(scope))
+        except ExpressionError as error:
+            raise moved(error, hole.offset) from None
+
+    return fill
+
+
+def moved(error: ExpressionError, offset: int) -> ExpressionError:
+    """The same error in an expression that begins at `offset` of a text."""
+    return ExpressionError(error.message, error.offset + offset, error.hint)
+
+
+def split_template(text: str) -> list[str | Hole]:
+    """The plain texts and the holes, in order; raises ExpressionError where a hole is not closed."""
+    parts: list[str | Hole] = []
+    position = 0
+    while (start := text.find("{{", position)) >= 0:
+        end = _closing(text, start + 2)
+        parts += [text[position:start], Hole(text[start + 2 : end], start + 2)]
+        position = end + 2
+    parts.append(text[position:])
+    return [part for part in parts if part]
+
+
+def _closing(text: str, offset: int) -> int:
+    """Where the `}}` stands that ends the hole: outside of maps and texts."""
+    start, level = offset - 2, 0
+    while offset < len(text):
+        if level == 0 and text.startswith("}}", offset):
+            return offset
+        token = token_at(text, offset)
+        level += {"{": 1, "}": -1}.get(token.text, 0)
+        offset = token.end
+    raise ExpressionError("this `{{` is not closed", start, "write `}}` after the expression")
+
+
+def printed(value: Any) -> str:
+    """A value as it stands in a text; raises ExpressionError for a list or map that is too large."""
+    if isinstance(value, str):
+        return value
+    try:
+        return "" if value is None else json.dumps(_plain(bounded(value)), ensure_ascii=False)
+    except (FaultError, TypeError) as fault:
+        raise ExpressionError(str(fault)) from None
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return int(value)
+    return value
+
+
+def check_template(text: str, *, context: Mapping[str, Any] | None, **around: Any) -> list[Finding]:
+    """What `check_expression` (with the same arguments) finds in the holes, with offsets in the text."""
+    try:
+        holes = [part for part in split_template(text) if isinstance(part, Hole)]
+    except ExpressionError as error:
+        return [Finding("expression-syntax", error.offset, 1, error.message, error.hint)]
+    found = [(hole, check_expression(hole.source, context=context, **around)) for hole in holes]
+    return [finding._replace(offset=finding.offset + hole.offset) for hole, findings in found for finding in findings]

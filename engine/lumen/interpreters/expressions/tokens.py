@@ -1,0 +1,100 @@
+"""The words of an expression, with their offsets."""
+
+import re
+from typing import NamedTuple
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions.scope import MAX_SOURCE
+
+_TOKEN = re.compile(
+    r"""(?P<blank>[ \t\r\n]+)
+    | (?P<float>(?:\d+\.\d+|\.\d+)(?:[eE][+-]?\d+)?|\d+[eE][+-]?\d+)
+    | (?P<int>0[xX][0-9a-fA-F]+|\d+)
+    | (?P<raw>[rR](?:'[^'\n]*'|"[^"\n]*"))
+    | (?P<text>'(?:[^'\\\n]|\\.)*'|"(?:[^"\\\n]|\\.)*")
+    | (?P<name>[A-Za-z_]\w*)
+    | (?P<sign>&&|\|\||==|!=|<=|>=|[-+*/%<>!?:.,()\[\]{}])""",
+    re.VERBOSE | re.ASCII,
+)
+_ESCAPE = re.compile(r"\\(x[0-9a-fA-F]{2}|u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|[0-3][0-7]{2}|.)")
+_SIMPLE = dict(zip("abfnrtv\\?\"'`", "\a\b\f\n\r\t\v\\?\"'`", strict=True))
+_HINTS = {
+    "=": "compare with `==`",
+    "&": "write `&&`",
+    "|": "write `||`",
+    "'": "close the text with `'`",
+    '"': 'close the text with `"`',
+    "^": "there are no powers; multiply",
+    ";": "an expression is a single value",
+} | dict.fromkeys("“”„‘’«»", "put texts in straight quotes: 'text'")
+
+
+class Token(NamedTuple):
+    """`kind` is int, float, text, name, sign or end; `text` as written; `value` of a literal."""
+
+    kind: str
+    text: str
+    offset: int
+    value: int | float | str | None = None
+
+    @property
+    def end(self) -> int:
+        return self.offset + len(self.text)
+
+
+def tokenize(source: str) -> list[Token]:
+    """The tokens of a whole expression, the last one of kind `end`; raises ExpressionError."""
+    if len(source) > MAX_SOURCE:
+        raise ExpressionError(
+            f"the expression has {len(source):,} characters", MAX_SOURCE, f"at most {MAX_SOURCE:,} are allowed"
+        )
+    tokens, offset = [], 0
+    while offset < len(source):
+        token = token_at(source, offset)
+        offset = token.end
+        if token.kind != "blank":
+            tokens.append(token)
+    return [*tokens, Token("end", "", len(source))]
+
+
+def token_at(source: str, offset: int) -> Token:
+    """The token (or `blank`) that begins at `offset`."""
+    match = _TOKEN.match(source, offset)
+    if match is None or match.lastgroup is None:
+        character = source[offset]
+        what = "this text is not closed" if character in "'\"" else f"`{character}` has no meaning here"
+        raise ExpressionError(what, offset, _HINTS.get(character, ""))
+    kind, text = match.lastgroup, match[0]
+    if kind in ("int", "float"):
+        return Token(kind, text, offset, _number(source, kind, text, match.end()))
+    if kind == "raw":
+        return Token("text", text, offset, text[2:-1])
+    if kind == "text":
+        return Token("text", text, offset, _unescape(text[1:-1], offset + 1))
+    return Token(kind, text, offset)
+
+
+def _number(source: str, kind: str, text: str, end: int) -> int | float:
+    if source[end : end + 1].isidentifier():
+        hint = "numbers have no `u`" if source[end] in "uU" else "a blank or a sign is missing"
+        raise ExpressionError(f"`{source[end]}` can't follow a number", end, hint)
+    if kind == "int":
+        return int(text, 16) if text[:2] in ("0x", "0X") else int(text)
+    value = float(text)
+    if value == float("inf"):
+        raise ExpressionError(f"`{text}` is too large a number", end - len(text))
+    return value
+
+
+def _unescape(text: str, offset: int) -> str:
+    def one(match: re.Match[str]) -> str:
+        code = match[1]
+        if code in _SIMPLE:
+            return _SIMPLE[code]
+        number = int(code, 8) if code[0] in "0123" else int(code[1:], 16) if len(code) > 1 else -1
+        if 0 <= number <= 0x10FFFF and not 0xD800 <= number <= 0xDFFF:
+            return chr(number)
+        hint = r"write `\\` for a backslash, or r'…' for a text without escapes"
+        raise ExpressionError(f"`{match[0]}` is not an escape", offset + match.start(), hint)
+
+    return _ESCAPE.sub(one, text) if "\\" in text else text

@@ -1,0 +1,215 @@
+"""The tree of an expression: frozen nodes that know where they stand."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Span:
+    """Where a node stands in the source: characters from 0, the end exclusive; it does not count in equality."""
+
+    offset: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Literal(Span):
+    """A number, a text, true, false or null."""
+
+    value: int | float | str | bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class Name(Span):
+    """The beginning of a path: `context`, `event` or `state`."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Field(Span):
+    """`base.name`; the name ends where the node ends."""
+
+    base: "Node"
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Index(Span):
+    """`base[key]`."""
+
+    base: "Node"
+    key: "Node"
+
+
+@dataclass(frozen=True, slots=True)
+class Items(Span):
+    """`[items]`."""
+
+    items: tuple["Node", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Entries(Span):
+    """`{'key': value}`."""
+
+    keys: tuple[str, ...]
+    values: tuple["Node", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Unary(Span):
+    """`!operand` or `-operand`."""
+
+    sign: str
+    operand: "Node"
+
+
+@dataclass(frozen=True, slots=True)
+class Binary(Span):
+    """`left sign right`, for comparison, arithmetic and `in`."""
+
+    sign: str
+    left: "Node"
+    right: "Node"
+
+
+@dataclass(frozen=True, slots=True)
+class Logic(Span):
+    """Two or more operands joined by `&&`, or by `||`."""
+
+    sign: str
+    operands: tuple["Node", ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Choice(Span):
+    """`condition ? then : otherwise`."""
+
+    condition: "Node"
+    then: "Node"
+    otherwise: "Node"
+
+
+@dataclass(frozen=True, slots=True)
+class Call(Span):
+    """`function(arguments)`, or `first.function(rest)`; `named` is the offset of the function's name."""
+
+    function: str
+    arguments: tuple["Node", ...]
+    named: int = field(default=0, compare=False)
+
+
+Node = Literal | Name | Field | Index | Items | Entries | Unary | Binary | Logic | Choice | Call
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """The nodes directly below, in the order written."""
+    match node:
+        case Field(base=base):
+            return (base,)
+        case Index(base=base, key=key):
+            return (base, key)
+        case Items(items=nodes) | Entries(values=nodes) | Logic(operands=nodes) | Call(arguments=nodes):
+            return nodes
+        case Unary(operand=operand):
+            return (operand,)
+        case Binary(left=left, right=right):
+            return (left, right)
+        case Choice(condition=condition, then=then, otherwise=otherwise):
+            return (condition, then, otherwise)
+    return ()
+
+
+def walk(tree: Node) -> Iterator[tuple[Node, int]]:
+    """Every node of the tree with its level, the root's being 1."""
+    stack = [(tree, 1)]
+    while stack:
+        node, level = stack.pop()
+        yield node, level
+        stack.extend((child, level + 1) for child in reversed(children(node)))
+
+
+def path_of(node: Node) -> tuple[str, ...] | None:
+    """`("event", "data", "x")` for `event.data.x` and `event.data['x']`; None for what is not such a path."""
+    keys: list[str] = []
+    while not isinstance(node, Name):
+        match node:
+            case Field(base=base, name=name):
+                key = name
+            case Index(base=base, key=Literal(value=str() as key)):
+                pass
+            case _:
+                return None
+        keys.append(key)
+        node = base
+    return (node.name, *reversed(keys))
+
+
+class Names(NamedTuple):
+    """What an expression speaks of: keys of the context, fields of the event's data, functions, and literal names."""
+
+    context: frozenset[str]
+    event: frozenset[str]
+    functions: frozenset[str]
+    phrases: frozenset[str]
+    answers: frozenset[str]
+    states: frozenset[str]
+
+
+def names(tree: Node) -> Names:
+    """Everything that the expression names, for rules that look across files."""
+    nodes = [node for node, _ in walk(tree)]
+    paths = [path for node in nodes if (path := path_of(node))]
+    calls = [node for node in nodes if isinstance(node, Call)]
+
+    def literals(function: str, position: int) -> frozenset[str]:
+        found = (c.arguments[position] for c in calls if c.function == function and len(c.arguments) > position)
+        return frozenset(a.value for a in found if isinstance(a, Literal) and isinstance(a.value, str))
+
+    return Names(
+        frozenset(p[1] for p in paths if p[0] == "context" and len(p) > 1),
+        frozenset(p[2] for p in paths if p[:2] == ("event", "data") and len(p) > 2),
+        frozenset(c.function for c in calls),
+        literals("heard", 1),
+        literals("lookup", 1),
+        literals("In", 0),
+    )
+
+
+def unparse(node: Node) -> str:
+    """The expression as text; parsed again it is the same tree."""
+    match node:
+        case Literal(value=str() as value):
+            return json.dumps(value, ensure_ascii=False).replace("\x7f", r"\x7f")
+        case Literal(value=value):
+            return json.dumps(value)
+        case Name(name=name):
+            return name
+        case Field(base=base, name=name):
+            return f"{_operand(base)}.{name}"
+        case Index(base=base, key=key):
+            return f"{_operand(base)}[{unparse(key)}]"
+        case Items(items=items):
+            return f"[{', '.join(map(unparse, items))}]"
+        case Entries(keys=keys, values=values):
+            pairs = zip(keys, values, strict=True)
+            return "{" + ", ".join(f"{unparse(Literal(k))}: {unparse(v)}" for k, v in pairs) + "}"
+        case Unary(sign=sign, operand=operand):
+            return sign + _operand(operand)
+        case Binary(sign=sign, left=left, right=right):
+            return f"{_operand(left)} {sign} {_operand(right)}"
+        case Logic(sign=sign, operands=operands):
+            return f" {sign} ".join(map(_operand, operands))
+        case Choice(condition=condition, then=then, otherwise=otherwise):
+            return f"{_operand(condition)} ? {_operand(then)} : {_operand(otherwise)}"
+        case Call(function=function, arguments=arguments):
+            return f"{function}({', '.join(map(unparse, arguments))})"
+
+
+def _operand(node: Node) -> str:
+    text = unparse(node)
+    bare = not isinstance(node, Unary | Binary | Logic | Choice) and not text.startswith("-")
+    return text if bare and not text[0].isdigit() else f"({text})"
