@@ -40,7 +40,7 @@ class _Builder:
     def __init__(self, data: Mapping[str, Any], report: Report, name: str) -> None:
         self.data, self.report = data, report
         self.outline = Outline(data, name, report)
-        self.expressions = Expressions(report, data.get("context") or {})
+        self.expressions = Expressions(report, data, {*self.outline.entries, *self.outline.aliases})
         self.actions = Actions(report, self.expressions, data.get("units") or {})
         self.transitions = Transitions(report, self.outline, self.actions, self.expressions)
         self.beginnings: dict[str, tuple[str, ...]] = {}

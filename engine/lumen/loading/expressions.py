@@ -1,28 +1,38 @@
 """Expressions and templates in a file: their syntax checked, each fault at its character."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lumen.interpreters.expressions import ExpressionError, compile_expression, compile_template
+from lumen.interpreters.expressions import Finding, check_expression, check_template
 from lumen.language.actions import Expression, Template, Value
 from lumen.language.diagnostics import Diagnostic, Path, Place, did_you_mean
 from lumen.loading.source import Document, Report
 
 
 class Expressions:
-    """Reads the expressions of one document, whose context has these `keys`."""
+    """Reads the expressions of one document, `data`, whose states have these names.
 
-    def __init__(self, report: Report, keys: Iterable[str]) -> None:
+    What is told here needs no knowledge of types: syntax, functions, and the names that the file itself declares.
+    """
+
+    def __init__(self, report: Report, data: Mapping[str, Any], states: Iterable[str]) -> None:
         self.report = report
-        self.keys = frozenset(keys)
+        self.keys = frozenset(data.get("context") or ())
+        self.names: dict[str, Any] = {
+            "context": {key: {} for key in self.keys},
+            "phrases": tuple(data.get("phrases") or ()),
+            "answers": tuple(data.get("answers") or ()),
+            "states": tuple(states),
+        }
 
     def expression(self, source: str, where: Path) -> Expression | None:
         """The expression, None (and reported) where it can't be read."""
-        return Expression(source, where) if self._reads(compile_expression, source, where) else None
+        sound = self._sound(check_expression(source, **self.names), source, where)
+        return Expression(source, where) if sound else None
 
     def template(self, text: str, where: Path) -> Template | None:
         """The text with its `{{ expressions }}`, None (and reported) where one can't be read."""
-        return Template(text, where) if self._reads(compile_template, text, where) else None
+        return Template(text, where) if self._sound(check_template(text, **self.names), text, where) else None
 
     def value(self, data: Any, where: Path) -> Value:
         """Every text an expression, lists and maps read through; None in place of what can't be read."""
@@ -45,21 +55,20 @@ class Expressions:
         self.report("unknown-context-key", where, f"the context has no `{key}`", hint=hint, key=True)
         return False
 
-    def _reads(self, compiler: Callable[[str], object], source: str, where: Path) -> bool:
-        try:
-            compiler(source)
-        except ExpressionError as error:
-            place = place_within(self.report.document, where, source, error.offset)
-            self.report.diagnostics.append(Diagnostic("expression-syntax", error.message, place, error.hint))
-            return False
-        return True
+    def _sound(self, findings: Iterable[Finding], source: str, where: Path) -> bool:
+        """Whether nothing was found but fields that may be missing: those depend on who calls."""
+        found = [finding for finding in findings if finding.code != "unguarded-field"]
+        for finding in found:
+            place = place_within(self.report.document, where, source, finding.offset, finding.length)
+            self.report.diagnostics.append(Diagnostic(finding.code, finding.message, place, finding.hint))
+        return not found
 
 
-def place_within(document: Document, path: Path, source: str, offset: int | None) -> Place:
-    """The place of one character of the text at `path`; of the whole text where that has several lines or escapes."""
+def place_within(document: Document, path: Path, source: str, offset: int, length: int) -> Place:
+    """The place of some characters of the text at `path`; of the whole text where that has several lines or escapes."""
     place = document.place(path)
     lines = document.text.splitlines()
-    if offset is None or place.line != place.end_line or place.line > len(lines):
+    if place.line != place.end_line or place.line > len(lines):
         return place
     line = lines[place.line - 1]
     start = place.column - 1
@@ -67,4 +76,4 @@ def place_within(document: Document, path: Path, source: str, offset: int | None
     if not line.startswith(source, start):
         return place
     column = start + min(offset, max(len(source) - 1, 0)) + 1
-    return place._replace(column=column, end_column=column + 1)
+    return place._replace(column=column, end_column=column + length)

@@ -1,0 +1,163 @@
+"""Actions as closures over a run: compiled once, so that a step does not look at their kind again."""
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
+
+from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
+from lumen.language.actions import (
+    Action,
+    Assign,
+    CancelSend,
+    Expression,
+    If,
+    LogText,
+    Parallel,
+    PublishBody,
+    Raise,
+    SayText,
+    Send,
+    Step,
+    Value,
+    Wait,
+)
+from lumen.language.commands import (
+    BodyCommand,
+    Language,
+    Log,
+    Look,
+    Play,
+    Posture,
+    Publish,
+    Rest,
+    Say,
+    Stop,
+    Track,
+    Wake,
+    Walk,
+)
+from lumen.language.diagnostics import Path
+from lumen.language.events import Event
+
+if TYPE_CHECKING:
+    from lumen.interpreters.statechart.run import Run
+
+Act: TypeAlias = "Callable[[Run], None]"
+Block: TypeAlias = "tuple[tuple[Act, Path], ...]"
+Make: TypeAlias = "Callable[[Run], BodyCommand]"
+
+
+class ActionError(Exception):
+    """An action can't be done as it is written; the rest of its block is skipped."""
+
+
+def compile_block(steps: tuple[Step, ...]) -> Block:
+    """Each action with the place it stands at."""
+    return tuple((compile_action(step.action), step.where) for step in steps)
+
+
+def compile_action(action: Action) -> Act:
+    """The doing of one action; it raises ExpressionError or ActionError where it fails."""
+    match action:
+        case Assign(values):
+            return _assign(values)
+        case Raise(event, data):
+            body = compile_value(data)
+            return lambda run: run.post(Event(event, body(run.view()), run.at))
+        case Send(event, data, delay, id):
+            body = compile_value(data)
+            return lambda run: run.set_timer(id, delay, event, body(run.view()))
+        case CancelSend(id):
+            return lambda run: run.cancel_send(id)
+        case PublishBody(route, data):
+            body = compile_value(data)
+            return lambda run: run.commands.append(Publish(route, body(run.view())))
+        case LogText(template):
+            text = compile_template(template.text)
+            return lambda run: run.commands.append(Log(text(run.view())))
+        case If(guard, then, otherwise):
+            return _if(guard, compile_block(then), compile_block(otherwise))
+        case Wait() | Parallel():
+            raise TypeError(f"{action} stands outside `do`")
+    make = compile_command(action)
+
+    def begin(run: "Run") -> None:
+        run.start(make(run))
+
+    return begin
+
+
+def compile_command(action: Action) -> Make:
+    """The command that a robot verb stands for."""
+    match action:
+        case SayText(texts):
+            return _say(texts)
+        case Language(language):
+
+            def speak(run: "Run") -> BodyCommand:
+                run.language = language
+                run.scope = None
+                return action
+
+            return speak
+        case Play() | Posture() | Walk() | Look() | Track() | Stop() | Rest() | Wake():
+            return lambda run: action
+        case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText() | If() | Wait() | Parallel():
+            raise TypeError(f"{action} is no command")
+        case _:
+            assert_never(action)
+
+
+def compile_value(value: Value) -> Callable[[Scope], Any]:
+    """What computes a value; lists and maps become JSON's."""
+    match value:
+        case Expression(source):
+            return compile_expression(source)
+        case tuple():
+            items = [compile_value(item) for item in value]
+            return lambda scope: [item(scope) for item in items]
+        case Mapping():
+            pairs = {key: compile_value(item) for key, item in value.items()}
+            return lambda scope: {key: item(scope) for key, item in pairs.items()}
+        case _:
+            return lambda scope: value
+
+
+def _assign(values: Mapping[str, Value]) -> Act:
+    pairs = [(key, compile_value(value)) for key, value in values.items()]
+
+    def assign(run: "Run") -> None:
+        before = run.context
+        try:
+            for key, value in pairs:
+                run.store(key, value(run.scope or run.view()))
+        except BaseException:
+            run.context, run.scope = before, None
+            raise
+
+    return assign
+
+
+def _if(guard: Expression, then: Block, otherwise: Block) -> Act:
+    holds = compile_guard(guard.source)
+
+    def choose(run: "Run") -> None:
+        for act, _ in then if holds(run.view()) else otherwise:
+            act(run)
+
+    return choose
+
+
+def _say(texts: Mapping[str, tuple[Any, ...]]) -> Make:
+    spoken = {
+        language: tuple(compile_template(template.text) for template in templates)
+        for language, templates in texts.items()
+    }
+    fallback = "" if "" in spoken else next(iter(spoken))
+
+    def say(run: "Run") -> BodyCommand:
+        language = run.language if run.language in spoken else fallback
+        alternatives = spoken[language]
+        text = alternatives[run.draw(len(alternatives))](run.view())
+        return Say(text, language or run.language)
+
+    return say

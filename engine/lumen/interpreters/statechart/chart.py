@@ -1,0 +1,103 @@
+"""The tree of states and transitions, compiled: what Appendix D's algorithm walks over."""
+
+from collections.abc import Callable, Iterator
+
+from lumen.interpreters.expressions import Scope, compile_guard
+from lumen.interpreters.statechart.blocks import Block, compile_block, compile_value
+from lumen.interpreters.statechart.doing import Deed, compile_do
+from lumen.interpreters.statechart.types import type_checks
+from lumen.language.machines import Kind, Machine, State, Transition
+
+Guard = Callable[[Scope], bool]
+
+
+class Node:
+    """A state, with its neighbours at hand; compared by identity. `index` is its place in document order."""
+
+    __slots__ = (
+        "afters", "ancestors", "children", "do", "entry", "exit", "histories", "index", "initial", "kind", "name",
+        "output", "parent", "path", "rules", "state",
+    )  # fmt: skip
+
+    def __init__(self, state: State | None, index: int, parent: "Node | None") -> None:
+        self.state = state
+        self.index = index
+        self.parent = parent
+        self.path = state.path if state else ""
+        self.name = state.name if state else ""
+        self.kind = state.kind if state else Kind.COMPOUND
+        self.ancestors: tuple[Node, ...] = (parent, *parent.ancestors) if parent else ()
+        self.children: list[Node] = []
+        self.histories: list[Node] = []
+        self.initial: tuple[Node, ...] = ()
+        self.rules: tuple[Rule, ...] = ()
+        self.afters: tuple[tuple[str, float], ...] = ()
+        self.entry: Block = compile_block(state.entry) if state else ()
+        self.exit: Block = compile_block(state.exit) if state else ()
+        self.do: tuple[Deed, ...] = compile_do(state.do) if state else ()
+        self.output = compile_value(state.output) if state and state.output is not None else None
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.name or 'root'}>"
+
+    def lies_below(self, other: "Node") -> bool:
+        """Whether it is a proper descendant of the other (`isDescendant`)."""
+        return other in self.ancestors
+
+    def below(self, top: "Node") -> Iterator["Node"]:
+        """Its proper ancestors, from the inside, up to but not including `top` (`getProperAncestors`)."""
+        for ancestor in self.ancestors:
+            if ancestor is top:
+                return
+            yield ancestor
+
+
+class Rule:
+    """A transition, its guard and actions compiled; compared by identity."""
+
+    __slots__ = ("block", "guard", "source", "targets", "transition", "where")
+
+    def __init__(self, transition: Transition, source: Node, targets: tuple[Node, ...]) -> None:
+        self.transition = transition
+        self.source = source
+        self.targets = targets
+        guard = transition.guard
+        self.guard: Guard | None = compile_guard(guard.source) if guard else None
+        self.where = guard.where if guard else transition.where
+        self.block: Block = compile_block(transition.actions)
+
+    def matches(self, name: str) -> bool:
+        """Whether an event of that name selects it (SCXML 3.12.1); `after` is never selected by a name."""
+        event = self.transition.event
+        if self.transition.delay is not None or not event:
+            return False
+        if self.transition.exact:
+            return event == name
+        prefix = event.removesuffix(".*")
+        return event == "*" or name == prefix or name.startswith(prefix + ".")
+
+
+class Chart:
+    """All nodes of a machine: `document` is the implicit `<scxml>` around the root."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.document = Node(None, -1, None)
+        self.nodes: dict[str, Node] = {}
+        for index, state in enumerate(machine.states.values()):
+            parent = self.document if state.parent is None else self.nodes[state.parent]
+            node = self.nodes[state.path] = Node(state, index, parent)
+            (parent.histories if node.kind is Kind.HISTORY else parent.children).append(node)
+        self.root = self.nodes[""]
+        self.document.initial = (self.root,)
+        self.by_name = {node.name: node for node in self.nodes.values() if node is not self.root}
+        self.has_history = any(node.histories for node in self.nodes.values())
+        self.checks = type_checks(machine)
+        for node in self.nodes.values():
+            self._connect(node)
+
+    def _connect(self, node: Node) -> None:
+        assert node.state is not None  # only the document has none, and it is not among the nodes
+        node.initial = tuple(self.nodes[path] for path in node.state.initial)
+        node.rules = tuple(Rule(t, node, tuple(self.nodes[path] for path in t.targets)) for t in node.state.transitions)
+        node.afters = tuple({t.event: t.delay for t in node.state.transitions if t.delay is not None}.items())

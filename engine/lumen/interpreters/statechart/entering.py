@@ -1,0 +1,122 @@
+"""Which states a transition leaves and enters: the sets of SCXML's Appendix D, by its names."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+
+from lumen.interpreters.statechart.chart import Chart, Node, Rule
+from lumen.language.machines import Kind
+
+History = Mapping[str, tuple[str, ...]]
+
+
+class Entered(set[Node]):
+    """States to be entered; `reached` are these and all their ancestors."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.reached: set[Node] = set()
+
+    def enter(self, node: Node) -> None:
+        self.add(node)
+        self.reached.update((node, *node.ancestors))
+
+
+class Topology:
+    """The sets of one chart under one history."""
+
+    def __init__(self, chart: Chart, history: History) -> None:
+        self.chart = chart
+        self.history = history
+
+    def exit_set(self, rules: Iterable[Rule], active: AbstractSet[Node]) -> set[Node]:
+        """The active states that these transitions leave (`computeExitSet`)."""
+        left: set[Node] = set()
+        for rule in rules:
+            if rule.targets:
+                domain = self.domain(rule)
+                left.update(node for node in active if node.lies_below(domain))
+        return left
+
+    def entry_set(self, rules: Iterable[Rule]) -> set[Node]:
+        """The states that these transitions enter (`computeEntrySet`)."""
+        entered = Entered()
+        for rule in rules:
+            if not rule.targets:
+                continue
+            for target in rule.targets:
+                self.add_descendants(target, entered)
+            domain = self.domain(rule)
+            for target in self.effective(rule.targets):
+                self.add_ancestors(target, domain, entered)
+        return entered
+
+    def beginning(self) -> set[Node]:
+        """The states that a machine begins in."""
+        entered = Entered()
+        self.add_descendants(self.chart.root, entered)
+        return entered
+
+    def domain(self, rule: Rule) -> Node:
+        """The state within which everything is left and entered (`getTransitionDomain`)."""
+        source, targets = rule.source, self.effective(rule.targets)
+        inside = source.kind is Kind.COMPOUND and all(target.lies_below(source) for target in targets)
+        if inside and not rule.transition.reenter:
+            return source
+        return _lcca([source, *targets])
+
+    def effective(self, targets: Sequence[Node]) -> list[Node]:
+        """The targets, histories replaced by what they stand for (`getEffectiveTargetStates`)."""
+        found: list[Node] = []
+        for target in targets:
+            found += self.effective(self.recalled(target)) if target.kind is Kind.HISTORY else [target]
+        return list(dict.fromkeys(found))
+
+    def recalled(self, history: Node) -> Sequence[Node]:
+        """What a history state remembers, else its default."""
+        if history.path in self.history:
+            return [self.chart.nodes[path] for path in self.history[history.path]]
+        return history.initial
+
+    def add_descendants(self, node: Node, entered: Entered) -> None:
+        """`addDescendantStatesToEnter`."""
+        if node.kind is Kind.HISTORY:
+            assert node.parent is not None  # only the document has none
+            self._add_all(self.recalled(node), node.parent, entered)
+            return
+        entered.enter(node)
+        if node.kind is Kind.COMPOUND:
+            self._add_all(node.initial, node, entered)
+        elif node.kind is Kind.PARALLEL:
+            self._add_regions(node, entered)
+
+    def add_ancestors(self, node: Node, top: Node, entered: Entered) -> None:
+        """`addAncestorStatesToEnter`."""
+        for ancestor in node.below(top):
+            entered.enter(ancestor)
+            if ancestor.kind is Kind.PARALLEL:
+                self._add_regions(ancestor, entered)
+
+    def _add_all(self, nodes: Sequence[Node], top: Node, entered: Entered) -> None:
+        for node in nodes:
+            self.add_descendants(node, entered)
+        for node in nodes:
+            self.add_ancestors(node, top, entered)
+
+    def _add_regions(self, parallel: Node, entered: Entered) -> None:
+        for region in parallel.children:
+            if region not in entered.reached:
+                self.add_descendants(region, entered)
+
+
+def in_final(node: Node, active: AbstractSet[Node]) -> bool:
+    """Whether a state has come to its end (`isInFinalState`)."""
+    if node.kind is Kind.COMPOUND:
+        return any(child.kind is Kind.FINAL and child in active for child in node.children)
+    return node.kind is Kind.PARALLEL and all(in_final(child, active) for child in node.children)
+
+
+def _lcca(nodes: Sequence[Node]) -> Node:
+    """The least common ancestor that is compound, or the document; never a parallel state (`findLCCA`)."""
+    head, *tail = nodes
+    compound = (a for a in head.ancestors if a.kind is Kind.COMPOUND)
+    return next(a for a in compound if all(node.lies_below(a) for node in tail))

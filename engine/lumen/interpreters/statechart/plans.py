@@ -1,0 +1,192 @@
+"""What a microstep does, worked out once for each configuration and set of transitions, and kept."""
+
+from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from typing import Any, NamedTuple
+
+from lumen.interpreters.statechart.chart import Chart, Node, Rule
+from lumen.interpreters.statechart.entering import History, Topology, in_final
+from lumen.language.machines import Kind, Transition
+
+KEPT = 4096
+"""How many entries a cache holds before it is emptied: charts with many regions have no end of configurations."""
+
+
+class Stop(NamedTuple):
+    """One state on the way out or in, and what counts as active (`In`) while its actions run.
+
+    `done` are the states whose end its entry brings about, the nearest first.
+    """
+
+    node: Node
+    active: frozenset[str]
+    done: tuple[Node, ...] = ()
+
+
+class Plan(NamedTuple):
+    """A microstep: what is left, done and entered. States without anything to do are not among the stops."""
+
+    rules: tuple[Rule, ...]
+    transitions: tuple[Transition, ...]
+    exits: tuple[Stop, ...]
+    between: frozenset[str]
+    entries: tuple[Stop, ...]
+    exited: tuple[str, ...]
+    entered: tuple[str, ...]
+    remembered: Mapping[str, tuple[str, ...]]
+    target: "Configuration"
+
+
+class Configuration:
+    """A set of active states, with the candidates of each event and the plans made from it so far."""
+
+    def __init__(self, nodes: frozenset[Node]) -> None:
+        self.nodes = nodes
+        self.ordered = sorted(nodes, key=lambda node: node.index)
+        self.names = frozenset(node.name for node in nodes if node.path)
+        self.known = known(nodes)
+        self.plans: dict[tuple[tuple[Rule, ...], object], Plan] = {}
+        self._leaves = [node for node in self.ordered if not any(child in nodes for child in node.children)]
+        self._by_name: dict[str, tuple[tuple[Rule, ...], ...]] = {}
+        self.eventless = self._select(lambda rule: not rule.transition.event)
+
+    def candidates(self, name: str) -> tuple[tuple[Rule, ...], ...]:
+        """For each active atomic state the transitions that an event of that name selects, the innermost first."""
+        found = self._by_name.get(name)
+        if found is None:
+            _bound(self._by_name)
+            found = self._by_name[name] = self._select(lambda rule: rule.matches(name))
+        return found
+
+    def timed(self, event: str) -> tuple[tuple[Rule, ...], ...]:
+        """The `after` transitions of that timer."""
+        return self._select(lambda rule: rule.transition.delay is not None and rule.transition.event == event)
+
+    def _select(self, wanted: Callable[[Rule], bool]) -> tuple[tuple[Rule, ...], ...]:
+        groups = (
+            tuple(rule for node in (leaf, *leaf.ancestors) for rule in node.rules if wanted(rule))
+            for leaf in self._leaves
+        )
+        return tuple(group for group in groups if group)
+
+
+class Planner:
+    """Makes and keeps the configurations and plans of a chart."""
+
+    def __init__(self, chart: Chart) -> None:
+        self.chart = chart
+        self._by_names: dict[frozenset[str], Configuration] = {}
+        self.nothing = Configuration(frozenset())
+
+    def configuration(self, names: frozenset[str]) -> Configuration:
+        """The configuration of these names; raises KeyError with a name that the chart does not have."""
+        found = self._by_names.get(names)
+        if found is None:
+            nodes = {self.chart.by_name[name] for name in names} | {self.chart.root}
+            _bound(self._by_names)
+            found = self._by_names[names] = Configuration(frozenset(nodes))
+        return found
+
+    def beginning(self) -> Plan:
+        """The microstep that enters a machine."""
+        return self._make(self.nothing, (), {}, set(), Topology(self.chart, {}).beginning())
+
+    def plan(self, start: Configuration, enabled: tuple[Rule, ...], history: History) -> Plan:
+        """The microstep that these enabled transitions make from there."""
+        key = (enabled, tuple(history.items()) if self.chart.has_history else None)
+        found = start.plans.get(key)
+        if found is None:
+            _bound(start.plans)
+            topology = Topology(self.chart, history)
+            rules = _without_conflicts(topology, enabled, start)
+            left = topology.exit_set(rules, start.nodes)
+            found = start.plans[key] = self._make(start, rules, history, left, topology.entry_set(rules))
+        return found
+
+    def _make(
+        self, start: Configuration, rules: tuple[Rule, ...], history: History, left: set[Node], entered: set[Node]
+    ) -> Plan:
+        out = sorted(left, key=lambda node: -node.index)
+        way_in = sorted(entered, key=lambda node: node.index)
+        active = set(start.nodes)
+        exits = _ways_out(out, active)
+        between = known(active)
+        entries = _ways_in(way_in, active)
+        return Plan(
+            rules=rules,
+            transitions=tuple(rule.transition for rule in rules),
+            exits=exits,
+            between=between,
+            entries=entries,
+            exited=tuple(node.name for node in out if node.path),
+            entered=tuple(node.name for node in way_in if node.path),
+            remembered={**history, **_remembered(start.nodes, left)},
+            target=self.configuration(frozenset(node.name for node in active if node.path)),
+        )
+
+
+def known(nodes: AbstractSet[Node]) -> frozenset[str]:
+    """Everything that `In()` says true to: paths and aliases."""
+    return frozenset(name for node in nodes for name in (node.path, node.name) if name)
+
+
+def _ways_out(way: Sequence[Node], active: set[Node]) -> tuple[Stop, ...]:
+    stops = []
+    for node in way:
+        if node.exit or node.do or node.afters:
+            stops.append(Stop(node, known(active)))
+        active.remove(node)
+    return tuple(stops)
+
+
+def _ways_in(way: Sequence[Node], active: set[Node]) -> tuple[Stop, ...]:
+    stops = []
+    for node in way:
+        active.add(node)
+        done = _done(node, active)
+        if node.entry or node.do or node.afters or done:
+            stops.append(Stop(node, known(active), done))
+    return tuple(stops)
+
+
+def _done(node: Node, active: AbstractSet[Node]) -> tuple[Node, ...]:
+    """The states whose end it is that `node` was entered: its parent, and a parallel state around that."""
+    parent = node.parent
+    if node.kind is not Kind.FINAL or parent is None:
+        return ()
+    outer = parent.parent
+    if outer and outer.kind is Kind.PARALLEL and in_final(outer, active):
+        return parent, outer
+    return (parent,)
+
+
+def _remembered(active: frozenset[Node], left: set[Node]) -> dict[str, tuple[str, ...]]:
+    """What the history states of the states left have to remember (SCXML 3.10)."""
+    found: dict[str, tuple[str, ...]] = {}
+    for parent in left:
+        for history in parent.histories:
+            assert history.state is not None  # only the document has none
+            deep = history.state.deep
+            kept = [n for n in active if (_is_leaf(n) and n.lies_below(parent) if deep else n.parent is parent)]
+            found[history.path] = tuple(n.path for n in sorted(kept, key=lambda n: n.index))
+    return found
+
+
+def _is_leaf(node: Node) -> bool:
+    return node.kind in (Kind.ATOMIC, Kind.FINAL)
+
+
+def _without_conflicts(topology: Topology, enabled: Sequence[Rule], start: Configuration) -> tuple[Rule, ...]:
+    """The transitions that can be taken together (`removeConflictingTransitions`)."""
+    kept: list[Rule] = []
+    for rule in enabled:
+        left = topology.exit_set([rule], start.nodes)
+        rivals = [other for other in kept if left & topology.exit_set([other], start.nodes)]
+        if all(rule.source.lies_below(other.source) for other in rivals):
+            kept = [other for other in kept if other not in rivals] + [rule]
+    return tuple(kept)
+
+
+def _bound(cache: dict[Any, Any]) -> None:
+    if len(cache) >= KEPT:
+        cache.clear()

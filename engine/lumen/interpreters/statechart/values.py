@@ -1,0 +1,91 @@
+"""What a step takes and gives: the whole state of a running behaviour as an immutable value."""
+
+from collections.abc import Mapping
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+from lumen.language.commands import Command
+from lumen.language.events import Event
+from lumen.language.machines import Transition
+
+
+class Timer(NamedTuple):
+    """Something that happens at `due` [s], `delay` [s] after it was set.
+
+    An `after` and a `wait` (of a `do`) end with their state, whose path they hold; a `send` ends with `cancel`.
+    """
+
+    id: str
+    due: float
+    delay: float
+    event: str
+    data: Any = None
+    state: str = ""
+    kind: Literal["after", "send", "wait"] = "send"
+
+
+class Awaiting(NamedTuple):
+    """A `do` stands before a command or a `wait` of that id."""
+
+    id: str
+
+
+class Within(NamedTuple):
+    """A `do` stands in the action number `place` of one of its blocks: the list itself, or the branch of an `if`."""
+
+    block: Literal["do", "then", "else"]
+    place: int
+    inner: "Position"
+
+
+class Fork(NamedTuple):
+    """A `do` stands in a `parallel`: where in each branch, None in those that have ended."""
+
+    branches: "tuple[Position | None, ...]"
+
+
+Position: TypeAlias = Awaiting | Within | Fork
+
+
+class Counters(NamedTuple):
+    """How many ids were given out: `c1, c2, …` to commands, `d1, d2, …` to awaited ones, `s1, s2, …` to timers."""
+
+    commands: int = 0
+    awaited: int = 0
+    timers: int = 0
+
+
+class Snapshot(NamedTuple):
+    """Where a behaviour stands between two macrosteps.
+
+    `configuration` holds the names of the active states but the root (the alias where there is one, else the path);
+    `doing` the position of each active `do` and `history` the paths remembered by each history state, both by path.
+    `at` [s] is the time of the last event, `epoch` the local time of day at time 0 [s since midnight], `generator` the
+    state from which alternatives of `say` are drawn. Mappings in it are never changed, only replaced.
+    """
+
+    configuration: frozenset[str]
+    context: Mapping[str, Any]
+    at: float = 0.0
+    language: str = ""
+    timers: tuple[Timer, ...] = ()
+    doing: Mapping[str, Within] = {}
+    history: Mapping[str, tuple[str, ...]] = {}
+    counters: Counters = Counters()
+    generator: int = 0
+    epoch: float = 0.0
+
+
+class Step(NamedTuple):
+    """One macrostep: what happened, which states were left and entered, what has to be done, and where it ends.
+
+    `event` is None for the first step. `transitions` are those taken and `raised` the internal events, in order; an
+    `error.*` among them says its `reason`, and where the fault stands, in its data. The root is not listed.
+    """
+
+    event: Event | None
+    exited: tuple[str, ...]
+    entered: tuple[str, ...]
+    commands: tuple[Command, ...]
+    snapshot: Snapshot
+    transitions: tuple[Transition, ...] = ()
+    raised: tuple[Event, ...] = ()
