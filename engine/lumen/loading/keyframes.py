@@ -14,7 +14,7 @@ from lumen.loading.units import seconds
 MAX_KEYS = 200_000
 """Of all joints together, unrolled; an hour of dancing with every joint on every beat has as many."""
 
-_CUES = ("say", "sound", "leds")
+_CUES = ("say", "sound", "leds", "hold")
 _SOON = 1e-9
 
 
@@ -72,8 +72,13 @@ class KeyframeReader:
             self.report(
                 "handles-without-key", (*here, "handles", joint), f"`{joint}` has no key here", hint=hint, key=True
             )
+        for word in ("repeat", "speed"):
+            if word in item:
+                hint = "put the keyframes that it is for into a block: `keyframes:` beside it"
+                self.report("mixed-keyframe", (*here, word), f"`{word}` is for blocks", hint=hint, key=True)
         cues = tuple(Cue(0.0, kind, item[kind], (*here, kind)) for kind in _CUES if kind in item)
-        return Motion("", 0.0, tracks, cues)
+        part = Motion("", 0.0, tracks, cues)
+        return mirrored(part) if item.get("mirror") is True else part
 
     def _block(self, item: Mapping[str, Any], here: Path, interpolation: Interpolation) -> Motion:
         """A block or another motion, as often, as fast and on the side that the item says."""
@@ -132,13 +137,15 @@ class KeyframeReader:
         if "beat" not in item:
             return None
         if self.beat is None:
+            if ("tempo",) in self.report.pruned:
+                return None
             hint = "write `tempo: 120` (beats per minute) at the top, or use `at`"
             self.report("no-tempo", (*here, "beat"), "`beat` needs the motion's tempo", hint=hint, key=True)
             return None
         return item["beat"] * self.beat if self.poses.number(item["beat"], (*here, "beat")) else None
 
     def _no_time(self, item: Mapping[str, Any], here: Path) -> None:
-        if "at" not in item and "beat" not in item:
+        if "at" not in item and "beat" not in item and not self.report.pruned & {(*here, "at"), (*here, "beat")}:
             hint = "write `at: 1.5s`" if self.beat is None else "write `beat: 4` or `at: 1.5s`"
             self.report("no-time", here, "this keyframe does not say when", hint=hint)
 

@@ -6,7 +6,7 @@ from graphlib import CycleError, TopologicalSorter
 from typing import Any, TypeVar
 
 from lumen.interpreters.choreography import at_speed, mirrored
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import Path, has_errors
 from lumen.language.motions import Interpolation, Motion
 from lumen.language.robots import Body
 from lumen.loading.keyframes import KeyframeReader, returning
@@ -45,8 +45,9 @@ def build_motion(
     how = Interpolation(data.get("interpolation", Interpolation.MINIMUM_JERK))
     part = reader.read(data["keyframes"], ("keyframes",), how)
     if part.duration <= 0.0:
-        hint = "give its last keyframe a time above 0"
-        report("zero-duration", ("keyframes",), "the motion takes no time", hint=hint, key=True)
+        if not has_errors(report.diagnostics):
+            hint = "give its last keyframe a time above 0"
+            report("zero-duration", ("keyframes",), "the motion takes no time", hint=hint, key=True)
         return None
     return _finished(part, data, poses, name, into)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
+from lumen.interpreters.choreography import mirrored_joint
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.robots import Body
 from lumen.loading.source import Report
@@ -32,7 +33,8 @@ class PoseReader:
     def define(self, poses: Mapping[str, Any], path: Path) -> None:
         """Learn the poses under `poses:`; one may build on those above it."""
         for name, pose in poses.items():
-            self.poses[name] = self.read(pose, (*path, name))
+            angles = self.read(pose, (*path, name))
+            self.poses[name] = _mirrored(angles) if pose.get("mirror") else angles
 
     def read(self, item: Mapping[str, Any], here: Path) -> Angles:
         """The joints of a keyframe or pose: posture, then poses, then `joints` and `hands`, the later ones winning."""
@@ -138,3 +140,11 @@ class PoseReader:
             if chosen:
                 angles |= {leader: chosen, follower: chosen}
         return angles
+
+
+def _mirrored(angles: Angles) -> Angles:
+    return {
+        other: (sign * angle, where)
+        for joint, (angle, where) in angles.items()
+        for other, sign in (mirrored_joint(joint),)
+    }
