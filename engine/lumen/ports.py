@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 if TYPE_CHECKING:
     import numpy as np
@@ -142,8 +142,7 @@ class Clock(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class Message:
+class Message(NamedTuple):
     """What a subscriber is handed; `body` is JSON data."""
 
     key: str
@@ -169,6 +168,13 @@ class Bus(Protocol):
         self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
     ) -> None:
         """Send a body (JSON data); safe from any thread, never waits for a handler. Raises BusError once closed."""
+        ...
+
+    def reply(self, message: Message, body: Any) -> None:
+        """Answer to where a message wants its answer, under its `correlation_id`; nothing where it wants none.
+
+        `reply_to` is a key (`avatar…`, `lumen…`) or, on a broker, the name of a queue, as modules of 2015 use it.
+        """
         ...
 
     def close(self) -> None:

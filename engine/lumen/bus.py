@@ -1,0 +1,34 @@
+"""Messages by topic, for authors of modules: `connect`, `subscribe`, `publish`, `close`."""
+
+from lumen.buses.memory import MemoryBus
+from lumen.buses.validated import Refused, log_refusal, validated
+from lumen.errors import BusError
+from lumen.language.projects import Project
+from lumen.ports import Bus, Message
+
+__all__ = ["Bus", "BusError", "Message", "connect"]
+
+
+def connect(url: str, project: Project | None = None, *, on_refused: Refused = log_refusal) -> Bus:
+    """The bus at `url`.
+
+    `memory://` is a new one inside this process, `memory://NAME` the one that everybody in this process shares under
+    that name, `amqp://USER:PASSWORD@HOST:PORT/VHOST` (or `amqps://`) a broker. With a project every body is checked
+    against the schema of its route: publishing a wrong one raises BusError, one that comes in goes to `on_refused`
+    (key, reason) instead of the subscriber. Raises BusError, saying what to do, where there is no such bus.
+    """
+    bus = _open(url)
+    return bus if project is None else validated(bus, project, on_refused)
+
+
+def _open(url: str) -> Bus:
+    scheme, separator, rest = url.partition("://")
+    if scheme == "memory" and separator:
+        return MemoryBus(rest)
+    if scheme in ("amqp", "amqps") and separator:
+        from lumen.buses.amqp import AmqpBus  # pika takes 0.2 s to import
+
+        return AmqpBus(url)
+    known = "memory://, memory://NAME, amqp://HOST or amqps://HOST"
+    what = f"`{scheme}://` is no bus" if separator else "the address of a bus begins with `memory://` or `amqp://`"
+    raise BusError(f"{what}: write {known}")

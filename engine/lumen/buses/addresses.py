@@ -1,0 +1,87 @@
+"""Where a broker is, and in one line why it can't be used."""
+
+import logging
+import socket
+import ssl
+from collections.abc import Iterator
+from typing import Any
+from urllib.parse import urlsplit
+
+import pika
+from pika import exceptions
+
+from lumen.errors import BusError
+
+HEARTBEAT = 10
+PATIENCE = 5.0
+
+logging.getLogger("pika").setLevel(logging.CRITICAL)  # it logs a traceback for every failure that we report ourselves
+
+
+class Address:
+    """A broker's URL, taken apart; `str` shows it without the password."""
+
+    def __init__(self, url: str) -> None:
+        try:
+            parts = urlsplit(url)
+            if not parts.hostname:
+                raise ValueError("there is no host in it")
+            self.parameters = pika.URLParameters(url)
+        except (ValueError, TypeError, KeyError) as error:
+            raise BusError(
+                f"`{_public(url)}` is no address of a broker ({error}): write amqp://USER:PASSWORD@HOST:PORT/"
+            ) from error
+        options = self.parameters
+        options.connection_attempts = 1
+        options.socket_timeout = PATIENCE
+        options.stack_timeout = 2 * PATIENCE
+        options.blocked_connection_timeout = 3 * HEARTBEAT
+        options.heartbeat = options.heartbeat if "heartbeat=" in parts.query else HEARTBEAT
+        options.client_properties = {"connection_name": "lumen"}
+        self.user = options.credentials.username
+        self.vhost = options.virtual_host
+        self.place = f"{options.host}:{options.port}"
+
+    def __str__(self) -> str:
+        return self.place
+
+    def explain(self, error: BaseException) -> BusError:
+        """What to do about a connection that could not be opened."""
+        causes = list(_causes(error))
+        return BusError(next(filter(None, map(self._reason, causes)), f"the broker at {self} can't be used: {error!r}"))
+
+    def _reason(self, cause: BaseException) -> str:
+        code = cause.reply_code if isinstance(cause, exceptions.ConnectionClosed) else 0
+        text = str(cause)
+        if isinstance(cause, ConnectionRefusedError):
+            return f"no broker listens at {self}: start RabbitMQ there, or use --bus memory://"
+        if isinstance(cause, socket.gaierror):
+            return f"the host `{self.parameters.host}` is unknown: check the address of the broker"
+        if isinstance(cause, ssl.SSLCertVerificationError):
+            return f"the certificate of the broker at {self} can't be trusted: {cause.verify_message}"
+        if isinstance(cause, ssl.SSLError):
+            return f"the broker at {self} does not speak TLS: use amqp://, or the port for TLS (5671)"
+        if isinstance(cause, exceptions.ProbableAuthenticationError | exceptions.AuthenticationError):
+            return f"the broker at {self} refuses user `{self.user}`: check the name and the password in the address"
+        if isinstance(cause, exceptions.ProbableAccessDeniedError) or code == 530 or "vhost" in text:
+            return f"user `{self.user}` may not use the virtual host `{self.vhost}` at {self}, or there is none"
+        if isinstance(cause, exceptions.IncompatibleProtocolError | exceptions.StreamLostError):
+            return f"what listens at {self} is no AMQP 0-9-1 broker, or closed the connection at once"
+        if isinstance(cause, TimeoutError) or "Timeout" in type(cause).__name__:
+            return f"the broker at {self} does not answer: check the host, the port and the network"
+        return ""
+
+
+def _causes(error: BaseException) -> Iterator[BaseException]:
+    """The error and what pika packed into it, the innermost first."""
+    inner: list[Any] = [*error.args, getattr(error, "exception", None), error.__cause__]
+    for item in inner:
+        if isinstance(item, BaseException):
+            yield from _causes(item)
+    yield error
+
+
+def _public(url: str) -> str:
+    """The URL without what may be a password."""
+    scheme, _, rest = url.partition("://")
+    return f"{scheme}://{rest.rpartition('@')[2]}" if rest else url.rpartition("@")[2]

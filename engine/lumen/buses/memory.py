@@ -1,0 +1,157 @@
+"""The embedded bus: topics without a broker, without a thread, and without surprises.
+
+`publish` appends to a queue and, where nobody is delivering yet, delivers until the queue is empty. So messages reach
+their subscribers in the order published, one at a time, whoever publishes from wherever, a handler included; in a
+program of one thread everything has been delivered when the outermost `publish` returns.
+"""
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+from weakref import WeakValueDictionary
+
+from lumen.buses.bodies import check_key, copied
+from lumen.errors import BusError
+from lumen.interpreters.routing import matches
+from lumen.ports import Handler, Message
+
+CLOSING = 5.0
+REMEMBERED = 4_096
+
+_log = logging.getLogger(__name__)
+
+
+class _Subscription:
+    __slots__ = ("active", "handler", "pattern")
+
+    def __init__(self, pattern: str, handler: Handler) -> None:
+        self.pattern, self.handler = pattern, handler
+        self.active = True
+
+
+_Delivery = tuple[tuple[_Subscription, ...], Message]
+
+
+class _Hub:
+    """What all the handles on one bus share."""
+
+    def __init__(self) -> None:
+        self.subscriptions: tuple[_Subscription, ...] = ()
+        self.listeners: dict[str, tuple[_Subscription, ...]] = {}
+        self.queue: deque[_Delivery | Callable[[], None]] = deque()
+        self.delivering = threading.Lock()
+        self.deliverer = 0
+        self.changing = threading.Lock()
+
+    def change(self, *, add: _Subscription | None = None, drop: tuple[_Subscription, ...] = ()) -> None:
+        with self.changing:
+            kept = tuple(s for s in self.subscriptions if s not in drop)
+            self.subscriptions = (*kept, add) if add else kept
+            self.listeners = {}
+
+    def find(self, key: str) -> tuple[_Subscription, ...]:
+        """Who listens to this key, in the order subscribed; remembered until somebody comes or goes."""
+        check_key(key)
+        with self.changing:
+            if len(self.listeners) >= REMEMBERED:
+                self.listeners = {}
+            found = tuple(s for s in self.subscriptions if matches(s.pattern, key))
+            self.listeners[key] = found
+            return found
+
+    def deliver(self) -> None:
+        """Empty the queue, unless somebody is at it already.
+
+        Who is at it looks at the queue once more after giving up the lock: what was appended until then is not lost.
+        """
+        queue, delivering = self.queue, self.delivering
+        while queue and delivering.acquire(blocking=False):
+            try:
+                self.deliverer = threading.get_ident()
+                while queue:
+                    item = queue.popleft()
+                    if type(item) is tuple:
+                        _hand_over(*item)
+                    else:
+                        item()  # type: ignore[operator]
+            finally:
+                self.deliverer = 0
+                delivering.release()
+
+
+def _hand_over(subscriptions: tuple[_Subscription, ...], message: Message) -> None:
+    last = len(subscriptions) - 1
+    for i, subscription in enumerate(subscriptions):
+        if not subscription.active:
+            continue
+        try:
+            own = message if i == last else message._replace(body=copied(message.body))
+            subscription.handler(own)
+        except Exception:
+            _log.exception("a subscriber of `%s` failed on `%s`", subscription.pattern, message.key)
+
+
+_shared: WeakValueDictionary[str, _Hub] = WeakValueDictionary()
+
+
+class MemoryBus:
+    """A handle on a bus inside this process: a new one, or with a `name` the one that all handles of that name share.
+
+    Every subscriber is handed a copy of the body of its own. A message goes to who was subscribed when it was
+    published; there is no time to wait in, so `ttl` changes nothing.
+    """
+
+    def __init__(self, name: str = "") -> None:
+        self._hub = _shared.setdefault(name, _Hub()) if name else _Hub()
+        self._mine: list[_Subscription] = []
+        self._closed = False
+
+    def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
+        if self._closed:
+            raise BusError("the bus is closed: nobody can subscribe any more")
+        subscription = _Subscription(pattern, handler)
+        self._mine.append(subscription)
+        self._hub.change(add=subscription)
+
+        def undo() -> None:
+            subscription.active = False
+            self._hub.change(drop=(subscription,))
+
+        return undo
+
+    def publish(
+        self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
+    ) -> None:
+        if self._closed:
+            raise BusError("the bus is closed: nothing can be published any more")
+        own = copied(body)
+        hub = self._hub
+        listeners = hub.listeners.get(key)
+        if listeners is None:
+            listeners = hub.find(key)
+        if listeners:
+            hub.queue.append((listeners, Message(key, own, reply_to, correlation_id)))
+            hub.deliver()
+
+    def reply(self, message: Message, body: Any) -> None:
+        if message.reply_to:
+            self.publish(message.reply_to, body, correlation_id=message.correlation_id)
+
+    def close(self) -> None:
+        """Deliver what was published, then let go of this handle's subscriptions; other handles live on."""
+        if self._closed:
+            return
+        self._closed = True
+        gone = threading.Event()
+        self._hub.queue.append(lambda: self._leave(gone))
+        self._hub.deliver()
+        if self._hub.deliverer != threading.get_ident() and not gone.wait(CLOSING):
+            _log.warning("the bus was closed while a subscriber still works, after %g s", CLOSING)
+
+    def _leave(self, gone: threading.Event) -> None:
+        for subscription in self._mine:
+            subscription.active = False
+        self._hub.change(drop=tuple(self._mine))
+        gone.set()

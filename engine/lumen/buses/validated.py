@@ -1,0 +1,73 @@
+"""Bodies checked at the boundary, against the message schemas of a project's routes."""
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from lumen.buses.checking import Check, checks
+from lumen.errors import BusError
+from lumen.language.projects import Project
+from lumen.ports import Bus, Handler, Message
+
+PREFIXES = ("avatar", "lumen")
+
+Refused = Callable[[str, str], None]
+"""Told of a message that was not handed on: its key, and the reason."""
+
+_log = logging.getLogger(__name__)
+
+
+def log_refusal(key: str, reason: str) -> None:
+    """The refusal as a warning in the log."""
+    _log.warning("a message on `%s` was refused: %s", key, reason)
+
+
+class ValidatedBus:
+    """A bus on which only bodies pass that fit their route.
+
+    A body of our own that does not is our own fault: `publish` raises BusError. One that comes in is not handed to the
+    subscriber but to `on_refused`. Keys without a route pass unchecked, keys that begin with neither `avatar` nor
+    `lumen` don't pass. `use` takes on another bundle of the project while messages flow.
+    """
+
+    def __init__(self, bus: Bus, project: Project, on_refused: Refused = log_refusal) -> None:
+        self._bus, self._on_refused = bus, on_refused
+        self._checks: dict[str, Check] = {}
+        self.use(project)
+
+    def use(self, project: Project) -> None:
+        """Check against the routes and schemas of this project from now on."""
+        self._checks = checks(project)
+
+    def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
+        def checked(message: Message) -> None:
+            if reason := self._wrong(message.key, message.body):
+                self._on_refused(message.key, reason)
+            else:
+                handler(message)
+
+        return self._bus.subscribe(pattern, checked)
+
+    def publish(
+        self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
+    ) -> None:
+        if reason := self._wrong(key, body):
+            raise BusError(f"a message on `{key}` can't be sent: {reason}")
+        self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl)
+
+    def reply(self, message: Message, body: Any) -> None:
+        self._bus.reply(message, body)
+
+    def close(self) -> None:
+        self._bus.close()
+
+    def _wrong(self, key: str, body: Any) -> str:
+        check = self._checks.get(key)
+        if check is not None:
+            return check(body)
+        return "" if key.split(".", 1)[0] in PREFIXES else "its key begins with neither `avatar` nor `lumen`"
+
+
+def validated(bus: Bus, project: Project, on_refused: Refused = log_refusal) -> ValidatedBus:
+    """The bus, with everything on it checked against the project's message schemas."""
+    return ValidatedBus(bus, project, on_refused)

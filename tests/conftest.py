@@ -1,0 +1,5 @@
+"""What all tests may ask for."""
+
+from tests.rabbitmq import broker
+
+__all__ = ["broker"]

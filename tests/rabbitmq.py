@@ -1,0 +1,138 @@
+"""A private RabbitMQ for the tests: on loopback only, as whoever runs them, gone when they end.
+
+`broker` is one for the whole session; a test that kills its broker makes one of its own with `RabbitMQ()`.
+"""
+
+import atexit
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+PREFIX = Path("/usr/lib/rabbitmq/lib")
+READY = 60.0
+
+
+class RabbitMQ:
+    """A broker in a folder of its own; `url` is where it listens once `start` has returned."""
+
+    def __init__(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="lumen-rabbitmq-"))
+        self.port, self.distribution, self.epmd = _free_ports(3)
+        self.url = f"amqp://guest:guest@127.0.0.1:{self.port}/"
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Start it, or start it again with what it had stored, and wait until it accepts connections."""
+        (self.folder / "plugins").write_text("[].")
+        (self.folder / "rabbitmq.conf").write_text("loopback_users.guest = true\n")
+        with (self.folder / "log").open("ab") as log:
+            self._process = subprocess.Popen(
+                [_script()], env=self._environment(), stdout=log, stderr=log, start_new_session=True
+            )
+        deadline = time.monotonic() + READY
+        while not _speaks_amqp(self.port):
+            if self._process.poll() is not None or time.monotonic() > deadline:
+                self.stop()
+                pytest.fail(f"RabbitMQ did not start; it said:\n{self._said()}", pytrace=False)
+            time.sleep(0.1)
+
+    def kill(self) -> None:
+        """End it as a power cut would."""
+        self._end(signal.SIGKILL)
+
+    def stop(self) -> None:
+        """End it, and the name server that it started, and delete its folder."""
+        self._end(signal.SIGTERM)
+        subprocess.run(["epmd", "-port", str(self.epmd), "-kill"], env=self._environment(), capture_output=True)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _end(self, how: signal.Signals) -> None:
+        if self._process is None:
+            return
+        try:
+            os.killpg(self._process.pid, how)
+            self._process.wait(20)
+        except ProcessLookupError:
+            pass
+        except subprocess.TimeoutExpired:
+            os.killpg(self._process.pid, signal.SIGKILL)
+            self._process.wait()
+        self._process = None
+
+    def _environment(self) -> dict[str, str]:
+        folder = str(self.folder)
+        return {
+            "PATH": os.environ["PATH"],
+            "LANG": "C.UTF-8",
+            "HOME": folder,
+            "RABBITMQ_CONF_ENV_FILE": "/dev/null",
+            "RABBITMQ_NODENAME": f"t{self.port}@localhost",
+            "RABBITMQ_NODE_IP_ADDRESS": "127.0.0.1",
+            "RABBITMQ_NODE_PORT": str(self.port),
+            "RABBITMQ_DIST_PORT": str(self.distribution),
+            "RABBITMQ_MNESIA_BASE": f"{folder}/data",
+            "RABBITMQ_LOG_BASE": f"{folder}/logs",
+            "RABBITMQ_PID_FILE": f"{folder}/pid",
+            "RABBITMQ_ENABLED_PLUGINS_FILE": f"{folder}/plugins",
+            "RABBITMQ_CONFIG_FILE": f"{folder}/rabbitmq.conf",
+            "RABBITMQ_SERVER_ADDITIONAL_ERL_ARGS": "-kernel inet_dist_use_interface {127,0,0,1} +S 1:1 +sbwt none",
+            "ERL_EPMD_ADDRESS": "127.0.0.1",
+            "ERL_EPMD_PORT": str(self.epmd),
+        }
+
+    def _said(self) -> str:
+        log = self.folder / "log"
+        return log.read_text(errors="replace")[-2000:] if log.exists() else "nothing"
+
+
+@pytest.fixture(scope="session")
+def broker() -> RabbitMQ:
+    """The session's broker; however many folders ask for it, it is one."""
+    return _shared()
+
+
+@cache
+def _shared() -> RabbitMQ:
+    rabbitmq = RabbitMQ()
+    rabbitmq.start()
+    atexit.register(rabbitmq.stop)
+    return rabbitmq
+
+
+def _script() -> str:
+    found = sorted(PREFIX.glob("rabbitmq_server-*/sbin/rabbitmq-server"))
+    if not found:
+        pytest.fail(
+            f"RabbitMQ is not installed (nothing under {PREFIX}): run `make packages`, or as root\n"
+            "    apt-get install -y --no-install-recommends rabbitmq-server",
+            pytrace=False,
+        )
+    return str(found[-1])
+
+
+def _free_ports(count: int) -> list[int]:
+    sockets = [socket.socket() for _ in range(count)]
+    for s in sockets:
+        s.bind(("127.0.0.1", 0))
+    ports = [int(s.getsockname()[1]) for s in sockets]
+    for s in sockets:
+        s.close()
+    return ports
+
+
+def _speaks_amqp(port: int) -> bool:
+    """Whether a broker answers there: to the wrong version of the protocol it names its own."""
+    try:
+        with socket.create_connection(("127.0.0.1", port), timeout=1.0) as connection:
+            connection.sendall(b"AMQP\x00\x00\x00\x00")
+            return connection.recv(4) == b"AMQP"
+    except OSError:
+        return False

@@ -1,0 +1,286 @@
+"""What every bus promises, asked of each of them."""
+
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from lumen.bus import BusError, Message, connect
+from lumen.ports import Bus
+from tests.waiting import Collector
+
+ADDRESSES = ["memory://", pytest.param("amqp://", marks=pytest.mark.xdist_group("rabbitmq"))]
+
+
+@pytest.fixture(params=ADDRESSES)
+def bus(request: pytest.FixtureRequest) -> Iterator[Bus]:
+    url = request.param if request.param == "memory://" else request.getfixturevalue("broker").url
+    bus = connect(url)
+    yield bus
+    bus.close()
+
+
+def test_messages_come_in_the_order_published(bus: Bus) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.a", seen)
+    for i in range(500):
+        bus.publish("lumen.a", i)
+    assert seen.wait(500) == list(range(500))
+
+
+def test_a_subscription_is_in_force_when_subscribe_returns(bus: Bus) -> None:
+    for i in range(20):
+        seen = Collector()
+        undo = bus.subscribe(f"lumen.at.{i}", seen)
+        bus.publish(f"lumen.at.{i}", i)
+        assert seen.wait(1) == [i]
+        undo()
+
+
+@pytest.mark.parametrize(
+    ("pattern", "keys"),
+    [
+        ("lumen.visual.face", ["lumen.visual.face"]),
+        ("lumen.*.face", ["lumen.visual.face"]),
+        ("lumen.#", ["lumen", "lumen.visual", "lumen.visual.face"]),
+        ("#.face", ["lumen.visual.face", "face"]),
+        ("*.*", ["lumen.visual"]),
+        ("#", ["lumen", "lumen.visual", "lumen.visual.face", "face"]),
+    ],
+)
+def test_wildcards_stand_for_words(bus: Bus, pattern: str, keys: list[str]) -> None:
+    seen, last = Collector(), Collector()
+    bus.subscribe(pattern, seen)
+    bus.subscribe("end", last)
+    for key in ["lumen", "lumen.visual", "lumen.visual.face", "face"]:
+        bus.publish(key, key)
+    bus.close()
+    assert seen.bodies == keys
+
+
+def test_one_handler_runs_at_a_time(bus: Bus) -> None:
+    inside, overlaps, seen = threading.Lock(), [], Collector()
+
+    def handler(message: Message) -> None:
+        if not inside.acquire(blocking=False):
+            overlaps.append(message.key)
+            return
+        seen(message)
+        inside.release()
+
+    bus.subscribe("lumen.a", handler)
+    bus.subscribe("lumen.*", handler)
+    threads = [threading.Thread(target=lambda: [bus.publish("lumen.a", i) for i in range(100)]) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    seen.wait(800)
+    assert not overlaps
+
+
+def test_every_publisher_keeps_its_own_order(bus: Bus) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.*", seen)
+    threads = [
+        threading.Thread(target=lambda t=t: [bus.publish(f"lumen.t{t}", i) for i in range(200)]) for t in range(4)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    seen.wait(800)
+    for t in range(4):
+        assert [m.body for m in seen.messages if m.key == f"lumen.t{t}"] == list(range(200))
+
+
+def test_a_handler_may_publish_and_is_done_before_its_message_is_handed_on(bus: Bus) -> None:
+    order: list[str] = []
+    seen = Collector()
+
+    def first(message: Message) -> None:
+        order.append("first begins")
+        bus.publish("lumen.b", message.body)
+        order.append("first ends")
+
+    def second(message: Message) -> None:
+        order.append("second")
+        seen(message)
+
+    bus.subscribe("lumen.a", first)
+    bus.subscribe("lumen.b", second)
+    bus.publish("lumen.a", 1)
+    seen.wait(1)
+    assert order == ["first begins", "first ends", "second"]
+
+
+def test_a_handler_may_subscribe(bus: Bus) -> None:
+    seen = Collector()
+
+    def handler(message: Message) -> None:
+        bus.subscribe("lumen.b", seen)
+        bus.publish("lumen.b", "later")
+
+    bus.subscribe("lumen.a", handler)
+    bus.publish("lumen.a", None)
+    assert seen.wait(1) == ["later"]
+
+
+def test_after_unsubscribing_nothing_comes(bus: Bus) -> None:
+    seen, others = Collector(), Collector()
+    undo = bus.subscribe("lumen.a", seen)
+    bus.subscribe("lumen.a", others)
+    bus.publish("lumen.a", 1)
+    seen.wait(1)
+    undo()
+    undo()
+    bus.publish("lumen.a", 2)
+    assert others.wait(2) == [1, 2]
+    assert seen.bodies == [1]
+
+
+def test_an_exception_in_a_handler_is_logged_and_ends_nothing(bus: Bus, caplog: pytest.LogCaptureFixture) -> None:
+    seen = Collector()
+
+    def handler(message: Message) -> None:
+        raise ValueError("a fault in a module")
+
+    bus.subscribe("lumen.a", handler)
+    bus.subscribe("lumen.a", seen)
+    bus.publish("lumen.a", 1)
+    bus.publish("lumen.a", 2)
+    assert seen.wait(2) == [1, 2]
+    bus.close()
+    assert caplog.text.count("ValueError: a fault in a module") == 2
+
+
+def test_what_one_side_does_with_a_body_is_not_seen_by_another(bus: Bus) -> None:
+    seen = Collector()
+
+    def spoil(message: Message) -> None:
+        message.body["list"].append("spoilt")
+
+    bus.subscribe("lumen.a", spoil)
+    bus.subscribe("lumen.a", seen)
+    body = {"list": [1, {"x": 2}]}
+    bus.publish("lumen.a", body)
+    body["list"].append("changed after publishing")
+    assert seen.wait(1) == [{"list": [1, {"x": 2}]}]
+    assert body["list"][-1] == "changed after publishing"
+
+
+BODIES: list[Any] = [
+    None, True, 0, -1.5, 2**53, "", "selamat pagi – 你好 🤖 \u0000", [], {}, [None, [1, {"": {}}]],
+    {"x": 160, "y": 120.5, "nested": {"a": [1, 2, "ü"]}, "Method": "moveTo"},
+]  # fmt: skip
+
+
+def test_bodies_arrive_as_they_were(bus: Bus) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.a", seen)
+    for body in BODIES:
+        bus.publish("lumen.a", body)
+    assert seen.wait(len(BODIES)) == BODIES
+    assert [type(b) for b in seen.bodies] == [type(b) for b in BODIES]
+
+
+def test_a_tuple_arrives_as_a_list(bus: Bus) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.a", seen)
+    bus.publish("lumen.a", {"angle": (0.1, 0.2)})
+    assert seen.wait(1) == [{"angle": [0.1, 0.2]}]
+
+
+def test_a_big_body_arrives(bus: Bus) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.a", seen)
+    bus.publish("lumen.a", {"contentUrl": "x" * 900_000})
+    assert len(seen.wait(1)[0]["contentUrl"]) == 900_000
+
+
+def _nested(depth: int) -> Any:
+    body: Any = 1
+    for _ in range(depth):
+        body = [body]
+    return body
+
+
+@pytest.mark.parametrize(
+    "body", [object(), {1: "x"}, float("nan"), float("inf"), [{"x": {1, 2}}], b"bytes", _nested(70), _nested(100_000)]
+)
+def test_what_is_not_json_is_refused(bus: Bus, body: Any) -> None:
+    with pytest.raises(BusError):
+        bus.publish("lumen.a", body)
+
+
+def test_a_key_of_more_than_255_bytes_is_refused(bus: Bus) -> None:
+    with pytest.raises(BusError, match="255"):
+        bus.publish("lumen." + "é" * 130, 1)
+
+
+def test_reply_to_and_correlation_id_are_carried(bus: Bus) -> None:
+    seen = Collector()
+    bus.subscribe("avatar.NAO.command", seen)
+    bus.publish("avatar.NAO.command", {"method": "rest"}, reply_to="lumen.me", correlation_id="42")
+    bus.publish("avatar.NAO.command", {"method": "rest"})
+    seen.wait(2)
+    assert seen.messages[0] == Message("avatar.NAO.command", {"method": "rest"}, "lumen.me", "42")
+    assert (seen.messages[1].reply_to, seen.messages[1].correlation_id) == ("", "")
+
+
+def test_a_reply_comes_to_who_asked(bus: Bus) -> None:
+    answers = Collector()
+    bus.subscribe("lumen.me", answers)
+    bus.subscribe("avatar.NAO.command", lambda message: bus.reply(message, "command finished"))
+    bus.publish("avatar.NAO.command", {}, reply_to="lumen.me", correlation_id="42")
+    bus.publish("avatar.NAO.command", {})
+    bus.publish("avatar.NAO.command", {}, reply_to="lumen.me", correlation_id="43")
+    assert answers.wait(2) == ["command finished"] * 2
+    assert [m.correlation_id for m in answers.messages] == ["42", "43"]
+
+
+def test_close_delivers_what_was_published(bus: Bus) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.#", seen)
+    for i in range(1000):
+        bus.publish("lumen.a", i)
+    bus.close()
+    assert seen.bodies == list(range(1000))
+
+
+def test_close_may_be_repeated_and_nothing_is_published_after_it(bus: Bus) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.a", seen)
+    bus.close()
+    bus.close()
+    with pytest.raises(BusError, match="closed"):
+        bus.publish("lumen.a", 1)
+    with pytest.raises(BusError, match="closed"):
+        bus.subscribe("lumen.a", seen)
+    assert not seen.messages
+
+
+def test_a_handler_may_close_the_bus(bus: Bus) -> None:
+    closed = threading.Event()
+
+    def handler(message: Message) -> None:
+        bus.close()
+        closed.set()
+
+    bus.subscribe("lumen.a", handler)
+    bus.publish("lumen.a", 1)
+    assert closed.wait(20)
+
+
+def test_two_handles_on_one_bus_hear_each_other(request: pytest.FixtureRequest, bus: Bus) -> None:
+    url = "memory://" if "memory" in request.node.name else request.getfixturevalue("broker").url
+    url = "memory://shared" if url == "memory://" else url
+    one, other = connect(url), connect(url)
+    seen = Collector()
+    one.subscribe("lumen.shared", seen)
+    other.publish("lumen.shared", "hello")
+    other.close()
+    one.publish("lumen.shared", "still here")
+    assert seen.wait(2) == ["hello", "still here"]
+    one.close()

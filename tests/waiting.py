@@ -1,0 +1,39 @@
+"""Waiting for a condition, with a deadline: no test sleeps."""
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+
+class Collector:
+    """A handler that keeps what it is handed, and lets a test wait for it."""
+
+    def __init__(self) -> None:
+        self.messages: list[Any] = []
+        self._changed = threading.Condition()
+
+    def __call__(self, message: Any) -> None:
+        with self._changed:
+            self.messages.append(message)
+            self._changed.notify_all()
+
+    @property
+    def bodies(self) -> list[Any]:
+        return [message.body for message in self.messages]
+
+    def wait(self, count: int, timeout: float = 20.0) -> list[Any]:
+        """The bodies, once there are `count` of them; fails after `timeout` [s]."""
+        with self._changed:
+            arrived = self._changed.wait_for(lambda: len(self.messages) >= count, timeout)
+        assert arrived, f"{len(self.messages)} of {count} messages came within {timeout:g} s"
+        return self.bodies
+
+
+def until(condition: Callable[[], object], timeout: float = 20.0) -> None:
+    """Return once the condition holds; fails after `timeout` [s]."""
+    deadline = time.monotonic() + timeout
+    pause = threading.Event()
+    while not condition():
+        assert time.monotonic() < deadline, f"it did not happen within {timeout:g} s"
+        pause.wait(0.01)
