@@ -1,13 +1,15 @@
 """What can be told of an expression before it runs: unknown names, and kinds that can never go together."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from collections.abc import Collection, Mapping
+from typing import Any
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.functions import FUNCTIONS, Function
+from lumen.interpreters.expressions.calls import check_names, function_of
+from lumen.interpreters.expressions.facts import Known, facts, prefixes
+from lumen.interpreters.expressions.findings import STRUCTURAL, Finding, Findings, Surroundings, in_words
+from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT
 from lumen.interpreters.expressions.parser import parse_expression
-from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.expressions.schemas import ANY, Presence, Type, of, type_of_schema, type_of_values, union
 from lumen.interpreters.expressions.scope import ROOTS
 from lumen.interpreters.expressions.tree import (
@@ -25,61 +27,15 @@ from lumen.interpreters.expressions.tree import (
     Unary,
     children,
     path_of,
-)  # fmt: skip
-from lumen.interpreters.expressions.values import BOOLEAN, IN_WORDS, KINDS, LIST, MAP, NULL, NUMBER, TEXT
+)
 from lumen.language.diagnostics import did_you_mean
-
-
-class Finding(NamedTuple):
-    """A fault of an expression: `offset` and `length` [characters] say where in its source."""
-
-    code: str
-    offset: int
-    length: int
-    message: str
-    hint: str = ""
-
-
-@dataclass(frozen=True)
-class Surroundings:
-    """What is declared around an expression; None where that is not known.
-
-    `context` and `events` hold JSON Schemas, of the keys and of the events' data (None: of any kind).
-    """
-
-    context: Mapping[str, Any] | None = None
-    events: Mapping[str, Any] | None = None
-    phrases: Iterable[str] | None = None
-    answers: Iterable[str] | None = None
-    states: Iterable[str] | None = None
-
-
-class Known(NamedTuple):
-    """What the conditions around a node make sure of: fields that are there, and which events it can be."""
-
-    present: frozenset[tuple[str, ...]] = frozenset()
-    events: frozenset[str] | None = None
-
-    def __and__(self, other: "Known") -> "Known":
-        events = [k.events for k in (self, other) if k.events is not None]
-        return Known(self.present | other.present, frozenset.intersection(*events) if events else None)
-
-
-STRUCTURAL = frozenset(("unknown-name", "unknown-function", "wrong-argument-count", "unsafe-pattern", "wrong-argument"))
-"""The codes of what can't even be compiled."""
-
-_INSTEAD = {
-    "len": "size", "length": "size", "count": "size", "lowerAscii": "lower", "toLower": "lower", "strip": "trim",
-    "includes": "contains", "in": "In", "regex": "matches", "split": "words", "startsWith": "matches",
-    "endsWith": "matches",
-}  # fmt: skip
 
 
 def must_hold(tree: Node) -> None:
     """Raise ExpressionError for the first thing that keeps the expression from being compiled."""
     checker = _Checker(Surroundings())
     checker.type(tree, Known())
-    for finding in checker.findings:
+    for finding in checker.findings.found:
         if finding.code in STRUCTURAL:
             raise ExpressionError(finding.message, finding.offset, finding.hint)
 
@@ -90,7 +46,7 @@ def check_tree(tree: Node, around: Surroundings, expected: Mapping[str, Any] | N
     result = checker.type(tree, Known())
     if expected is not None:
         checker.expect(tree, result, type_of_schema(expected).kinds, "here")
-    return sorted(checker.findings, key=lambda finding: finding.offset)
+    return sorted(checker.findings.found, key=lambda finding: finding.offset)
 
 
 def check_expression(
@@ -98,9 +54,9 @@ def check_expression(
     *,
     context: Mapping[str, Any] | None,
     events: Mapping[str, Any] | None = None,
-    phrases: Iterable[str] | None = None,
-    answers: Iterable[str] | None = None,
-    states: Iterable[str] | None = None,
+    phrases: Collection[str] | None = None,
+    answers: Collection[str] | None = None,
+    states: Collection[str] | None = None,
     expected: Mapping[str, Any] | None = None,
 ) -> list[Finding]:
     """Everything wrong with an expression, in the order it stands; never raises for what the source says.
@@ -121,22 +77,11 @@ class _Checker:
     """Finds the type of every node from below, and collects what is wrong on the way."""
 
     def __init__(self, around: Surroundings) -> None:
-        self.around = around
-        self.findings: list[Finding] = []
-
-    def report(self, code: str, node: Node, message: str, hint: str = "", offset: int | None = None) -> None:
-        start = node.offset if offset is None else offset
-        finding = Finding(code, start, max(1, node.end - start), message, hint)
-        if finding not in self.findings:
-            self.findings.append(finding)
+        self.around, self.findings = around, Findings()
+        self.report = self.findings.report
 
     def expect(self, node: Node, found: Type, wanted: frozenset[str], whose: str) -> bool:
-        """Whether the value can be of a kind that is wanted, saying so where it can't."""
-        if found.kinds & wanted:
-            return True
-        needs = " or ".join(IN_WORDS[k] for k in IN_WORDS if k in wanted)
-        self.report("type-mismatch", node, f"this is {_kinds(found)}, and {needs} is needed {whose}")
-        return False
+        return self.findings.expect(node, found.kinds, wanted, whose)
 
     def type(self, node: Node, known: Known) -> Type:
         match node:
@@ -242,8 +187,8 @@ class _Checker:
     def binary(self, node: Binary, left: Type, right: Type) -> Type:
         match node.sign:
             case "==" | "!=":
-                apart = not left.kinds & right.kinds and NULL not in left.kinds | right.kinds
-                if apart or (not left.kinds & right.kinds and {*left.kinds, *right.kinds} - {NULL} == set()):
+                asks_null = any(isinstance(n, Literal) and n.value is None for n in (node.left, node.right))
+                if not left.kinds & right.kinds and not asks_null:
                     answer = "false" if node.sign == "==" else "true"
                     self.mismatch(node, left, right, f"this is always {answer}")
                 return of(BOOLEAN)
@@ -265,105 +210,26 @@ class _Checker:
         return of(NUMBER)
 
     def mismatch(self, node: Binary, left: Type, right: Type, hint: str) -> None:
-        message = f"{_kinds(left)} and {_kinds(right)} don't go together in `{node.sign}`"
+        message = f"{in_words(left.kinds)} and {in_words(right.kinds)} don't go together in `{node.sign}`"
         self.report("type-mismatch", node, message, hint)
 
     def call(self, node: Call, known: Known) -> Type:
-        function = FUNCTIONS.get(node.function)
+        function = function_of(node, self.findings)
         if function is None:
             for argument in node.arguments:
                 self.type(argument, known)
-            similar = _INSTEAD.get(node.function)
-            hint = f"did you mean `{similar}`?" if similar else did_you_mean(node.function, FUNCTIONS, "there are")
-            self.report("unknown-function", node, f"there is no function `{node.function}`", hint, node.named)
             return ANY
-        if len(node.arguments) != len(function.parameters):
-            wanted, given = len(function.parameters), len(node.arguments)
-            message = f"`{node.function}` takes {wanted or 'no'} argument{'s' * (wanted != 1)}, and here are {given}"
-            self.report("wrong-argument-count", node, message, f"write `{_usage(node.function)}`")
-        elif node.function == "has":
+        if node.function == "has" and len(node.arguments) == 1:
             return self.has(node, known)
         for argument, kinds in zip(node.arguments, function.parameters, strict=False):
             self.expect(argument, self.type(argument, known), kinds, f"by `{node.function}`")
-        self.literal(node, function)
+        check_names(node, self.around, self.findings)
         return Type(function.returns)
 
     def has(self, node: Call, known: Known) -> Type:
         target = node.arguments[0]
         if isinstance(target, Field | Index):
-            self.member(target, known & Known(_prefixes(target)), must_exist=False)
+            self.member(target, known & Known(prefixes(target)), must_exist=False)
         else:
             self.report("wrong-argument", target, "`has` asks whether a field is there", "write `has(event.data.x)`")
         return of(BOOLEAN)
-
-    def literal(self, node: Call, function: Function) -> None:
-        """Look the literal names up that `heard`, `lookup` and `In` are given, and read the pattern of `matches`."""
-        if len(node.arguments) != len(function.parameters) or not node.arguments:
-            return
-        last = node.arguments[-1]
-        name = last.value if isinstance(last, Literal) and isinstance(last.value, str) else None
-        around = self.around
-        match node.function:
-            case "matches":
-                self.pattern(last, name)
-            case "heard" if name is not None:
-                self.named(last, name, "unknown-phrase", "phrases", around.phrases)
-            case "lookup" if name is not None:
-                self.named(last, name, "unknown-answers", "answers", around.answers)
-            case "In" if name is not None:
-                self.named(last, name, "unknown-state", "state", around.states)
-
-    def named(self, node: Node, name: str, code: str, what: str, names: Iterable[str] | None) -> None:
-        listed = None if names is None else set(names)
-        if listed is not None and name not in listed:
-            there = f"there is no state `{name}`" if what == "state" else f"there are no {what} named `{name}`"
-            self.report(code, node, there, did_you_mean(name, listed, "there are"))
-
-    def pattern(self, node: Node, pattern: str | None) -> None:
-        if pattern is None:
-            hint = "a pattern can't be computed; use `contains` for that"
-            self.report("unsafe-pattern", node, "`matches` needs its pattern written as a text", hint)
-            return
-        try:
-            compile_pattern(pattern)
-        except ExpressionError as error:
-            self.report("unsafe-pattern", node, f"in the pattern, {error.message}", error.hint)
-
-
-def facts(node: Node, value: bool) -> Known:
-    """What is made sure of where the condition has that value."""
-    match node:
-        case Unary(sign="!", operand=operand):
-            return facts(operand, not value)
-        case Logic(sign=sign, operands=operands) if (sign == "&&") == value:
-            known = Known()
-            for operand in operands:
-                known &= facts(operand, value)
-            return known
-        case Call(function="has", arguments=(target,)) if value:
-            path = path_of(target)
-            return Known(_prefixes(target) | {path} if path else frozenset())
-        case Binary(sign=sign, left=left, right=Literal(value=str() as name)) if sign == ("==" if value else "!="):
-            return Known(events=frozenset((name,))) if path_of(left) == ("event", "name") else Known()
-    return Known()
-
-
-def _prefixes(node: Node) -> frozenset[tuple[str, ...]]:
-    """The paths of what the node stands in."""
-    found = set()
-    while isinstance(node, Field | Index):
-        node = node.base
-        if path := path_of(node):
-            found.add(path)
-    return frozenset(found)
-
-
-def _kinds(found: Type) -> str:
-    return " or ".join(words for kind, words in IN_WORDS.items() if kind in found.kinds)
-
-
-def _usage(name: str) -> str:
-    usages = {"size": "text", "has": "event.data.x", "hour": "", "In": "'state'", "contains": "text, 'part'",
-              "replace": "text, 'old', 'new'", "after": "text, 'phrase'", "matches": "text, 'pattern'",
-              "heard": "text, 'name'", "lookup": "text, 'table'"}  # fmt: skip
-    return f"{name}({usages.get(name, 'text')})"

@@ -5,9 +5,9 @@ from types import TracebackType
 from typing import Any
 
 from lumen.errors import ExpressionError
+from lumen.interpreters.expressions.kinds import IN_WORDS, FaultError, MismatchError, WrongKindError, kind_of
 from lumen.interpreters.expressions.scope import Scope
 from lumen.interpreters.expressions.tree import Call, Field, Index, Node, children, path_of, walk
-from lumen.interpreters.expressions.values import IN_WORDS, FaultError, MismatchError, WrongKindError, kind_of
 from lumen.language.diagnostics import did_you_mean
 
 FILE = "<expression>"
@@ -28,7 +28,8 @@ def explain(error: Exception, source: str, tree: Node, scope: Scope) -> Expressi
             culprit = children(node)[operand] if operand >= 0 else node
             return wrong_kind(source, node, culprit, kind, wanted)
         case MismatchError(left=left, right=right):
-            return ExpressionError(f"{IN_WORDS[left]} and {IN_WORDS[right]} don't go together here", node.offset)
+            message = f"{IN_WORDS[left]} and {IN_WORDS[right]} don't go together in `{_sign(node)}`"
+            return ExpressionError(message, node.offset)
         case KeyError() | TypeError() if isinstance(node, Field | Index):
             return _missing(error, source, node, scope)
         case RecursionError():

@@ -5,9 +5,7 @@ from math import floor
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions import phrases
-from lumen.interpreters.expressions.patterns import compile_pattern
-from lumen.interpreters.expressions.scope import CUT, Scope
-from lumen.interpreters.expressions.values import (
+from lumen.interpreters.expressions.kinds import (
     BOOLEAN,
     KINDS,
     LIST,
@@ -16,10 +14,11 @@ from lumen.interpreters.expressions.values import (
     TEXT,
     FaultError,
     WrongKindError,
-    bounded_text,
-    has,
     kind_of,
-)  # fmt: skip
+)
+from lumen.interpreters.expressions.patterns import compile_pattern
+from lumen.interpreters.expressions.scope import CUT, Scope
+from lumen.interpreters.expressions.values import bounded_text, has
 from lumen.language.diagnostics import did_you_mean
 
 Kinds = frozenset[str]

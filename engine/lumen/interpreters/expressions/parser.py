@@ -1,7 +1,7 @@
 """From the text of an expression to its tree: a parser that climbs operator precedence (Pratt, 1973)."""
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.scope import MAX_DEPTH
+from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_INT, MIN_INT
 from lumen.interpreters.expressions.tokens import Token, tokenize
 from lumen.interpreters.expressions.tree import (
     Binary,
@@ -18,8 +18,6 @@ from lumen.interpreters.expressions.tree import (
     Unary,
     walk,
 )  # fmt: skip
-
-MIN_INT, MAX_INT = -(2**63), 2**63 - 1
 
 _RELATIONS = ("==", "!=", "<", "<=", ">", ">=", "in")
 _POWERS = {"?": 1, "||": 2, "&&": 3} | dict.fromkeys(_RELATIONS, 4) | {"+": 5, "-": 5, "*": 6, "/": 6, "%": 6}

@@ -1,83 +1,23 @@
 """The patterns of `matches`: regular expressions in time proportional to the text.
 
 Ours because Python's `re` tries alternatives one after another, so that an innocent pattern can take minutes on a
-text that a message brought. A pattern becomes a nondeterministic automaton whose states are followed all at once
-(K. Thompson, "Regular Expression Search Algorithm", CACM 11(6), 1968); `re` only tests single characters.
+text that a message brought. What others repeat without bound inside a repetition is refused all the same, because
+authors who write it mean something simpler.
 """
 
 import re
 from functools import lru_cache
-from typing import NamedTuple
 
 from lumen.errors import ExpressionError
+from lumen.interpreters.expressions.automaton import Pattern, State, Test
 
 _ATOM = re.compile(
     r"\\x[0-9a-fA-F]{2}|\\u[0-9a-fA-F]{4}|\\[^a-zA-Z0-9]|\\[dDwWsSfnrtv]|\[\^?\]?(?:\\.|[^\\\]])*\]|[^\\[]", re.S
 )
 _CONFUSING = re.compile(r"\[|--|&&|\|\||~~")
 _COUNT = re.compile(r"\{(\d{1,4})(,?)(\d{0,4})\}")
-_MAX_STATES = 400
 _MAX_GROUPS = 20
-
-
-class _State(NamedTuple):
-    """`kind` is char, split, at or end; `test` a character's pattern or an anchor's name; `next` where it leads."""
-
-    kind: str
-    test: "re.Pattern[str] | str | None"
-    next: tuple[int, ...]
-
-
-class Pattern:
-    """A compiled pattern; `search` tells whether it occurs anywhere in a text."""
-
-    def __init__(self, states: list[_State], start: int) -> None:
-        self.states, self.start = states, start
-
-    def search(self, text: str) -> bool:
-        active: set[int] = set()
-        for position in range(len(text) + 1):
-            active = self._closure(active | {self.start}, text, position)
-            if -1 in active:
-                return True
-            if position == len(text):
-                break
-            character = text[position]
-            active = {s.next[0] for i in active if (s := self.states[i]).kind == "char" and _fits(s.test, character)}
-        return False
-
-    def _closure(self, active: set[int], text: str, position: int) -> set[int]:
-        """The states reached without a further character; -1 stands for the end of the pattern."""
-        reached, pending = set[int](), list(active)
-        while pending:
-            index = pending.pop()
-            if index in reached:
-                continue
-            reached.add(index)
-            state = self.states[index]
-            if state.kind == "end":
-                return {-1}
-            if state.kind == "split" or (state.kind == "at" and _stands(state.test, text, position)):
-                pending.extend(state.next)
-        return reached
-
-
-def _fits(test: "re.Pattern[str] | str | None", character: str) -> bool:
-    return test == character if isinstance(test, str) else test is None or test.match(character) is not None
-
-
-def _stands(anchor: object, text: str, position: int) -> bool:
-    if anchor == "^":
-        return position == 0
-    if anchor == "$":
-        return position == len(text)
-    before = position > 0 and _is_word(text[position - 1])
-    after = position < len(text) and _is_word(text[position])
-    return (before != after) == (anchor == r"\b")
-
-
-def _is_word(character: str) -> bool:
-    return character.isalnum() or character == "_"
+MAX_STATES = 400
 
 
 @lru_cache(maxsize=512)
@@ -92,7 +32,7 @@ class _Compiler:
     def __init__(self, source: str) -> None:
         self.ignore_case = source.startswith("(?i)")
         self.source, self.position, self.level = source, 4 * self.ignore_case, 0
-        self.states: list[_State] = []
+        self.states: list[State] = []
 
     def pattern(self) -> Pattern:
         parsed, _ = self.alternatives()
@@ -202,10 +142,10 @@ class _Compiler:
             raise self.error("a repetition is repeated", "one `*`, `+` or `?` is enough")
         return low, high
 
-    def state(self, kind: str, test: "re.Pattern[str] | str | None", next: tuple[int, ...]) -> int:
-        if len(self.states) >= _MAX_STATES:
+    def state(self, kind: str, test: Test, next: tuple[int, ...]) -> int:
+        if len(self.states) >= MAX_STATES:
             raise self.error("the pattern is too large", "count fewer repetitions", 0)
-        self.states.append(_State(kind, test, next))
+        self.states.append(State(kind, test, next))
         return len(self.states) - 1
 
     def build(self, part: tuple[object, ...], following: int) -> int:
@@ -228,7 +168,7 @@ class _Compiler:
     def repeat(self, inner: tuple[object, ...], low: int, high: int | None, following: int) -> int:
         if high is None:
             loop = self.state("split", None, ())
-            self.states[loop] = _State("split", None, (self.build(inner, loop), following))
+            self.states[loop] = State("split", None, (self.build(inner, loop), following))
             following = loop
         for _ in range((high or low) - low if high is not None else 0):
             following = self.state("split", None, (self.build(inner, following), following))

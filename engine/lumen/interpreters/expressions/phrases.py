@@ -30,8 +30,8 @@ _NO_APOSTROPHES = dict.fromkeys(map(ord, _APOSTROPHES))
 @lru_cache(maxsize=512)
 def folded(text: str) -> tuple[str, ...]:
     """The words of a text as they are compared: without case and apostrophes, so that "Don't" is "dont"."""
-    plain = normalize("NFKC", normalize("NFKC", text).casefold()).translate(_WORDS_ONLY)
-    return tuple(plain.translate(_NO_APOSTROPHES).split())
+    joined = normalize("NFKC", text.translate(_NO_APOSTROPHES))
+    return tuple(normalize("NFKC", joined.casefold()).translate(_WORDS_ONLY).split())
 
 
 @lru_cache(maxsize=512)

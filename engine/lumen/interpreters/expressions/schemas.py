@@ -5,11 +5,13 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-from lumen.interpreters.expressions.values import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT, FaultError, kind_of
+from lumen.interpreters.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT, FaultError, kind_of
 
 _JSON_TYPES = {
     "null": NULL, "boolean": BOOLEAN, "integer": NUMBER, "number": NUMBER, "string": TEXT, "array": LIST, "object": MAP,
 }  # fmt: skip
+
+_BEYOND = frozenset(("$ref", "$dynamicRef", "allOf", "anyOf", "oneOf", "if", "patternProperties"))
 
 
 class Presence(Enum):
@@ -67,7 +69,7 @@ def union(types: Iterable[Type]) -> Type:
 
 def type_of_schema(schema: object) -> Type:
     """What a JSON Schema says of a value; anything where it says nothing, or more than is understood here."""
-    if not isinstance(schema, Mapping):
+    if not isinstance(schema, Mapping) or not _BEYOND.isdisjoint(schema):
         return ANY
     if "const" in schema:
         return type_of_values([schema["const"]])

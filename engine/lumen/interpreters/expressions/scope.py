@@ -18,6 +18,9 @@ MAX_TEXT = 10_000
 MAX_VALUES = 10_000
 """Values inside a list or map that an expression builds, those inside them included."""
 
+MIN_INT, MAX_INT = -(2**63), 2**63 - 1
+"""Whole numbers have 64 bits, as in CEL."""
+
 CUT = 1_000
 """Characters of a text that the text functions look at."""
 

@@ -6,11 +6,13 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.checker import Finding, check_expression
+from lumen.interpreters.expressions.checker import check_expression
 from lumen.interpreters.expressions.compiler import compile_expression
+from lumen.interpreters.expressions.findings import Finding
+from lumen.interpreters.expressions.kinds import FaultError
 from lumen.interpreters.expressions.scope import MAX_TEXT, Scope
 from lumen.interpreters.expressions.tokens import token_at
-from lumen.interpreters.expressions.values import FaultError, bounded
+from lumen.interpreters.expressions.values import bounded
 
 
 class Hole(NamedTuple):
@@ -95,7 +97,7 @@ def printed(value: Any) -> str:
         return value
     try:
         return "" if value is None else json.dumps(_plain(bounded(value)), ensure_ascii=False)
-    except (FaultError, TypeError) as fault:
+    except (FaultError, TypeError, ValueError) as fault:
         raise ExpressionError(str(fault)) from None
 
 

@@ -1,0 +1,193 @@
+"""From the tree of an expression to a Python code object, built node by node: no text of a user is ever run.
+
+The code names nothing but the functions of this package; a path becomes subscripts, so that no attribute of a Python
+object can be reached. The line number of an instruction is the number of its node (in the order of `walk`, from 1),
+which is how `explain` finds the place of what fails.
+"""
+
+import ast
+from itertools import count
+from types import CodeType
+
+from lumen.interpreters.expressions.explain import FILE
+from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.kinds import BOOLEAN
+from lumen.interpreters.expressions.scope import ROOTS
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Call,
+    Choice,
+    Entries,
+    Field,
+    Index,
+    Items,
+    Literal,
+    Logic,
+    Name,
+    Node,
+    Unary,
+    walk,
+)
+
+SIGNS = {
+    "==": "equal", "<": "less", "<=": "at_most", ">": "greater", ">=": "at_least", "in": "contained",
+    "+": "add", "-": "subtract", "*": "multiply", "/": "divide", "%": "remainder",
+}  # fmt: skip
+_ORDER = {"<": ast.Lt, "<=": ast.LtE, ">": ast.Gt, ">=": ast.GtE}
+_YES_OR_NO = {"==", "!=", "<", "<=", ">", ">=", "in"}
+
+
+def is_condition(node: Node) -> bool:
+    """Whether the node can have no value but true or false."""
+    match node:
+        case Literal(value=bool()) | Logic() | Unary(sign="!"):
+            return True
+        case Binary(sign=sign):
+            return sign in _YES_OR_NO
+        case Call(function=function):
+            return FUNCTIONS[function].returns == {BOOLEAN}
+        case Choice(then=then, otherwise=otherwise):
+            return is_condition(then) and is_condition(otherwise)
+    return False
+
+
+def _builds(tree: Node) -> bool:
+    """Whether the expression can put together a list or map that was not there before."""
+    if is_condition(tree):
+        return False
+    return any(isinstance(n, Items | Entries) or (isinstance(n, Binary) and n.sign == "+") for n, _ in walk(tree))
+
+
+class Builder:
+    """Builds the Python tree of one expression."""
+
+    def __init__(self, tree: Node, *, careful: bool) -> None:
+        self.tree, self.careful = tree, careful
+        self.numbers = {id(node): number for number, (node, _) in enumerate(walk(tree), 1)}
+        self.temporary = count()
+
+    def code(self, guard: bool) -> CodeType:
+        """A module that defines `evaluate(scope)`."""
+        result = self.condition(self.tree) if guard else self.node(self.tree)
+        if not guard and _builds(self.tree):
+            result = self.call("bounded", result)
+        self.place(result, self.tree)
+        failed = self.call("failed", _load("error"), _load("scope"))
+        handler = ast.ExceptHandler(_load("Exception"), "error", [ast.Return(failed)])
+        body: list[ast.stmt] = [ast.Try([ast.Return(result)], [handler], [], [])]
+        scope = ast.arguments([], [ast.arg("scope")], None, [], [], None, [])
+        define = ast.FunctionDef("evaluate", scope, body, [])
+        define.lineno = define.end_lineno = 1
+        module = ast.fix_missing_locations(ast.Module([define], []))
+        return compile(module, FILE, "exec", dont_inherit=True, optimize=0)
+
+    def node(self, node: Node) -> ast.expr:
+        built = self.build(node)
+        return self.place(built, node)
+
+    def place(self, built: ast.expr, node: Node) -> ast.expr:
+        """The Python node, marked with the number of ours."""
+        built.lineno = built.end_lineno = self.numbers[id(node)]
+        built.col_offset = built.end_col_offset = 0
+        return built
+
+    def call(self, name: str, *arguments: ast.expr) -> ast.expr:
+        return ast.Call(_load(name), list(arguments), [])
+
+    def condition(self, node: Node) -> ast.expr:
+        """The node's value, made sure to be true or false."""
+        built = self.node(node)
+        if is_condition(node):
+            return built
+        value, again = self.named(built)
+        yes = ast.Compare(value, [ast.Is()], [ast.Constant(True)])
+        no = ast.Compare(again, [ast.Is()], [ast.Constant(False)])
+        test = ast.BoolOp(ast.Or(), [yes, no])
+        return self.place(ast.IfExp(test, again, self.call("truth", again)), node)
+
+    def named(self, value: ast.expr) -> tuple[ast.expr, ast.expr]:
+        """The value put into a variable, and the variable."""
+        name = f"v{next(self.temporary)}"
+        return ast.NamedExpr(ast.Name(name, ast.Store()), value), _load(name)
+
+    def build(self, node: Node) -> ast.expr:
+        match node:
+            case Literal(value=value):
+                return ast.Constant(value)
+            case Name(name=name):
+                return _at(_load("scope"), ROOTS.index(name))
+            case Field(base=base, name=name):
+                return _at(self.node(base), name)
+            case Index(base=base, key=Literal(value=str() as key)):
+                return _at(self.node(base), key)
+            case Items(items=items):
+                return ast.List([self.node(item) for item in items], ast.Load())
+            case Entries(keys=keys, values=entries):
+                return ast.Dict([ast.Constant(key) for key in keys], [self.node(value) for value in entries])
+            case Logic(sign=sign, operands=operands):
+                return self.logic(sign, [self.condition(operand) for operand in operands])
+            case Choice(condition=condition, then=then, otherwise=otherwise):
+                return ast.IfExp(self.condition(condition), self.node(then), self.node(otherwise))
+            case Binary(sign=sign, left=left, right=right):
+                return self.binary(sign, left, right)
+            case Unary(sign="!", operand=operand) if is_condition(operand):
+                return ast.UnaryOp(ast.Not(), self.node(operand))
+            case Unary(sign=sign, operand=operand):
+                return self.call("negation" if sign == "!" else "negative", self.node(operand))
+            case Index(base=base, key=index):
+                return self.call("item", self.node(base), self.node(index))
+            case Call(function="has", arguments=(target,)):
+                return self.has(target)
+            case Call(function=function, arguments=arguments):
+                first = [_load("scope")] if FUNCTIONS[function].scoped else []
+                return self.call(f"call_{function}", *first, *map(self.node, arguments))
+
+    def logic(self, sign: str, operands: list[ast.expr]) -> ast.expr:
+        if not self.careful:
+            return ast.BoolOp(ast.And() if sign == "&&" else ast.Or(), operands)
+        nothing = ast.arguments([], [], None, [], [], None, [])
+        return self.call("both" if sign == "&&" else "either", *(ast.Lambda(nothing, o) for o in operands))
+
+    def has(self, target: Node) -> ast.expr:
+        keys: list[ast.expr] = []
+        while isinstance(target, Field | Index):
+            keys.append(ast.Constant(target.name) if isinstance(target, Field) else self.node(target.key))
+            target = target.base
+        return self.call("has", self.node(target), *reversed(keys))
+
+    def binary(self, sign: str, left: Node, right: Node) -> ast.expr:
+        if sign in ("==", "!=") and isinstance(right, Literal):
+            return self.equals_literal(sign, left, right)
+        if sign == "!=":
+            return ast.UnaryOp(ast.Not(), self.call("equal", self.node(left), self.node(right)))
+        if sign in _ORDER and isinstance(right, Literal) and type(right.value) in (int, float):
+            return self.compares_number(sign, left, right)
+        return self.call(SIGNS[sign], self.node(left), self.node(right))
+
+    def equals_literal(self, sign: str, left: Node, right: Literal) -> ast.expr:
+        """`left == literal` without a call; of all literals Python takes only 0 and 1 for something else (a bool)."""
+        identity = right.value is None or isinstance(right.value, bool)
+        negated = sign == "!="
+        if not identity and right.value in (0, 1):
+            same = self.call("equal", self.node(left), self.node(right))
+            return ast.UnaryOp(ast.Not(), same) if negated else same
+        if identity:
+            operator: ast.cmpop = ast.IsNot() if negated else ast.Is()
+        else:
+            operator = ast.NotEq() if negated else ast.Eq()
+        return ast.Compare(self.node(left), [operator], [self.node(right)])
+
+    def compares_number(self, sign: str, left: Node, right: Literal) -> ast.expr:
+        """`left < number` without a call where `left` is an int, and with all checks where it is not."""
+        value, again = self.named(self.node(left))
+        is_int = ast.Compare(self.call("type", value), [ast.Is()], [_load("int")])
+        fast = ast.Compare(again, [_ORDER[sign]()], [ast.Constant(right.value)])
+        return ast.IfExp(is_int, fast, self.call(SIGNS[sign], again, ast.Constant(right.value)))
+
+
+def _load(name: str) -> ast.expr:
+    return ast.Name(name, ast.Load())
+
+
+def _at(base: ast.expr, key: int | str) -> ast.expr:
+    return ast.Subscript(base, ast.Constant(key), ast.Load())

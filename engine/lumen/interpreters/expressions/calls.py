@@ -1,0 +1,67 @@
+"""What can be told of a call before it runs: its function, the number of its arguments, the names written in it."""
+
+from collections.abc import Collection
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions.findings import Findings, Surroundings
+from lumen.interpreters.expressions.functions import FUNCTIONS, Function
+from lumen.interpreters.expressions.patterns import compile_pattern
+from lumen.interpreters.expressions.tree import Call, Literal, Node
+from lumen.language.diagnostics import did_you_mean
+
+_INSTEAD = {
+    "len": "size", "length": "size", "count": "size", "lowerAscii": "lower", "toLower": "lower", "strip": "trim",
+    "includes": "contains", "in": "In", "regex": "matches", "split": "words", "startsWith": "matches",
+    "endsWith": "matches",
+}  # fmt: skip
+_ARGUMENTS = {
+    "has": "event.data.x", "hour": "", "In": "'state'", "contains": "text, 'part'", "replace": "text, 'old', 'new'",
+    "after": "text, 'phrase'", "matches": "text, 'pattern'", "heard": "text, 'name'", "lookup": "text, 'table'",
+}  # fmt: skip
+
+
+def function_of(node: Call, findings: Findings) -> Function | None:
+    """The function that is called, None where there is none of that name; a wrong number of arguments is reported."""
+    function = FUNCTIONS.get(node.function)
+    if function is None:
+        similar = _INSTEAD.get(node.function)
+        hint = f"did you mean `{similar}`?" if similar else did_you_mean(node.function, FUNCTIONS, "there are")
+        findings.report("unknown-function", node, f"there is no function `{node.function}`", hint, node.named)
+        return None
+    wanted, given = len(function.parameters), len(node.arguments)
+    if wanted != given:
+        arguments = f"{wanted or 'no'} argument{'s' * (wanted != 1)}"
+        message = f"`{node.function}` takes {arguments}, and {given or 'none'} {'is' if given == 1 else 'are'} given"
+        usage = f"write `{node.function}({_ARGUMENTS.get(node.function, 'text')})`"
+        findings.report("wrong-argument-count", node, message, usage, node.named)
+    return function
+
+
+def check_names(node: Call, around: Surroundings, findings: Findings) -> None:
+    """Look the literal names up that `heard`, `lookup` and `In` are given, and read the pattern of `matches`."""
+    if len(node.arguments) != len(FUNCTIONS[node.function].parameters) or not node.arguments:
+        return
+    last = node.arguments[-1]
+    name = last.value if isinstance(last, Literal) and isinstance(last.value, str) else None
+    if node.function == "matches":
+        _pattern(last, name, findings)
+    elif name is not None:
+        names: dict[str, tuple[str, str, Collection[str] | None]] = {
+            "heard": ("unknown-phrase", "there are no phrases named", around.phrases),
+            "lookup": ("unknown-answers", "there are no answers named", around.answers),
+            "In": ("unknown-state", "there is no state", around.states),
+        }
+        code, message, known = names.get(node.function, ("", "", None))
+        if known is not None and name not in known:
+            findings.report(code, last, f"{message} `{name}`", did_you_mean(name, known, "there are"))
+
+
+def _pattern(node: Node, pattern: str | None, findings: Findings) -> None:
+    if pattern is None:
+        hint = "a pattern can't be computed; use `contains` for that"
+        findings.report("unsafe-pattern", node, "`matches` needs its pattern written as a text", hint)
+        return
+    try:
+        compile_pattern(pattern)
+    except ExpressionError as error:
+        findings.report("unsafe-pattern", node, f"in the pattern, {error.message}", error.hint)
