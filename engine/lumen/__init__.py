@@ -1,3 +1,51 @@
-"""Lumen: the behaviour of a humanoid robot, written in YAML."""
+"""Lumen: the behaviour of a humanoid robot, written in YAML.
+
+The names below are the promise we keep; each is imported when it is first used, so that `import lumen` costs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lumen.errors import BusError, LumenError, ProjectError, RobotError, SnapshotError, UsageError
+    from lumen.language.diagnostics import Diagnostic
+    from lumen.language.events import Event
+    from lumen.language.projects import Project
+    from lumen.rules import check, load
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "BusError",
+    "Diagnostic",
+    "Event",
+    "LumenError",
+    "Project",
+    "ProjectError",
+    "RobotError",
+    "SnapshotError",
+    "UsageError",
+    "__version__",
+    "check",
+    "load",
+]
+
+_HOMES = {
+    "lumen.errors": ("BusError", "LumenError", "ProjectError", "RobotError", "SnapshotError", "UsageError"),
+    "lumen.language.diagnostics": ("Diagnostic",),
+    "lumen.language.events": ("Event",),
+    "lumen.language.projects": ("Project",),
+    "lumen.rules": ("check", "load"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    for home, names in _HOMES.items():
+        if name in names:
+            globals()[name] = found = getattr(import_module(home), name)
+            return found
+    raise AttributeError(f"module `lumen` has no `{name}`")
+
+
+def __dir__() -> list[str]:
+    return __all__

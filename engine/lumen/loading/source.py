@@ -26,6 +26,7 @@ _HEX = re.compile(r"0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _INF = re.compile(r"([-+]?)\.(inf|Inf|INF)")
 _QUOTED = re.compile(r"(?<=[`.#])[^`.#]+(?=[`.])")
+_CONFLICT = re.compile(r"^(<{7}|={7}|>{7})(?= |$)", re.MULTILINE)
 _NAN = frozenset((".nan", ".NaN", ".NAN"))
 
 
@@ -92,10 +93,15 @@ class Report:
         key: bool = False,
         severity: Severity = Severity.ERROR,
     ) -> None:
-        if self.lost and code.startswith("unknown-") and self.lost.intersection(_QUOTED.findall(message)):
-            return
-        place = self.document.place(path, key=key)
-        self.diagnostics.append(Diagnostic(code, message, place, hint, severity))
+        if not self.follows(code, message):
+            place = self.document.place(path, key=key)
+            self.diagnostics.append(Diagnostic(code, message, place, hint, severity))
+
+    def follows(self, code: str, message: str) -> bool:
+        """Whether a finding only follows from what was pruned: a name is unknown that stood there."""
+        return (
+            code.startswith("unknown-") and bool(self.lost) and bool(self.lost.intersection(_QUOTED.findall(message)))
+        )
 
 
 def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
@@ -195,6 +201,11 @@ def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         line = text.count("\n", 0, error.position) + 1
         place = Place(file, line, 1, line, 2)
         return Diagnostic("yaml-syntax", "the file holds a character that YAML does not allow", place, "delete it")
+    if conflict := _CONFLICT.search(text):
+        line = text.count("\n", 0, conflict.start()) + 1
+        place = Place(file, line, 1, line, len(conflict[0]) + 1)
+        hint = "keep one of the two versions, and delete the lines with <<<<<<<, ======= and >>>>>>>"
+        return Diagnostic("merge-conflict", "both sides of a merge stand in the file", place, hint)
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     if mark is None:
         return Diagnostic("too-large", "the file is nested too deeply to be read", Place(file), "use fewer levels")

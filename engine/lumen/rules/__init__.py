@@ -1,0 +1,45 @@
+"""From a project's files to everything that is wrong with them; `load` and `check` for the whole."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from lumen.errors import ProjectError
+from lumen.language.diagnostics import Diagnostic, has_errors
+from lumen.language.projects import Project
+from lumen.loading.packaged import find_project
+from lumen.loading.project import assemble, draft, read_files
+from lumen.rules import controllers, events, expressions, references, routes, speech, statecharts, stories
+
+FAMILIES = (references, routes, expressions, events, statecharts, speech, controllers, stories)
+"""The rules, in the order they look; `statecharts` looks only at behaviours in which nothing else is wrong."""
+
+
+def load(path: str | Path | None = None) -> Project:
+    """The project in that folder; without a path the one here or above, else the shipped one.
+
+    Raises ProjectError, carrying the diagnostics, where its files have errors, and UsageError where there is no folder.
+    """
+    root = find_project(path)
+    project, diagnostics = check_files(root, read_files(root))
+    if project is None:
+        raise ProjectError(diagnostics)
+    return project
+
+
+def check(path: str | Path | None = None) -> list[Diagnostic]:
+    """Everything wrong with the project in that folder, by file and line; never raises for what its files say.
+
+    Raises UsageError where there is no folder.
+    """
+    root = find_project(path)
+    return list(check_files(root, read_files(root))[1])
+
+
+def check_files(root: Path, files: Mapping[str, bytes]) -> tuple[Project | None, tuple[Diagnostic, ...]]:
+    """The project that these files make, None where they have errors, and everything wrong with them."""
+    found = draft(files)
+    for family in FAMILIES:
+        family.check(found)
+    diagnostics = tuple(found.diagnostics)
+    project = None if has_errors(diagnostics) else assemble(found, str(root))
+    return project, diagnostics

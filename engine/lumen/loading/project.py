@@ -1,0 +1,200 @@
+"""A whole project: all its files built into a `Draft`, and a `Project` where nothing is wrong."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import Any, TypeVar
+
+from lumen.language.controllers import Controller
+from lumen.language.diagnostics import Diagnostic, Place, Severity
+from lumen.language.machines import Machine
+from lumen.language.motions import Motion
+from lumen.language.projects import Project
+from lumen.language.robots import Body
+from lumen.language.stories import Story
+from lumen.loading.behaviors import build_machine
+from lumen.loading.bodies import build_body
+from lumen.loading.controllers import build_controller
+from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_files
+from lumen.loading.messages import ENDING, build_message
+from lumen.loading.motions import build_motions
+from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.schema import check_schema
+from lumen.loading.settings import Settings, build_settings
+from lumen.loading.source import Report, parse
+from lumen.loading.stories import build_story
+
+__all__ = ["FOLDERS", "MAIN_FILE", "Draft", "assemble", "draft", "read_files"]
+
+T = TypeVar("T")
+
+_KINDS: Mapping[str, str] = {
+    "behaviors": "behavior",
+    "behaviors/stories": "story",
+    "fuzzy": "controller",
+    "motions": "motion",
+    "models": "body",
+}
+
+
+@dataclass
+class Draft:
+    """What could be built from a project's files, and what is wrong with them.
+
+    `names` has for each folder the names of all files in it, whether they could be built or not; `reports` the report
+    of each document by its file. `settings` is None where lumen.yaml could not be read at all.
+    """
+
+    files: Mapping[str, bytes]
+    settings: Settings | None = None
+    bodies: dict[str, Body] = field(default_factory=dict)
+    behaviors: dict[str, Machine] = field(default_factory=dict)
+    controllers: dict[str, Controller] = field(default_factory=dict)
+    motions: dict[str, Motion] = field(default_factory=dict)
+    stories: dict[str, Story] = field(default_factory=dict)
+    messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
+    names: dict[str, frozenset[str]] = field(default_factory=dict)
+    reports: dict[str, Report] = field(default_factory=dict)
+    loose: list[Diagnostic] = field(default_factory=list)
+
+    @property
+    def main(self) -> Report | None:
+        """The report of lumen.yaml."""
+        return self.reports.get(MAIN_FILE)
+
+    @property
+    def body(self) -> Body | None:
+        """The body of the project's robot."""
+        return self.bodies.get(self.settings.model) if self.settings else None
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """Everything found so far, each thing once, by file and line."""
+        found = [d for r in self.reports.values() for d in r.diagnostics if not r.follows(d.code, d.message)]
+        found += self.loose
+        return sorted(dict.fromkeys(found), key=lambda d: (d.place, d.code, d.message))
+
+    def report(self, folder: str, name: str) -> Report:
+        """The report of `FOLDER/NAME.yaml`."""
+        return self.reports[f"{folder}/{name}.yaml"]
+
+    def say(self, code: str, file: str, message: str, hint: str, severity: Severity = Severity.ERROR) -> None:
+        """Report something of a file as a whole."""
+        self.loose.append(Diagnostic(code, message, Place(file), hint, severity))
+
+
+def draft(files: Mapping[str, bytes]) -> Draft:
+    """Everything that can be built from these files; it depends on nothing else and never raises for what they say."""
+    found = Draft(files)
+    sources = {folder: dict(_sources(found, folder)) for folder in _KINDS}
+    if (content := files.get(MAIN_FILE)) is None:
+        found.say("missing-file", MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
+    elif (main := _read(found, MAIN_FILE, content, "lumen")) is not None:
+        found.settings = _built(main[1], lambda: build_settings(*main))
+    found.bodies = _each(sources["models"], build_body)
+    found.behaviors = _each(sources["behaviors"], lambda *a, name: build_machine(*a, name=name, into=Machine))
+    found.stories = _each(sources["behaviors/stories"], build_story)
+    found.controllers = _each(sources["fuzzy"], build_controller)
+    if body := found.body or next(iter(found.bodies.values()), None):
+        found.motions = _motions(sources["motions"], body)
+    _messages(found)
+    return found
+
+
+def assemble(found: Draft, root: str) -> Project:
+    """The project, from a draft without errors."""
+    settings, body = found.settings, found.body
+    assert settings is not None
+    assert body is not None
+    return Project(
+        root=root,
+        name=settings.name or PurePosixPath(root.replace("\\", "/")).name,
+        robot=settings.robot,
+        body=body,
+        hall=settings.hall,
+        behavior=settings.behavior,
+        behaviors=found.behaviors,
+        controllers=found.controllers,
+        motions=found.motions,
+        routes=settings.routes,
+        stories=found.stories,
+        messages=found.messages,
+        languages=settings.languages,
+        story=settings.story,
+        stage=settings.stage,
+        bus=settings.bus,
+        hash=fingerprint(found.files),
+    )
+
+
+def _sources(found: Draft, folder: str) -> Iterator[tuple[str, tuple[Any, Report]]]:
+    """The data and report of each document of a folder, by name."""
+    names = set()
+    for file, content in found.files.items():
+        path = PurePosixPath(file)
+        if str(path.parent) != folder or path.suffix not in (".yaml", ".yml"):
+            continue
+        if path.suffix == ".yml":
+            hint = f"rename it to {path.stem}.yaml, or delete it"
+            found.say("not-read", file, "files that end in .yml are not read", hint, Severity.WARNING)
+            continue
+        names.add(path.stem)
+        if (read := _read(found, file, content, _KINDS[folder])) is not None:
+            yield path.stem, read
+    found.names[folder] = frozenset(names)
+
+
+def _read(found: Draft, file: str, content: bytes, kind: str) -> tuple[Any, Report] | None:
+    """The checked data of one document and its report, None where it can't be read at all."""
+    if isinstance(content, Unreadable):
+        hint = "put a readable file there, or delete it"
+        found.say("unreadable-file", file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)
+        return None
+    document, diagnostics = parse(file, content)
+    found.loose += diagnostics
+    if document is None:
+        return None
+    report = found.reports[file] = Report(document)
+    return check_schema(document, kind, report), report
+
+
+def _each(sources: Mapping[str, tuple[Any, Report]], build: Callable[..., T | None]) -> dict[str, T]:
+    built: dict[str, T] = {}
+    for name, (data, report) in sources.items():
+        item = _built(report, lambda d=data, r=report, n=name: build(d, r, name=n))  # type: ignore[misc]
+        if item is not None:
+            built[name] = item
+    return built
+
+
+def _motions(sources: Mapping[str, tuple[Any, Report]], body: Body) -> dict[str, Motion]:
+    reports = [report for _, report in sources.values()]
+    return (_built(reports[0], lambda: build_motions(sources, body)) or {}) if reports else {}
+
+
+def _built(report: Report, build: Callable[[], T | None]) -> T | None:
+    """What `build` makes; a file may nest more deeply than Python can follow."""
+    try:
+        return build()
+    except RecursionError:
+        report("too-large", (), "the file is nested too deeply to be read", hint="use fewer levels")
+        return None
+
+
+def _messages(found: Draft) -> None:
+    names = set()
+    for file, content in found.files.items():
+        path = PurePosixPath(file)
+        if str(path.parent) != "schemas/messages" or not path.name.endswith(ENDING):
+            continue
+        name = path.name.removesuffix(ENDING)
+        names.add(name)
+        if isinstance(content, Unreadable):
+            reason = content.decode("utf-8", "replace")
+            found.say("unreadable-file", file, f"this can't be read: {reason}", "put a readable file there")
+            continue
+        schema, diagnostics = build_message(file, content)
+        found.loose += diagnostics
+        if schema is not None:
+            found.messages[name] = schema
+    found.names["schemas/messages"] = frozenset(names)

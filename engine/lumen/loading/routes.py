@@ -1,0 +1,51 @@
+"""The route table under `routes:` of lumen.yaml, from its plain data to `Route`s."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.diagnostics import Path
+from lumen.language.routes import Direction, Route
+from lumen.loading.source import Report
+from lumen.loading.units import seconds
+
+DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
+LATENCY = 0.15
+"""How old a body without a `time` is taken to be [s], where its route does not say."""
+
+
+def build_routes(data: Mapping[str, Any], report: Report, where: Path = ("routes",)) -> dict[str, Route]:
+    """The routes by name, in the order written."""
+    return {name: build_route(name, row, report, (*where, name)) for name, row in data.items()}
+
+
+def build_route(name: str, data: Mapping[str, Any], report: Report, where: Path) -> Route:
+    """One row; a duration that can't be read is reported and left out."""
+    latency = duration(data, "latency", report, where)
+    return Route(
+        name=name,
+        key=data["key"],
+        direction=Direction(data["direction"]),
+        schema=data.get("schema", ""),
+        event=data.get("event", ""),
+        every=duration(data, "every", report, where, positive=True),
+        ttl=duration(data, "ttl", report, where, positive=True),
+        keep=int(data["keep"]) if "keep" in data else None,
+        must_arrive=data.get("must_arrive", False),
+        latency=LATENCY if latency is None else latency,
+        where=where,
+    )
+
+
+def duration(data: Mapping[str, Any], key: str, report: Report, where: Path, *, positive: bool = False) -> float | None:
+    """The duration under that key [s]; None where there is none, or (reported) none that can be read."""
+    if key not in data:
+        return None
+    length = seconds(data[key])
+    if length is None:
+        report("bad-duration", (*where, key), f"`{data[key]}` is not a duration", hint=DURATION_HINT)
+    elif positive and length <= 0.0:
+        report(
+            "bad-duration", (*where, key), f"`{key}` has to be longer than nothing", hint="leave it out, or raise it"
+        )
+        return None
+    return length

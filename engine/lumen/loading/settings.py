@@ -1,0 +1,62 @@
+"""lumen.yaml, from its plain data to `Settings`: what an exhibition is put together from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import Any
+
+from lumen.language.projects import Stage
+from lumen.language.routes import Route
+from lumen.loading.routes import build_routes
+from lumen.loading.source import Report
+from lumen.loading.units import LENGTHS
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What lumen.yaml says; a text is empty where the file lacks it or what stood there was refused."""
+
+    name: str = ""
+    robot: str = "NAO"
+    model: str = ""
+    hall: str = ""
+    behavior: str = ""
+    story: str = ""
+    languages: tuple[str, ...] = ()
+    routes: Mapping[str, Route] = field(default_factory=dict)
+    stage: Stage | None = None
+    bus: str = "memory://"
+
+
+def build_settings(data: Any, report: Report) -> Settings:
+    """The settings in the data of lumen.yaml, which has the shape of lumen.schema.json but may lack any key."""
+    if not isinstance(data, Mapping):
+        return Settings()
+    robot = data.get("robot", {})
+    return Settings(
+        name=data.get("name", ""),
+        robot=robot.get("name", Settings.robot),
+        model=robot.get("model", ""),
+        hall=data.get("hall", ""),
+        behavior=data.get("behavior", ""),
+        story=data.get("story", ""),
+        languages=tuple(data.get("languages", ())),
+        routes=build_routes(data.get("routes", {}), report),
+        stage=_stage(data, report),
+        bus=data.get("bus", Settings.bus),
+    )
+
+
+def _stage(data: Mapping[str, Any], report: Report) -> Stage | None:
+    if "stage" not in data:
+        return None
+    unit = LENGTHS[data.get("units", {}).get("length", "m")]
+    spans = []
+    for axis in ("x", "y"):
+        low, high = data["stage"][axis]
+        if not (isfinite(low) and isfinite(high) and low <= 0.0 <= high and low < high):
+            message = f"the robot starts at 0, which is not inside [{low:g}, {high:g}]"
+            report("bad-stage", ("stage", axis), message, hint="the first number is at most 0, the second at least 0")
+            return None
+        spans.append((low * unit, high * unit))
+    return Stage(*spans)

@@ -1,0 +1,102 @@
+"""A story file, `behaviors/stories/NAME.yaml`, from its plain data to a `Story`."""
+
+from collections.abc import Mapping
+from math import isfinite
+from typing import Any, TypeVar
+
+from lumen.language.diagnostics import Path
+from lumen.language.stories import (
+    Arrive,
+    Deed,
+    Expect,
+    Happen,
+    Leave,
+    Pause,
+    Scene,
+    Send,
+    Speak,
+    Story,
+    Touch,
+    Visitor,
+)
+from lumen.loading.routes import duration
+from lumen.loading.source import Report
+from lumen.loading.units import seconds
+
+WITHIN = 30.0
+"""How long an expectation waits where it does not say [s]."""
+
+S = TypeVar("S", bound=Story)
+
+
+def build_story(data: Any, report: Report, *, name: str, into: type[S] = Story) -> S | None:  # type: ignore[assignment]
+    """The story in the data of `behaviors/stories/NAME.yaml`, None where it has no steps."""
+    if not isinstance(data, Mapping) or not data.get("steps"):
+        return None
+    rows = ((("steps", i), row) for i, row in enumerate(data["steps"]))
+    return into(
+        name=name,
+        title=data.get("title", name),
+        scenes=tuple(Scene(deed, where) for where, row in rows if (deed := _deed(row, report, where))),
+        behavior=data.get("behavior", ""),
+        language=data.get("language", ""),
+        clock=data.get("at", ""),
+        context=data.get("context", {}),
+        robot={verb: _performance(how, report, ("robot", verb)) for verb, how in data.get("robot", {}).items()},
+        never=tuple(data.get("never", ())),
+    )
+
+
+def _performance(how: str, report: Report, where: Path) -> str | float:
+    """`fails`, `hangs`, or a duration [s]."""
+    if how in ("fails", "hangs"):
+        return how
+    length = seconds(how)
+    if length is None:
+        report("bad-duration", where, f"`{how}` is not a duration", hint="write `fails`, `hangs` or one such as `2s`")
+        return "fails"
+    return length
+
+
+def _deed(row: Mapping[str, Any], report: Report, where: Path) -> Deed | None:
+    [(verb, body)] = row.items()
+    match verb:
+        case "visitor":
+            return _visitor(body, report, (*where, verb))
+        case "says":
+            return Speak(body) if isinstance(body, str) else Speak(body["text"], body.get("language", ""))
+        case "touch" | "release":
+            return Touch(body, verb == "touch")
+        case "event":
+            return Happen(body) if isinstance(body, str) else Happen(body["name"], body.get("data"))
+        case "message":
+            return Send(body["route"], body.get("body"))
+        case "wait":
+            length = duration(row, "wait", report, where)
+            return None if length is None else Pause(length)
+        case "expect":
+            return _expect(body, report, (*where, verb))
+    return None
+
+
+def _visitor(body: Any, report: Report, where: Path) -> Deed | None:
+    if isinstance(body, str):
+        return Arrive(Visitor()) if body == "arrives" else Leave()
+    for key, value in body.items():
+        if not isfinite(value):
+            report("not-a-number", (*where, key), f"`{value}` can't be used here", hint="write an ordinary number")
+            return None
+    return Arrive(Visitor(**{key: float(value) for key, value in body.items()}))
+
+
+def _expect(body: Mapping[str, Any], report: Report, where: Path) -> Expect:
+    states = body.get("state", ())
+    within = duration(body, "within", report, where)
+    return Expect(
+        states=(states,) if isinstance(states, str) else tuple(states),
+        said=body.get("said"),
+        played=body.get("played"),
+        published=body.get("published"),
+        context=body.get("context", {}),
+        within=WITHIN if within is None else within,
+    )

@@ -1,0 +1,109 @@
+"""Every code that a finding can have: how bad it is, and in a line what it means."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from lumen.language.diagnostics import Severity
+
+ERROR, WARNING = Severity.ERROR, Severity.WARNING
+
+
+class Code(NamedTuple):
+    """How bad a finding of this code is, and what it means."""
+
+    severity: Severity
+    summary: str
+
+
+CODES: Mapping[str, Code] = {
+    # text
+    "complex-key": Code(ERROR, "a key is a list or a map"),
+    "duplicate-key": Code(ERROR, "a key stands twice in the same place"),
+    "empty-file": Code(ERROR, "a file holds nothing"),
+    "json-syntax": Code(ERROR, "a message schema is not JSON"),
+    "merge-conflict": Code(ERROR, "both sides of a merge stand in the file"),
+    "missing-file": Code(ERROR, "a file that is needed is not there"),
+    "missing-folder": Code(ERROR, "something is named that should be in a folder in which nothing is"),
+    "not-read": Code(WARNING, "a file ends in .yml and is not read"),
+    "not-utf8": Code(ERROR, "a file is not UTF-8 text"),
+    "tab": Code(ERROR, "a tab stands in the indentation"),
+    "too-large": Code(ERROR, "a file is too large, or nested too deeply"),
+    "unreadable-file": Code(ERROR, "a file can't be opened"),
+    "yaml-syntax": Code(ERROR, "a file is not YAML"),
+    # shape
+    "missing-key": Code(ERROR, "a key that is needed is not there"),
+    "one-verb": Code(ERROR, "an item says nothing, or two things at once"),
+    "unknown-key": Code(ERROR, "a key that means nothing here"),
+    "wrong-key": Code(ERROR, "a name has a form that is not allowed"),
+    "wrong-type": Code(ERROR, "a text, a number, a list or a map stands where another is wanted"),
+    "wrong-value": Code(ERROR, "a value is not one of those allowed"),
+    "bad-duration": Code(ERROR, "a duration can't be read"),
+    # references
+    "unknown-behavior": Code(ERROR, "a behaviour is named that is not in behaviors/"),
+    "unknown-context-key": Code(ERROR, "a key is used that `context` does not declare"),
+    "unknown-controller": Code(ERROR, "a controller is named that is not in fuzzy/"),
+    "unknown-event": Code(ERROR, "a behaviour waits for an event that nothing raises"),
+    "unknown-field": Code(ERROR, "a field is named that the messages of the route do not have"),
+    "unknown-joint": Code(ERROR, "the robot has no joint of that name"),
+    "unknown-language": Code(ERROR, "a language is named that the project does not speak"),
+    "unknown-message": Code(ERROR, "a message schema is named that is not in schemas/messages/"),
+    "unknown-model": Code(ERROR, "a robot's body is named that is not in models/"),
+    "unknown-motion": Code(ERROR, "a motion is named that is not in motions/"),
+    "unknown-pose": Code(ERROR, "a pose is named that the motion does not define"),
+    "unknown-posture": Code(ERROR, "the robot knows no posture of that name"),
+    "unknown-route": Code(ERROR, "a route is named that is not in lumen.yaml"),
+    "unknown-sensor": Code(ERROR, "the robot has no tactile sensor of that name"),
+    "unknown-state": Code(ERROR, "a state is named that does not exist"),
+    "unknown-story": Code(ERROR, "a story is named that is not in behaviors/stories/"),
+    # behaviours
+    "conflicting-targets": Code(ERROR, "the states of a target can't be active together"),
+    "duplicate-id": Code(ERROR, "two states have the same id"),
+    "endless-always": Code(ERROR, "an `always` would run for ever"),
+    "final-in-parallel": Code(ERROR, "a final state is a region of a parallel state"),
+    "misplaced-key": Code(ERROR, "a key stands in a kind of state that does not have it"),
+    "no-states": Code(ERROR, "a compound or parallel state has no states"),
+    "not-within": Code(ERROR, "a state is named that does not lie in the one meant"),
+    "only-in-do": Code(ERROR, "a verb that waits stands outside `do`"),
+    "shadowed-transition": Code(WARNING, "a transition is never taken, because one before it always is"),
+    "unreachable-state": Code(WARNING, "no transition leads to a state"),
+    "unsupported": Code(ERROR, "something that can't be run yet"),
+    "unused-event": Code(WARNING, "an event is raised that nothing waits for"),
+    # expressions
+    "expression-syntax": Code(ERROR, "an expression can't be read"),
+    "type-mismatch": Code(ERROR, "values stand together in an expression that can't go together"),
+    "unguarded-field": Code(ERROR, "a field is read that not every event has"),
+    "unknown-answers": Code(ERROR, "an answers table is named that the file does not have"),
+    "unknown-function": Code(ERROR, "an expression calls a function that does not exist"),
+    "unknown-name": Code(ERROR, "an expression uses a name that does not exist"),
+    "unknown-phrase": Code(ERROR, "phrases are named that the file does not have"),
+    "unsafe-pattern": Code(ERROR, "a pattern of `matches` could take for ever"),
+    "wrong-argument": Code(ERROR, "a function is given something it can't use"),
+    "wrong-argument-count": Code(ERROR, "a function is given too few or too many arguments"),
+    # speech
+    "missing-language": Code(WARNING, "a text is missing in one of the project's languages"),
+    # controllers, motions, bodies
+    "angle-out-of-range": Code(ERROR, "an angle lies outside the joint's limits"),
+    "empty-range": Code(ERROR, "a range holds nothing"),
+    "hand-out-of-range": Code(ERROR, "a hand is opened to less than 0 or more than 1"),
+    "incomplete-posture": Code(ERROR, "a posture leaves out a joint"),
+    "joint-in-two-parts": Code(ERROR, "a joint stands in two parts of the body"),
+    "joint-without-part": Code(ERROR, "a joint stands in no part of the body"),
+    "mixed-keyframe": Code(ERROR, "a keyframe is a block and a pose at once"),
+    "motion-cycle": Code(ERROR, "a motion plays itself in the end"),
+    "no-tempo": Code(ERROR, "beats are counted without a tempo"),
+    "no-time": Code(ERROR, "a keyframe has no time"),
+    "not-a-number": Code(ERROR, "a number is infinite or none"),
+    "shared-drive": Code(ERROR, "two joints with one motor stand at different angles"),
+    "time-not-increasing": Code(ERROR, "a keyframe comes before the one above it"),
+    "too-many-keys": Code(ERROR, "a motion is longer than can be played"),
+    "two-times": Code(ERROR, "a keyframe has a time and a beat"),
+    "unsorted-rows": Code(ERROR, "the rows of a table do not rise"),
+    "zero-duration": Code(ERROR, "a motion takes no time"),
+    # lumen.yaml
+    "bad-schema": Code(ERROR, "a message schema is not JSON Schema"),
+    "bad-stage": Code(ERROR, "the stage does not hold the place where the robot starts"),
+    "duplicate-route": Code(ERROR, "two routes carry the same key to different events"),
+    "foreign-reference": Code(ERROR, "a message schema refers to something outside itself"),
+    "route-key": Code(ERROR, "a routing key has a form that no message could have"),
+    "unused-route": Code(WARNING, "the messages of a route become an event that nothing waits for"),
+}

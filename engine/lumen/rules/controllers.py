@@ -1,0 +1,69 @@
+"""Controllers: what they are bound to."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.controllers import Controller, InputBinding, OutputBinding
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.robots import Body
+from lumen.loading.project import Draft
+from lumen.loading.source import Report
+from lumen.rules.finding import find
+from lumen.rules.references import known_route
+
+SLACK = 2e-3
+"""How far a limit may lie outside the joint's own [rad]: people round."""
+
+
+def check(draft: Draft) -> None:
+    """Report bindings to routes, fields and joints that are not there, and limits that the joint does not have."""
+    for name, controller in draft.controllers.items():
+        report = draft.report("fuzzy", name)
+        for binding in controller.input_bindings:
+            _input(draft, report, binding)
+        if draft.body and draft.settings:
+            lost = draft.report("models", draft.settings.model).lost
+            _joints(controller, report, draft.body, lost)
+
+
+def _input(draft: Draft, report: Report, binding: InputBinding) -> None:
+    path = ("bind", "inputs", binding.variable)
+    if not known_route(draft, report, path, binding.route) or draft.settings is None:
+        return
+    schema: Any = draft.messages.get(draft.settings.routes[binding.route].schema)
+    for i, step in enumerate(binding.path):
+        fields = schema.get("properties") if isinstance(schema, Mapping) else None
+        if not isinstance(fields, Mapping):
+            return
+        if step not in fields:
+            owner = ".".join((binding.route, *binding.path[:i]))
+            hint = did_you_mean(step, fields, f"`{owner}` has")
+            find(report, "unknown-field", path, f"the messages of `{owner}` have no `{step}`", hint)
+            return
+        schema = fields[step]
+
+
+def _joints(controller: Controller, report: Report, body: Body, lost: set[str]) -> None:
+    for binding in controller.output_bindings:
+        path: Path = ("bind", "outputs", binding.variable)
+        if _known(report, (*path, "joint"), binding.joint, body, lost):
+            _limits(controller, report, (*path, "limits"), binding, body)
+    for what, joints in (("sweep", controller.tracking.sweep), ("ahead", controller.tracking.ahead)):
+        for joint in joints:
+            _known(report, ("track", what, joint), joint, body, lost, key=True)
+
+
+def _known(report: Report, path: Path, joint: str, body: Body, lost: set[str], *, key: bool = False) -> bool:
+    if joint not in body.joints and joint not in lost:
+        hint = did_you_mean(joint, body.joints, f"{body.name} has")
+        find(report, "unknown-joint", path, f"there is no joint `{joint}`", hint, key=key)
+    return joint in body.joints
+
+
+def _limits(controller: Controller, report: Report, path: Path, binding: OutputBinding, body: Body) -> None:
+    joint = body.joints[binding.joint]
+    for i, limit in enumerate((binding.minimum, binding.maximum)):
+        if limit is not None and not joint.minimum - SLACK <= limit <= joint.maximum + SLACK:
+            low, high, given = (round(angle / controller.angle, 1) for angle in (joint.minimum, joint.maximum, limit))
+            message = f"`{joint.name}` can't go to {given:g}"
+            find(report, "angle-out-of-range", (*path, i), message, f"it goes from {low:g} to {high:g}")

@@ -1,0 +1,107 @@
+"""Events: who raises them, and who waits for them."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from lumen.language.actions import Raise, Send
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.events import ROBOT_EVENTS
+from lumen.language.machines import Machine
+from lumen.loading.project import Draft
+from lumen.loading.source import Report
+from lumen.rules.finding import find, first
+from lumen.rules.walk import sites
+
+FAMILIES = (
+    "done.state.", "done.do.", "done.invoke.", "done.command.", "error.do.", "error.invoke.", "error.command.",
+    "cancelled.command.", "error.execution", "error.communication",
+)  # fmt: skip
+"""Events that the engine raises by itself, or the beginnings of their names."""
+
+
+def check(draft: Draft) -> None:
+    """Report events that are waited for and never raised, or raised and never waited for."""
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        _waited(draft, machine, report)
+        if not report.pruned:
+            _raised(machine, report)
+
+
+def hears(descriptor: str, event: str) -> bool:
+    """Whether a descriptor of `on` takes that event: exactly, as a prefix of whole words, or as `*` (SCXML 3.12.1)."""
+    prefix = descriptor.removesuffix(".*")
+    return descriptor == "*" or event == prefix or event.startswith(f"{prefix}.")
+
+
+def descriptors(machine: Machine) -> Iterator[str]:
+    """What stands under `on` anywhere in the machine."""
+    for state in machine.states.values():
+        yield from (t.event for t in state.transitions if t.event and not t.exact)
+
+
+def declared(draft: Draft, machine: Machine) -> dict[str, Any]:
+    """The events that the world can raise in this machine, each with the JSON Schema of its data, None for any."""
+    found: dict[str, Any] = {}
+    routes = draft.settings.routes.values() if draft.settings else ()
+    for route in routes:
+        if route.event:
+            schema = draft.messages.get(route.schema)
+            found[route.event] = schema if found.get(route.event, schema) == schema else None
+    return {**ROBOT_EVENTS, **found, **machine.events}
+
+
+def raised(data: Any) -> Iterator[str]:
+    """The names of all events that the data of a behaviour raises or sends; those of broken actions too."""
+    waiting = [data]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, list):
+            waiting.extend(item)
+        elif isinstance(item, Mapping):
+            waiting.extend(item.values())
+            for body in (item.get("raise"), item.get("send")):
+                name = body.get("event") if isinstance(body, Mapping) else body
+                if isinstance(name, str):
+                    yield name
+
+
+def _waited(draft: Draft, machine: Machine, report: Report) -> None:
+    if draft.settings is None or draft.main is None:
+        return
+    known = {*declared(draft, machine), *raised(report.document.data), *draft.main.lost}
+    said: set[str] = set()
+    for state in machine.states.values():
+        for transition in state.transitions:
+            event = transition.event
+            if not event or transition.exact or event in said or any(hears(event, name) for name in known):
+                continue
+            said.add(event)
+            if not _of_the_engine(event):
+                path = _descriptor(transition.where, event)
+                hint = did_you_mean(event, known - draft.main.lost)
+                if "mean" not in hint:
+                    hint = "declare it under `events:`, or give a route of lumen.yaml this `event`"
+                find(report, "unknown-event", path, f"nothing raises the event `{event}`", hint, key=True)
+
+
+def _of_the_engine(event: str) -> bool:
+    prefix = event.removesuffix(".*")
+    return any(family.startswith(prefix) or prefix.startswith(family) for family in FAMILIES)
+
+
+def _descriptor(where: Path, event: str) -> Path:
+    """The path of the key under `on`: a candidate may stand in a list below it."""
+    return where if where[-1] == event else where[:-1]
+
+
+def _raised(machine: Machine, report: Report) -> None:
+    waited = set(descriptors(machine))
+    for site in sites(machine):
+        match site.step.action:
+            case Raise(event=event) | Send(event=event) if not any(hears(d, event) for d in waited):
+                verb = "raise" if isinstance(site.step.action, Raise) else "send"
+                path = first(report, (*site.step.where, verb, "event"), (*site.step.where, verb))
+                hint = did_you_mean(event, {d for d in waited if "*" not in d})
+                hint = hint if "mean" in hint else "react to it with `on:`, or delete this"
+                find(report, "unused-event", path, f"nothing waits for the event `{event}`", hint)

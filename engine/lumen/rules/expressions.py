@@ -1,0 +1,65 @@
+"""Expressions: names and types, against the declared context and the messages' schemas."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.interpreters.expressions import Finding, check_expression, check_template, schema_of
+from lumen.language.actions import Template
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.machines import Machine, Transition
+from lumen.loading.expressions import place_within
+from lumen.loading.project import Draft
+from lumen.loading.source import Report
+from lumen.rules.codes import CODES
+from lumen.rules.events import declared, hears, raised
+from lumen.rules.walk import Spot, spots
+
+BOOLEAN: Mapping[str, Any] = {"type": "boolean"}
+
+
+def check(draft: Draft) -> None:
+    """Report everything that is wrong with the expressions of every behaviour."""
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        _Expressions(draft, machine, report).check()
+
+
+class _Expressions:
+    def __init__(self, draft: Draft, machine: Machine, report: Report) -> None:
+        self.machine, self.report = machine, report
+        self.known = draft.settings is not None
+        self.events = declared(draft, machine)
+        for event in raised(report.document.data):
+            self.events[event] = None
+        self.context = {key: machine.types.get(key, schema_of(value)) for key, value in machine.context.items()}
+        self.states = {n for state in machine.states.values() for n in (state.path, state.alias) if n}
+
+    def check(self) -> None:
+        for spot in spots(self.machine):
+            for finding in self.findings(spot):
+                self.say(spot, finding)
+
+    def findings(self, spot: Spot) -> list[Finding]:
+        around: dict[str, Any] = {
+            "context": self.context,
+            "events": self.possible(spot.transition),
+            "phrases": self.machine.phrases,
+            "answers": self.machine.answers,
+            "states": self.states,
+        }
+        if isinstance(spot.text, Template):
+            return check_template(spot.text.text, **around)
+        expected = BOOLEAN if spot.guard else self.context.get(spot.key)
+        return check_expression(spot.text.source, **around, expected=expected)
+
+    def possible(self, transition: Transition | None) -> dict[str, Any] | None:
+        """The events that can arrive where a transition is taken, None where it could be any."""
+        if transition is None or not transition.event or transition.exact or "*" in transition.event or not self.known:
+            return None
+        return {name: schema for name, schema in self.events.items() if hears(transition.event, name)} or None
+
+    def say(self, spot: Spot, finding: Finding) -> None:
+        source = spot.text.text if isinstance(spot.text, Template) else spot.text.source
+        place = place_within(self.report.document, spot.text.where, source, finding.offset, finding.length)
+        severity = CODES[finding.code].severity
+        self.report.diagnostics.append(Diagnostic(finding.code, finding.message, place, finding.hint, severity))

@@ -1,0 +1,51 @@
+"""How a rule says what it found."""
+
+from collections.abc import Mapping
+
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.loading.project import Draft
+from lumen.loading.source import Report
+from lumen.rules.codes import CODES
+
+
+def find(report: Report, code: str, path: Path, message: str, hint: str = "", *, key: bool = False) -> None:
+    """Report a finding of that code, as bad as `CODES` says."""
+    report(code, path, message, hint=hint, key=key, severity=CODES[code].severity)
+
+
+def first(report: Report, *paths: Path) -> Path:
+    """The first of these paths that stands in the document: a value may be written short or at length."""
+    return next((path for path in paths if path in report.document.spans), paths[-1])
+
+
+_FOLDERS: Mapping[str, tuple[str, str]] = {
+    "behavior": ("behaviors", "behaviour"),
+    "story": ("behaviors/stories", "story"),
+    "controller": ("fuzzy", "controller"),
+    "motion": ("motions", "motion"),
+    "model": ("models", "robot"),
+    "message": ("schemas/messages", "message schema"),
+}
+
+
+class References:
+    """Looks names of files up; a folder in which nothing is, is reported once."""
+
+    def __init__(self, draft: Draft) -> None:
+        self._names = draft.names
+        self._empty: set[str] = set()
+
+    def look_up(self, report: Report, path: Path, kind: str, name: str, *, key: bool = False) -> bool:
+        """Whether there is a file of that kind and name; reported at `path` where there is none."""
+        folder, what = _FOLDERS[kind]
+        names = self._names.get(folder, frozenset())
+        if name in names:
+            return True
+        if names:
+            hint = did_you_mean(name, names, f"{folder}/ has")
+            find(report, f"unknown-{kind}", path, f"there is no {what} `{name}`", hint, key=key)
+        elif folder not in self._empty:
+            self._empty.add(folder)
+            hint = f"make the folder {folder}/ and put the file into it"
+            find(report, "missing-folder", path, f"there is no {what} `{name}`: {folder}/ is missing or empty", hint)
+        return False

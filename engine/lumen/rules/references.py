@@ -1,0 +1,74 @@
+"""Names that one file uses and another one has: behaviours, stories, motions, controllers, postures, routes."""
+
+from lumen.language.actions import PublishBody
+from lumen.language.commands import Play, Posture, Track
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.loading.project import Draft
+from lumen.loading.source import Report
+from lumen.rules.finding import References, find, first
+from lumen.rules.walk import Site, sites
+
+
+def check(draft: Draft) -> None:
+    """Report every name in lumen.yaml and in the behaviours' actions that stands for nothing."""
+    references = References(draft)
+    _main(draft, references)
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        for site in sites(machine):
+            _action(draft, report, references, site)
+
+
+def known_route(draft: Draft, report: Report, path: Path, route: str) -> bool:
+    """Whether lumen.yaml has that route; reported at `path` where it does not, and was readable."""
+    if draft.settings is None or draft.main is None:
+        return False
+    if route in draft.settings.routes:
+        return True
+    if route not in draft.main.lost:
+        hint = did_you_mean(route, draft.settings.routes, "lumen.yaml has")
+        find(report, "unknown-route", path, f"there is no route `{route}`", hint)
+    return False
+
+
+def _main(draft: Draft, references: References) -> None:
+    settings, report = draft.settings, draft.main
+    if settings is None or report is None:
+        return
+    if settings.behavior:
+        references.look_up(report, ("behavior",), "behavior", settings.behavior)
+    if settings.story:
+        references.look_up(report, ("story",), "story", settings.story)
+    if settings.model and references.look_up(report, ("robot", "model"), "model", settings.model) and draft.body:
+        body_report = draft.report("models", settings.model)
+        _model_file(draft, body_report, ("mjcf",), draft.body.mjcf)
+    if settings.hall:
+        _model_file(draft, report, ("hall",), settings.hall)
+
+
+def _model_file(draft: Draft, report: Report, path: Path, name: str) -> None:
+    there = [
+        file.removeprefix("models/") for file in draft.files if file.startswith("models/") and file.endswith(".xml")
+    ]
+    if name not in there:
+        find(report, "missing-file", path, f"there is no file models/{name}", did_you_mean(name, there, "models/ has"))
+
+
+def _action(draft: Draft, report: Report, references: References, site: Site) -> None:
+    where = site.step.where
+    match site.step.action:
+        case Play(name):
+            references.look_up(report, (*where, "play"), "motion", name)
+        case Track(name):
+            short, long = (*where, "track"), (*where, "track", name)
+            references.look_up(
+                report, first(report, long, short), "controller", name, key=long in report.document.spans
+            )
+        case PublishBody(name):
+            known_route(draft, report, first(report, (*where, "publish", "route"), (*where, "publish")), name)
+        case Posture(name) if draft.body and name not in draft.body.postures:
+            path = first(report, (*where, "posture", "name"), (*where, "posture"))
+            hint = did_you_mean(name, draft.body.postures, f"{draft.body.name} knows")
+            lost = draft.report("models", draft.settings.model).lost if draft.settings else set()
+            if name not in lost:
+                find(report, "unknown-posture", path, f"there is no posture `{name}`", hint)

@@ -1,0 +1,74 @@
+"""The route table: keys, schemas, events."""
+
+import re
+
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.routes import Direction, Route
+from lumen.loading.project import Draft
+from lumen.loading.source import Report
+from lumen.rules.events import descriptors, hears
+from lumen.rules.finding import References, find
+
+PREFIXES = ("avatar", "lumen")
+MAX_BYTES = 255
+"""Of a routing key (AMQP 0-9-1, 3.1.1: a short string)."""
+
+_WORD = re.compile(r"[^\s.*#{}]+|\{robot\}")
+
+
+def check(draft: Draft) -> None:
+    """Report what is wrong with each row of the route table."""
+    settings, report = draft.settings, draft.main
+    if settings is None or report is None:
+        return
+    references = References(draft)
+    events: dict[tuple[str, str], str] = {}
+    for name, route in settings.routes.items():
+        if not _key(report, route):
+            continue
+        if route.schema:
+            references.look_up(report, (*route.where, "schema"), "message", route.schema)
+        if route.event:
+            _event(draft, report, route)
+            other = events.setdefault((route.key_for(settings.robot), route.event), name)
+            if other != name:
+                message = f"`{other}` has the same key and becomes the same event"
+                find(report, "duplicate-route", (*route.where, "key"), message, "delete one of them")
+
+
+def _key(report: Report, route: Route) -> bool:
+    """Whether the routing key could be a message's."""
+    message, hint = _fault(route.key)
+    if message:
+        find(report, "route-key", (*route.where, "key"), message, hint)
+    return not message
+
+
+def _fault(key: str) -> tuple[str, str]:
+    words = key.split(".")
+    if "*" in key or "#" in key:
+        return f"`{key}` holds a wildcard, and a message has one certain key", "write the whole key"
+    if key != key.strip() or any(not word for word in words):
+        return f"`{key}` has an empty word", "write words with single dots between them"
+    if bad := [word for word in words if not _WORD.fullmatch(word)]:
+        return f"`{bad[0]}` can't be a word of a routing key", "`{robot}` stands for the robot's name, as a whole word"
+    if words[0] not in PREFIXES:
+        hint = did_you_mean(words[0], PREFIXES)
+        return f"`{key}` begins with `{words[0]}`", hint if "mean" in hint else "keys begin with `avatar` or `lumen`"
+    if len(key.encode("utf-8", "replace")) > MAX_BYTES:
+        return f"the key is longer than {MAX_BYTES} bytes", "shorten it"
+    return "", ""
+
+
+def _event(draft: Draft, report: Report, route: Route) -> None:
+    """A route that comes in and becomes an event should be waited for by somebody."""
+    if route.direction is Direction.OUT or len(draft.behaviors) < len(draft.names["behaviors"]):
+        return
+    if any(r.pruned for r in draft.reports.values()):
+        return
+    bound = {b.route for c in draft.controllers.values() for b in c.input_bindings}
+    if route.name not in bound and not any(
+        hears(d, route.event) for m in draft.behaviors.values() for d in descriptors(m)
+    ):
+        message = f"no behaviour waits for `{route.event}`, which messages on this route become"
+        find(report, "unused-route", (*route.where, "event"), message, f"react to it with `on: {{{route.event}: …}}`")

@@ -1,0 +1,71 @@
+"""Statecharts: states that can't be reached, and transitions that are never taken."""
+
+from collections.abc import Iterator
+
+from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.loading.project import Draft
+from lumen.loading.source import Report
+from lumen.rules.events import hears
+from lumen.rules.finding import find
+
+
+def check(draft: Draft) -> None:
+    """Report what can never happen, in files where nothing is broken: there it could be for another reason."""
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        if not report.diagnostics:
+            _unreachable(machine, report)
+            _shadowed(machine, report)
+
+
+def reachable(machine: Machine) -> set[str]:
+    """The paths of all states that some sequence of events could enter, whatever guards say."""
+    found: set[str] = set()
+    waiting = [""]
+    while waiting:
+        path: str | None = waiting.pop()
+        while path is not None and path not in found:
+            found.add(path)
+            state = machine.states[path]
+            waiting.extend(_next(state))
+            path = state.parent
+    return found
+
+
+def _next(state: State) -> Iterator[str]:
+    """Where one gets from a state: down by default, and by its transitions."""
+    yield from state.initial
+    if state.kind is Kind.PARALLEL:
+        yield from state.children
+    if state.on_reload:
+        yield state.on_reload
+    for transition in state.transitions:
+        yield from transition.targets
+
+
+def _unreachable(machine: Machine, report: Report) -> None:
+    found = reachable(machine)
+    for path, state in machine.states.items():
+        if path not in found and (state.parent is None or state.parent in found):
+            hint = "let a transition go there, or delete it"
+            find(report, "unreachable-state", state.where, f"no transition leads to `{path}`", hint, key=True)
+
+
+def _shadowed(machine: Machine, report: Report) -> None:
+    for state in machine.states.values():
+        always: list[Transition] = []
+        for transition in state.transitions:
+            earlier = next((t for t in always if _covers(t, transition)), None)
+            if earlier:
+                line = report.document.place(earlier.where).line
+                message = f"this is never taken: the transition in line {line} always is, before it"
+                find(report, "shadowed-transition", transition.where, message, "give that one a `guard`, or swap them")
+            if transition.guard is None:
+                always.append(transition)
+
+
+def _covers(earlier: Transition, later: Transition) -> bool:
+    """Whether whatever could take the later one takes the earlier one first."""
+    if earlier.exact or later.exact or not (earlier.event and later.event):
+        return earlier.event == later.event
+    return hears(earlier.event, later.event.removesuffix(".*")) and (later.event != "*" or earlier.event == "*")

@@ -1,0 +1,91 @@
+"""Stories: the names they use of their behaviour, the robot and the exhibition."""
+
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.machines import Machine
+from lumen.language.stories import Expect, Happen, Send, Story, Touch
+from lumen.loading.project import Draft
+from lumen.loading.source import Report
+from lumen.rules.events import declared, descriptors, hears, raised
+from lumen.rules.finding import References, find, first
+from lumen.rules.references import known_route
+
+
+def check(draft: Draft) -> None:
+    """Report states, context keys, motions, routes, sensors and events that a story names and that are not there."""
+    references = References(draft)
+    for name, story in draft.stories.items():
+        _Script(draft, references, draft.report("behaviors/stories", name), story).check()
+
+
+class _Script:
+    def __init__(self, draft: Draft, references: References, report: Report, story: Story) -> None:
+        self.draft, self.references, self.report, self.story = draft, references, report, story
+        main = draft.settings.behavior if draft.settings else ""
+        self.behavior = story.behavior or main
+        self.machine = draft.behaviors.get(self.behavior)
+
+    def check(self) -> None:
+        if self.story.behavior:
+            self.references.look_up(self.report, ("behavior",), "behavior", self.story.behavior)
+        for i, state in enumerate(self.story.never):
+            self.state(("never", i), state)
+        for key in self.story.context:
+            self.key(("context", key), key)
+        for scene in self.story.scenes:
+            match scene.deed:
+                case Touch(sensor, pressed):
+                    self.sensor((*scene.where, "touch" if pressed else "release"), sensor)
+                case Happen(name):
+                    self.event(first(self.report, (*scene.where, "event", "name"), (*scene.where, "event")), name)
+                case Send(route):
+                    known_route(self.draft, self.report, (*scene.where, "message", "route"), route)
+                case Expect() as expected:
+                    self.expect((*scene.where, "expect"), expected)
+
+    def expect(self, where: Path, expected: Expect) -> None:
+        for i, state in enumerate(expected.states):
+            self.state(first(self.report, (*where, "state", i), (*where, "state")), state)
+        for key in expected.context:
+            self.key((*where, "context", key), key)
+        if expected.played is not None:
+            self.references.look_up(self.report, (*where, "played"), "motion", expected.played)
+        if expected.published is not None:
+            known_route(self.draft, self.report, (*where, "published"), expected.published)
+
+    def state(self, path: Path, name: str) -> None:
+        """A state as `configuration` calls it: by its id where it has one."""
+        if self.machine is None or self._lost(name):
+            return
+        names = {state.name for state in self.machine.states.values() if state.path}
+        if name not in names:
+            state = self.machine.states.get(name)
+            hint = f"it is called by its id: `{state.name}`" if state and name else did_you_mean(name, names)
+            message = f"`{self.behavior}` has no state that is called `{name}`"
+            find(self.report, "unknown-state", path, message, hint)
+
+    def key(self, path: Path, key: str) -> None:
+        if self.machine is not None and key not in self.machine.context and not self._lost(key):
+            hint = did_you_mean(key, self.machine.context, "it has")
+            message = f"the context of `{self.behavior}` has no `{key}`"
+            find(self.report, "unknown-context-key", path, message, hint, key=True)
+
+    def sensor(self, path: Path, sensor: str) -> None:
+        body = self.draft.body
+        if body and sensor not in body.tactile:
+            hint = did_you_mean(sensor, body.tactile, f"{body.name} has")
+            find(self.report, "unknown-sensor", path, f"there is no tactile sensor `{sensor}`", hint)
+
+    def event(self, path: Path, event: str) -> None:
+        machine: Machine | None = self.machine
+        if machine is None or self._lost(event) or any(hears(d, event) for d in descriptors(machine)):
+            return
+        data = self.draft.report("behaviors", self.behavior).document.data
+        known = {*declared(self.draft, machine), *raised(data)}
+        if event not in known:
+            waited = {d for d in descriptors(machine) if "*" not in d}
+            message = f"nothing in `{self.behavior}` knows the event `{event}`"
+            find(self.report, "unknown-event", path, message, did_you_mean(event, known | waited))
+
+    def _lost(self, name: str) -> bool:
+        """Whether the name stood in a part of the behaviour that is broken."""
+        return name.rpartition(".")[2] in self.draft.report("behaviors", self.behavior).lost

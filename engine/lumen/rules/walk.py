@@ -1,0 +1,98 @@
+"""Every action and every expression of a behaviour, and where each stands."""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from lumen.language.actions import (
+    Assign,
+    Expression,
+    If,
+    LogText,
+    Parallel,
+    PublishBody,
+    Raise,
+    SayText,
+    Send,
+    Step,
+    Template,
+    Value,
+)
+from lumen.language.machines import Machine, State, Transition
+
+
+class Site(NamedTuple):
+    """An action in its state; `transition` is the one it belongs to, None for `entry`, `do` and `exit`."""
+
+    state: State
+    transition: Transition | None
+    step: Step
+
+
+class Spot(NamedTuple):
+    """An expression or template; `key` is the context key that its value goes to, `guard` whether it is a condition."""
+
+    text: Expression | Template
+    transition: Transition | None
+    guard: bool = False
+    key: str = ""
+
+
+def sites(machine: Machine) -> Iterator[Site]:
+    """All actions, those inside `if` and `parallel` too, in the order of the file."""
+    for state in machine.states.values():
+        for block in (state.entry, state.do, state.exit):
+            yield from (Site(state, None, step) for step in _nested(block))
+        for transition in state.transitions:
+            yield from (Site(state, transition, step) for step in _nested(transition.actions))
+
+
+def spots(machine: Machine) -> Iterator[Spot]:
+    """All expressions and templates."""
+    for state in machine.states.values():
+        yield from (Spot(text, None) for text in _values(state.output))
+        for transition in state.transitions:
+            if transition.guard:
+                yield Spot(transition.guard, transition, guard=True)
+    for site in sites(machine):
+        yield from _spots(site)
+
+
+def _nested(block: tuple[Step, ...]) -> Iterator[Step]:
+    for step in block:
+        yield step
+        match step.action:
+            case If(then=then, otherwise=otherwise):
+                yield from _nested(then)
+                yield from _nested(otherwise)
+            case Parallel(branches):
+                yield from _nested(branches)
+
+
+def _spots(site: Site) -> Iterator[Spot]:
+    transition = site.transition
+    match site.step.action:
+        case If(guard=guard):
+            yield Spot(guard, transition, guard=True)
+        case Assign(values):
+            for key, value in values.items():
+                if isinstance(value, Expression):
+                    yield Spot(value, transition, key=key)
+                else:
+                    yield from (Spot(text, transition) for text in _values(value))
+        case SayText(texts):
+            yield from (Spot(text, transition) for said in texts.values() for text in said)
+        case LogText(text):
+            yield Spot(text, transition)
+        case PublishBody(body=value) | Raise(data=value) | Send(data=value):
+            yield from (Spot(text, transition) for text in _values(value))
+
+
+def _values(value: Value) -> Iterator[Expression]:
+    if isinstance(value, Expression):
+        yield value
+    elif isinstance(value, Mapping):
+        for item in value.values():
+            yield from _values(item)
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from _values(item)
