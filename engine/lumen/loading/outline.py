@@ -56,13 +56,17 @@ class Outline:
         A state that was itself reported as broken is not missed a second time.
         """
         if target.startswith("#"):
-            found, known = self._by_id(target[1:]), [f"#{n}" for n in (*self.aliases, *self.entries) if n]
+            found, known = self._by_id(target[1:]), [f"#{e.name}" for e in self.entries.values() if e.name]
         elif target.startswith("."):
             found, known = _descend(source, target[1:]), [f".{key}" for key in source.children]
         else:
             siblings = source.parent.children if source.parent else {}
             found = _descend(source.parent, target) if source.parent else None
-            known = [*siblings, *(f".{key}" for key in source.children), *(f"#{n}" for n in self.aliases if n)]
+            known = [
+                *siblings,
+                *(f".{key}" for key in source.children),
+                *(f"#{e.alias}" for e in self.entries.values() if e.parent and e.alias),
+            ]
         if found is None and target.rpartition(".")[2].lstrip("#") not in self.report.lost:
             message = f"there is no state `{target}` to go to from {source.title}"
             self.report("unknown-state", where, message, hint=self._hint(source, target, known))

@@ -1,6 +1,7 @@
 """Statecharts with SCXML's meaning: an event and a snapshot become a step, and nothing else happens."""
 
-from lumen.interpreters.statechart.stepping import due, initial, step
+from lumen.interpreters.statechart.frozen import Timing, freeze, retimed, thaw
+from lumen.interpreters.statechart.stepping import due, elapse, initial, step
 from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Position, Snapshot, Step, Timer, Within
 
 __all__ = [
@@ -11,8 +12,13 @@ __all__ = [
     "Snapshot",
     "Step",
     "Timer",
+    "Timing",
     "Within",
     "due",
+    "elapse",
+    "freeze",
     "initial",
+    "retimed",
     "step",
+    "thaw",
 ]

@@ -1,13 +1,13 @@
 """The three functions that run a behaviour: `initial`, `step` and `due`."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.errors import SnapshotError, UsageError
+from lumen.errors import LumenError, SnapshotError, UsageError
 from lumen.interpreters.statechart.chart import Chart
 from lumen.interpreters.statechart.doing import awaited
 from lumen.interpreters.statechart.plans import Planner
-from lumen.interpreters.statechart.run import Run
+from lumen.interpreters.statechart.run import LIMIT, Run
 from lumen.interpreters.statechart.types import fits, type_name
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.diagnostics import did_you_mean
@@ -71,6 +71,21 @@ def due(snapshot: Snapshot) -> Event | None:
         return None
     timer = min(snapshot.timers, key=lambda t: t.due)
     return Event(timer.event, timer.data, timer.due, timer.id)
+
+
+def elapse(machine: Machine, current: Callable[[], Snapshot], until: float) -> Iterator[Step]:
+    """The steps of every timer that ends until `until` [s], those set on the way included, in order.
+
+    `current` gives the snapshot to step from: whoever takes a step may have more happen before the next. Raises
+    LumenError where there is no end of timers of one time, as of a `send` without delay that answers itself.
+    """
+    count, last = 0, until
+    while (event := due(current())) and event.at <= until:
+        count = count + 1 if event.at == last else 1
+        last = event.at
+        if count > LIMIT:
+            raise LumenError(f"`{machine.id}` never comes to rest: `{event.name}` is sent over and over without delay")
+        yield step(machine, current(), event)
 
 
 def compiled(machine: Machine) -> Program:

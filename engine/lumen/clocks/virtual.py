@@ -1,0 +1,46 @@
+"""Time that passes when told to, stopping at everything that is due on the way."""
+
+from typing import Protocol
+
+
+class Sleeper(Protocol):
+    """Somebody who wants to be woken at certain times."""
+
+    def next_due(self) -> float | None:
+        """When [s], None where there is nothing to wake for."""
+        ...
+
+    def wake(self) -> None:
+        """It is that time."""
+        ...
+
+
+class VirtualClock:
+    """A clock that stands still between calls of `advance`."""
+
+    def __init__(self, now: float = 0.0) -> None:
+        self._now = now
+        self._sleepers: list[Sleeper] = []
+
+    def now(self) -> float:
+        return self._now
+
+    def advance(self, dt: float) -> None:
+        """Let `dt` [s] pass; each sleeper is woken at each of its due times, in their order."""
+        self.wait(self._now + dt)
+
+    def wait(self, until: float) -> None:
+        """Let time pass until `until` [s]."""
+        while (sleeper := self._first(until)) is not None:
+            self._now = max(self._now, sleeper.next_due() or 0.0)
+            sleeper.wake()
+        self._now = max(self._now, until)
+
+    def attach(self, sleeper: Sleeper) -> None:
+        """Wake this one from now on."""
+        self._sleepers.append(sleeper)
+
+    def _first(self, until: float) -> Sleeper | None:
+        waiting = [(due, sleeper) for sleeper in self._sleepers if (due := sleeper.next_due()) is not None]
+        due, sleeper = min(waiting, key=lambda pair: pair[0], default=(until + 1, None))
+        return sleeper if due <= until else None

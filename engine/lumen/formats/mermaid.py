@@ -1,0 +1,107 @@
+"""A machine as a diagram for Mermaid 11: `stateDiagram-v2`, states nested, regions side by side."""
+
+import re
+from collections.abc import Iterator
+
+from lumen.language.machines import Kind, Machine, State, Transition
+
+GUARD = 32
+"""How many characters of a guard are shown."""
+
+_SPECIAL = re.compile(r"[^\w .,!?()=+*/&|\'\[\]…-]|--+|\b_+")
+
+
+def mermaid(machine: Machine) -> str:
+    """The diagram's text, ending with a newline.
+
+    Every state gets an id `s1, s2, …` in document order and its key as its label, since Mermaid takes few characters
+    in an id. Events that lead nowhere (no target) stand in the label of their state.
+    """
+    return "\n".join(["stateDiagram-v2", *_Drawing(machine).lines()]) + "\n"
+
+
+class _Drawing:
+    """The lines of one diagram. An arrow is drawn in the innermost compound state around both its ends."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.ids = {path: f"s{number}" for number, path in enumerate(machine.states)}
+        self.arrows: dict[str, list[str]] = {}
+        self.framed = machine.root.kind is Kind.PARALLEL
+        for transition in (t for state in machine.states.values() for t in state.transitions):
+            for target in transition.targets:
+                self._arrow(transition, target)
+
+    def lines(self) -> Iterator[str]:
+        root = self.machine.root
+        if self.framed:
+            yield from self._box(root, 1)
+            yield from (f"  {arrow}" for arrow in self.arrows.get("", ()))
+        else:
+            yield from self._body(root, 1)
+
+    def _arrow(self, transition: Transition, target: str) -> None:
+        self.framed = self.framed or not transition.source or not target
+        line = f"{self.ids[transition.source]} --> {self.ids[target]}{_caption(transition)}"
+        self.arrows.setdefault(self._home(transition.source, target), []).append(line)
+
+    def _home(self, one: str, other: str) -> str:
+        states = self.machine.states
+        home = states[one].parent
+        while home and not (other.startswith(f"{home}.") and states[home].kind is Kind.COMPOUND):
+            home = states[home].parent
+        return home or ""
+
+    def _state(self, state: State, depth: int) -> Iterator[str]:
+        if state.children:
+            yield from self._box(state, depth)
+            return
+        indent, id = "  " * depth, self.ids[state.path]
+        yield f'{indent}state "{_label(state)}" as {id}'
+        if state.kind is Kind.FINAL:
+            yield f"{indent}{id} --> [*]"
+
+    def _box(self, state: State, depth: int) -> Iterator[str]:
+        indent = "  " * depth
+        yield f'{indent}state "{_label(state)}" as {self.ids[state.path]} {{'
+        yield from self._body(state, depth + 1)
+        yield f"{indent}}}"
+
+    def _body(self, state: State, depth: int) -> Iterator[str]:
+        indent = "  " * depth
+        for number, child in enumerate(state.children):
+            if number and state.kind is Kind.PARALLEL:
+                yield f"{indent}--"
+            yield from self._state(self.machine.states[child], depth)
+        for path in state.initial:
+            yield f"{indent}[*] --> {self.ids[path]}"
+        if state.path or not self.framed:
+            yield from (f"{indent}{arrow}" for arrow in self.arrows.get(state.path, ()))
+
+
+def _label(state: State) -> str:
+    key = state.path.rpartition(".")[2] or state.alias or "behaviour"
+    if state.kind is Kind.HISTORY:
+        key = f"{key} (H*)" if state.deep else f"{key} (H)"
+    inner = [_caption(t).removeprefix(" : ") for t in state.transitions if not t.targets and not state.children]
+    return _escaped(key) + "".join(f"<br/>{line}" for line in inner)
+
+
+def _caption(transition: Transition) -> str:
+    """What stands at an arrow: ` : event [guard]`, nothing where it has neither."""
+    event = transition.event
+    if transition.delay is not None:
+        event = f"after {transition.delay:g} s"
+    elif transition.exact:
+        event = "error" if event.startswith("error.") else "done"
+    guard = " ".join(transition.guard.source.split()) if transition.guard else ""
+    if len(guard) > GUARD:
+        guard = guard[: GUARD - 1].rstrip() + "…"
+    words = [event, f"[{guard}]" if guard else ""]
+    text = " ".join(filter(None, words))
+    return f" : {_escaped(text)}" if text else ""
+
+
+def _escaped(text: str) -> str:
+    """The text with everything that means something to Mermaid as entities (`#58;` for a colon)."""
+    return _SPECIAL.sub(lambda found: "".join(f"#{ord(c)};" for c in found[0]), text)

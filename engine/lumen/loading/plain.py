@@ -1,0 +1,52 @@
+"""A Python dict in place of a file: checked to be plain data, each node with its dotted path as its place."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.diagnostics import Diagnostic, Path, Place
+from lumen.loading.source import MAX_DEPTH, Document, Span
+
+
+def plain_document(name: str, data: Any) -> tuple[Document, list[Diagnostic]]:
+    """A document of this data, and what in it no YAML file could hold; that stands as null in the document.
+
+    Where a file would have a line, the place of a node is its dotted path: `tour (states.idle.on.face)`.
+    """
+    reader = _Reader(name)
+    return Document(name, reader.read(data, ()), reader.spans), reader.diagnostics
+
+
+class _Reader:
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.spans: dict[Path, Span] = {}
+        self.diagnostics: list[Diagnostic] = []
+
+    def read(self, value: Any, path: Path) -> Any:
+        place = self.place(path)
+        self.spans[path] = Span(place, place)
+        if len(path) > MAX_DEPTH:
+            self.say("too-large", path, f"nested deeper than {MAX_DEPTH} levels", "use fewer levels")
+            return None
+        match value:
+            case Mapping():
+                return {k: self.read(v, (*path, k)) for k, v in value.items() if self.is_key(k, path)}
+            case list() | tuple():
+                return [self.read(item, (*path, i)) for i, item in enumerate(value)]
+            case None | bool() | int() | float() | str():
+                return value
+        hint = "use texts, numbers, true, false, null, lists and dicts"
+        self.say("wrong-type", path, f"a {type(value).__name__} can't stand in a file", hint)
+        return None
+
+    def is_key(self, key: object, path: Path) -> bool:
+        if not isinstance(key, str):
+            self.say("wrong-type", path, f"the key {key!r} is not a text", "put quotes around it")
+        return isinstance(key, str)
+
+    def say(self, code: str, path: Path, message: str, hint: str) -> None:
+        self.diagnostics.append(Diagnostic(code, message, self.place(path), hint))
+
+    def place(self, path: Path) -> Place:
+        shown = ".".join(map(str, path[:12])) + (" …" if len(path) > 12 else "")
+        return Place(f"{self.name} ({shown})" if path else self.name)

@@ -1,0 +1,154 @@
+"""Statecharts from files and dicts, and a thin shell that runs one: `Machine`, `initial`, `step`, `Interpreter`."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Self
+
+from lumen.clocks.virtual import VirtualClock
+from lumen.errors import ProjectError, UsageError
+from lumen.interpreters.statechart import Snapshot, Step, Timing, due, elapse, freeze, initial, retimed, step, thaw
+from lumen.language import machines
+from lumen.language.diagnostics import Diagnostic, has_errors
+from lumen.language.events import Event
+from lumen.loading.behaviors import build_machine
+from lumen.loading.plain import plain_document
+from lumen.loading.schema import check_schema
+from lumen.loading.source import Document, Report, parse
+from lumen.ports import Clock
+
+__all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock", "due", "initial", "step"]
+
+
+class Machine(machines.Machine):
+    """A statechart on its own, without a project around it."""
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """The machine in a file; raises UsageError where it can't be read, ProjectError for what it says."""
+        try:
+            content = Path(path).read_bytes()
+        except OSError as error:
+            raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
+        document, diagnostics = parse(str(path), content)
+        if document is None:
+            raise ProjectError(diagnostics)
+        return cls._build(document, diagnostics, Path(path).stem)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], name: str = "machine") -> Self:
+        """The machine that a dict of the file's shape describes; raises ProjectError."""
+        return cls._build(*plain_document(name, data), name)
+
+    @classmethod
+    def _build(cls, document: Document, diagnostics: list[Diagnostic], name: str) -> Self:
+        report = Report(document)
+        machine = build_machine(check_schema(document, "behavior", report), report, name=name, into=cls)
+        found = [*diagnostics, *report.diagnostics]
+        if machine is None and not has_errors(found):
+            report("missing-key", (), "a behaviour needs `states`", hint="write `states:` with at least one state")
+            found += report.diagnostics
+        if machine is None or has_errors(found):
+            raise ProjectError(found)
+        return machine
+
+
+class Interpreter:
+    """A machine that runs on a clock.
+
+    `observe` is shown every step in the order taken; it may `send`. With a virtual clock (the default) everything
+    happens within `start`, `send` and `clock.advance`; with another clock call `wake` when `next_due` has come.
+    The other options are those of `initial`.
+    """
+
+    def __init__(
+        self,
+        machine: machines.Machine,
+        clock: Clock | None = None,
+        *,
+        input: Mapping[str, Any] | None = None,
+        language: str = "",
+        epoch: float = 0.0,
+        seed: int = 0,
+        observe: Callable[[Step], None] = lambda _: None,
+    ) -> None:
+        self.machine = machine
+        self.clock = VirtualClock() if clock is None else clock
+        self._options: dict[str, Any] = {"input": input, "language": language, "epoch": epoch, "seed": seed}
+        self._observe = observe
+        self._snapshot: Snapshot | None = None
+        if isinstance(self.clock, VirtualClock):
+            self.clock.attach(self)
+
+    @classmethod
+    def restore(
+        cls,
+        machine: machines.Machine,
+        snapshot: Mapping[str, Any],
+        clock: Clock | None = None,
+        timers: Timing = "deadline",
+        *,
+        observe: Callable[[Step], None] = lambda _: None,
+    ) -> Self:
+        """The interpreter that gave this `snapshot()`, going on; raises SnapshotError where it was of another machine.
+
+        Without a clock, time goes on where it stood. `timers` keep their `deadline` (what is past comes at once),
+        the time `remaining` to them, or `restart` with their whole delay.
+        """
+        if timers not in ("deadline", "remaining", "restart"):
+            raise UsageError(f"timers can't be `{timers}`: write `deadline`, `remaining` or `restart`")
+        thawed = thaw(machine, snapshot)
+        it = cls(machine, VirtualClock(thawed.at) if clock is None else clock, observe=observe)
+        it._snapshot = retimed(thawed, it.clock.now(), timers)
+        it.wake()
+        return it
+
+    def start(self) -> Step:
+        """Enter the initial states. Raises UsageError when repeated, or where `input` does not fit."""
+        if self._snapshot is not None:
+            raise UsageError("the interpreter has been started already")
+        first = self._take(initial(self.machine, at=self.clock.now(), **self._options))
+        self.wake()
+        return first
+
+    def send(self, event: str | Event, data: Any = None) -> Step:
+        """Let an event happen now, after everything that is due; the step it made."""
+        self.wake()
+        name, data, _, sendid = Event(event, data) if isinstance(event, str) else event
+        taken = self._take(step(self.machine, self._now, Event(name, data, self.clock.now(), sendid)))
+        self.wake()
+        return taken
+
+    def wake(self) -> None:
+        """Let everything happen that is due."""
+        for taken in elapse(self.machine, lambda: self._now, self.clock.now()):
+            self._take(taken)
+
+    def next_due(self) -> float | None:
+        """When the next timer ends [s]."""
+        event = due(self._snapshot) if self._snapshot else None
+        return event.at if event else None
+
+    @property
+    def configuration(self) -> frozenset[str]:
+        """The active states but the root, by alias where there is one, else by path."""
+        return self._now.configuration
+
+    @property
+    def context(self) -> dict[str, Any]:
+        """What the machine remembers."""
+        return dict(self._now.context)
+
+    def snapshot(self) -> dict[str, Any]:
+        """Everything needed to go on elsewhere, as JSON data."""
+        return freeze(self.machine, self._now)
+
+    @property
+    def _now(self) -> Snapshot:
+        if self._snapshot is None:
+            raise UsageError("start the interpreter first")
+        return self._snapshot
+
+    def _take(self, taken: Step) -> Step:
+        self._snapshot = taken.snapshot
+        self._observe(taken)
+        return taken
