@@ -34,7 +34,7 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """At `time` [s] something besides joints: `kind` is `say`, `sound`, `leds` or `hold`, `value` what the YAML gives it."""
+    """At `time` [s] something besides joints: `kind` is `say`, `sound`, `leds` or `hold`, `value` what the file says."""
 
     time: float
     kind: str

@@ -1,0 +1,87 @@
+"""Motions from files and dicts, to sample."""
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Self
+
+from lumen.errors import ProjectError, UsageError
+from lumen.interpreters.limits import Excess, beyond_limits, overspeed
+from lumen.interpreters.trajectory import Trajectory
+from lumen.language import motions
+from lumen.language.diagnostics import has_errors
+from lumen.language.robots import Body
+from lumen.loading.motions import build_motion
+from lumen.loading.packaged import MAIN_FILE, find_project, shipped_root
+from lumen.loading.project import Draft, draft, read_files
+from lumen.loading.schema import check_schema
+from lumen.loading.source import Document, Report, parse
+
+__all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]
+
+
+class Motion(motions.Motion):
+    """A gesture that can be asked where its joints are; compiled when it first is."""
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """The motion in a file, for the robot of the project that it stands in, else of the one around us.
+
+        It may play the other motions of that project. Raises UsageError where it can't be read, ProjectError for what
+        it says.
+        """
+        path = Path(path)
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
+        document, diagnostics = parse(str(path), content)
+        if document is None or has_errors(diagnostics):
+            raise ProjectError(diagnostics)
+        return cls._build(document, path.stem, _surroundings(_home(path)))
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], name: str = "motion") -> Self:
+        """The motion that a dict of the file's shape describes, for the shipped robot; raises ProjectError."""
+        return cls._build(Document(name, data), name, _surroundings(shipped_root()))
+
+    @classmethod
+    def _build(cls, document: Document, name: str, around: Draft) -> Self:
+        report, body = Report(document), _body(around)
+        data = check_schema(document, "motion", report)
+        others = {other: motion for other, motion in around.motions.items() if other != name}
+        broken = around.names["motions"]
+        motion = build_motion(data, report, name=name, body=body, motions=others, broken=broken, into=cls)
+        if motion is None or has_errors(report.diagnostics):
+            raise ProjectError(report.diagnostics)
+        return motion
+
+    @cached_property
+    def _trajectory(self) -> Trajectory:
+        return Trajectory(self)
+
+    def sample(self, t: float, start: Mapping[str, float] | None = None) -> dict[str, float]:
+        """The angle [rad; a hand 0..1] at `t` [s] of every joint that it moves.
+
+        It begins at the angles `start` [rad], where they are given, else in its start posture.
+        """
+        return self._trajectory.sample(t) if start is None else Trajectory(self, start).sample(t)
+
+
+def _home(path: Path) -> Path:
+    """The project that a motion file belongs to: two folders up, else the one around us."""
+    folder = path.absolute().parent
+    return folder.parent if folder.name == "motions" and (folder.parent / "models").is_dir() else find_project()
+
+
+def _surroundings(root: Path) -> Draft:
+    """What a motion needs of a project: its robot and its other motions."""
+    wanted = ("models/", "motions/")
+    return draft({file: c for file, c in read_files(root).items() if file.startswith(wanted) or file == MAIN_FILE})
+
+
+def _body(around: Draft) -> Body:
+    body = around.body or next(iter(around.bodies.values()), None)
+    if body is None:
+        raise ProjectError(around.diagnostics)
+    return body
