@@ -1,0 +1,88 @@
+"""The shipped stories on the recording robot, in virtual time."""
+
+from functools import cache
+from itertools import pairwise
+
+import pytest
+
+from lumen.language.projects import Project
+from tests.tour.names import GUIDE, ROOT, SAFETY
+from tests.tour.playing import Run, play
+
+STORIES = sorted(path.stem for path in (ROOT / "behaviors" / "stories").glob("*.yaml"))
+FAILING = {"broken_motion", "safety_helpless"}
+
+
+@pytest.fixture(scope="module")
+def run(project: Project):  # type: ignore[no-untyped-def]
+    """Plays a story once, however many tests ask for it."""
+
+    @cache
+    def played(name: str) -> Run:
+        return play(project, project.stories[name])
+
+    return played
+
+
+@pytest.mark.parametrize("name", STORIES)
+def test_the_story_ends_well(run, name: str) -> None:  # type: ignore[no-untyped-def]
+    story = run(name)
+    assert story.failure == ""
+    if name not in FAILING:
+        assert story.errors == []
+
+
+def test_the_stories_together_enter_every_state(run) -> None:  # type: ignore[no-untyped-def]
+    entered = {state for name in STORIES for state in run(name).entered}
+    assert entered >= {*GUIDE, *SAFETY, "paused", "interrupted"}
+
+
+def test_the_shipped_story_goes_through_the_tour(run) -> None:  # type: ignore[no-untyped-def]
+    story = run("visitor")
+    assert story.guide() == [
+        "idle", "greet", "ask_name", "how_are_you", "fine", "offer", "explain", "any_question", "answer",
+        "any_question", "dance", "offer", "sing", "offer", "photo", "offer", "goodbye", "idle",
+    ]  # fmt: skip
+    assert story.played == ["dance", "sing", "photo", "goodbye"]
+    assert 120 < story.time < 240
+
+
+def test_the_shipped_story_is_said_in_full_and_once(run) -> None:  # type: ignore[no-untyped-def]
+    texts = [text for _, text in run("visitor").said]
+    assert texts[0] == "Good morning!"
+    assert texts[-1] == "Thank you for your visit, my friend. Goodbye!"
+    once = [t for t in texts if not t.startswith(("What else", "Is there"))]
+    assert len(once) == len(set(once))
+
+
+def test_nobody_interrupts_the_robot_in_the_shipped_story(run) -> None:  # type: ignore[no-untyped-def]
+    """The visitor waits until the robot has spoken: no sentence begins before the one before it has ended."""
+    said = run("visitor").said
+    for (begun, text), (following, _) in pairwise(said):
+        assert following - begun >= 0.4 + 0.06 * len(text), text
+
+
+def test_in_indonesian_only_indonesian_is_said(run) -> None:  # type: ignore[no-untyped-def]
+    texts = " ".join(text for _, text in run("indonesian").said)
+    assert "Selamat sore!" in texts
+    assert not {"the", "you", "your", "What"} & set(texts.split())
+
+
+@pytest.mark.parametrize(
+    ("clock", "english", "indonesian"),
+    [
+        ("00:30", "Good morning!", "Selamat pagi!"),
+        ("10:59", "Good morning!", "Selamat pagi!"),
+        ("11:01", "Good afternoon!", "Selamat siang!"),
+        ("15:01", "Good afternoon!", "Selamat sore!"),
+        ("17:30", "Good afternoon!", "Selamat sore!"),
+        ("18:01", "Good evening!", "Selamat malam!"),
+        ("23:30", "Good evening!", "Selamat malam!"),
+    ],
+)
+def test_the_greeting_suits_the_hour(project: Project, clock: str, english: str, indonesian: str) -> None:
+    from dataclasses import replace
+
+    story = project.stories["unknown_visitor"]
+    for language, greeting in (("en", english), ("id", indonesian)):
+        assert play(project, replace(story, clock=clock, language=language)).said[0][1] == greeting

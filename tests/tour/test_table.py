@@ -1,0 +1,125 @@
+"""What the tour's tables hold: both languages everywhere, and for each question an answer of its own."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from lumen.interpreters.expressions import Scope, compile_expression
+from lumen.language.actions import If, Parallel, SayText, Step
+from lumen.language.machines import Machine, State
+from lumen.language.projects import Project
+from tests.tour.names import GUIDE, SAFETY
+
+LANGUAGES = {"en", "id"}
+QUESTIONS = 18
+
+
+@pytest.fixture
+def tour(project: Project) -> Machine:
+    return project.behaviors["tour"]
+
+
+def lookup(tour: Machine, text: str, table: str, language: str) -> object:
+    scope = Scope(event={"name": "heard", "data": {"result": text}}, language=language, answers=tour.answers)
+    return compile_expression(f"lookup(event.data.result, '{table}')")(scope)
+
+
+def heard(tour: Machine, text: str, name: str) -> object:
+    scope = Scope(event={"name": "heard", "data": {"result": text}}, phrases=tour.phrases)
+    return compile_expression(f"heard(event.data.result, '{name}')")(scope)
+
+
+def flattened(steps: tuple[Step, ...]) -> Iterator[object]:
+    for step in steps:
+        match step.action:
+            case If(_, then, otherwise):
+                yield from flattened(then + otherwise)
+            case Parallel(branches):
+                yield from flattened(branches)
+            case action:
+                yield action
+
+
+def actions(state: State) -> Iterator[object]:
+    blocks = [state.entry, state.do, state.exit, *(t.actions for t in state.transitions)]
+    return (action for block in blocks for action in flattened(block))
+
+
+def test_the_guide_has_the_papers_fifteen_states(tour: Machine) -> None:
+    talking = {s.name for s in tour.states.values() if s.parent == "guide.talking"}
+    assert len(GUIDE) == 15
+    assert talking | {"idle"} == set(GUIDE)
+
+
+def test_safety_has_a_state_for_everything_that_can_happen(tour: Machine) -> None:
+    assert {s.name for s in tour.states.values() if s.parent == "safety"} == {"watching", *SAFETY}
+
+
+def test_every_phrase_table_has_both_languages(tour: Machine) -> None:
+    for name, phrases in tour.phrases.items():
+        assert set(phrases) == LANGUAGES, name
+        assert all(phrases.values()), name
+
+
+def test_every_answer_has_phrases_and_a_text_in_both_languages(tour: Machine) -> None:
+    for table, rows in tour.answers.items():
+        for row in rows:
+            assert set(row.phrases) == set(row.value) == LANGUAGES, (table, row)
+            assert all(row.phrases.values()), (table, row)
+            assert all(row.value.values()), (table, row)
+
+
+def test_every_sentence_is_there_in_both_languages(tour: Machine) -> None:
+    for state in tour.states.values():
+        for action in actions(state):
+            if isinstance(action, SayText) and "" not in action.texts:
+                assert set(action.texts) == LANGUAGES, (state.path, action)
+
+
+def test_only_looked_up_texts_stand_without_a_language(tour: Machine) -> None:
+    bare = {
+        (state.name, template.text)
+        for state in tour.states.values()
+        for action in actions(state)
+        if isinstance(action, SayText)
+        for template in action.texts.get("", ())
+    }
+    assert bare == {("explain", "{{ context.reply }}"), ("answer", "{{ context.reply }}")}
+
+
+def test_it_explains_three_things_and_answers_eighteen_questions(tour: Machine) -> None:
+    assert len(tour.answers["explanations"]) == 3
+    assert len(tour.answers["faq"]) == QUESTIONS
+
+
+@pytest.mark.parametrize("language", sorted(LANGUAGES))
+@pytest.mark.parametrize("number", range(QUESTIONS))
+def test_every_phrase_of_a_question_leads_to_its_answer(tour: Machine, number: int, language: str) -> None:
+    row = tour.answers["faq"][number]
+    for phrase in row.phrases[language]:
+        text = f"Lumen, {phrase.capitalize()}?"
+        assert lookup(tour, text, "faq", language) == row.value[language]
+        assert lookup(tour, text, "explanations", language) is None, "an explanation comes before a question"
+        for name in ("dance", "sing", "photo", "no_more", "english", "indonesian"):
+            assert not heard(tour, text, name), f"`{name}` comes before a question"
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("I know", "no_more"),
+        ("This is a notable hall", "no_more"),
+        ("A lovely guidance", "dance"),
+        ("I am unwell", "fine"),
+        ("What a sad gambler", "photo"),
+    ],
+)
+def test_a_part_of_a_word_is_not_a_phrase(tour: Machine, text: str, name: str) -> None:
+    assert not heard(tour, text, name)
+
+
+def test_every_state_of_a_conversation_ends_by_itself(tour: Machine) -> None:
+    """A long silence, a motion that never ends: whatever happens, somebody else can be greeted."""
+    for state in tour.states.values():
+        if state.parent == "guide.talking":
+            assert any(t.delay for t in state.transitions), state.name
