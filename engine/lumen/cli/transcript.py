@@ -6,8 +6,22 @@ from typing import TextIO
 
 from lumen.cli.terminal import coloured, paint
 from lumen.interpreters.statechart import Step
-from lumen.language.commands import Command, Language, Log, Look, Play, Posture, Publish, Rest, Say, Start, Stop, Track
-from lumen.language.commands import Wake, Walk
+from lumen.language.commands import (
+    Command,
+    Language,
+    Log,
+    Look,
+    Play,
+    Posture,
+    Publish,
+    Rest,
+    Say,
+    Start,
+    Stop,
+    Track,
+    Wake,
+    Walk,
+)
 from lumen.language.events import Event
 from lumen.language.stories import Arrive, Deed, Happen, Leave, Send, Speak, Touch
 
@@ -31,13 +45,16 @@ class Transcript:
         """One line: the time, who it is about, and what."""
         minutes, seconds = divmod(self._now(), 60)
         time = paint(f"{int(minutes):2d}:{seconds:04.1f}", "dim", on=self._colour)
-        print(f"{time}  {paint(f'{who:<8}', WHO.get(who, 'dim'), on=self._colour)} {text}", file=self._stream, flush=True)
+        print(
+            f"{time}  {paint(f'{who:<8}', WHO.get(who, 'dim'), on=self._colour)} {text}", file=self._stream, flush=True
+        )
 
     def observe(self, step: Step) -> None:
         """A step: the states it entered, and the event that made it."""
-        for error in step.errors:
-            self.errors += 1
-            self.line("trouble", error)
+        for error in step.raised:
+            if error.name.startswith("error."):
+                self.errors += 1
+                self.line("trouble", f"{error.name}: {error.data.get('reason', '')}")
         entered = [name for name in step.entered if name]
         if entered:
             self.states += entered
@@ -93,7 +110,7 @@ class Transcript:
 
 def _why(step: Step) -> str:
     event = step.event
-    if not event.name:
+    if event is None:
         return "at the start"
     text = event.data.get("result") if isinstance(event.data, dict) else None
     if event.name.startswith("after."):

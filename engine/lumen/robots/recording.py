@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from math import hypot
 
 from lumen.errors import RobotError
-from lumen.interpreters.projection import face_pixel
+from lumen.interpreters.projection import seen
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
-from lumen.ports import Aim, Battery, Image, Joints, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Joints, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.executor import ARMS, HEAD, LEDS, LEGS, VOICE, Executor
 
 _VERBS: Mapping[type, str] = {
@@ -24,6 +24,16 @@ _PARTS: Mapping[type, frozenset[str]] = {
     Perform: frozenset((HEAD, ARMS, LEGS, LEDS)),
 }
 _WHOLE = frozenset((HEAD, ARMS, LEGS))
+
+
+TORSO = 0.333
+"""Where a standing NAO's torso is above its soles [m]."""
+
+PODIUM = 0.5
+"""What the robot stands on [m]."""
+
+FACE = 0.93
+"""Where a visitor's face is, as a fraction of their height."""
 
 
 @dataclass
@@ -101,7 +111,9 @@ class RecordingRobot:
     def face(self) -> tuple[float, float] | None:
         if self._visitor is None:
             return None
-        return face_pixel(self.body, self._visitor, self._angles["HeadYaw"], self._angles["HeadPitch"])
+        visitor = self._visitor
+        place = (visitor.x, visitor.y, visitor.height * FACE - PODIUM - TORSO)
+        return seen(place, self.body.camera, self._angles["HeadYaw"], self._angles["HeadPitch"])
 
     def touch(self, sensor: str, pressed: bool) -> None:
         if pressed != (sensor in self._pressed):

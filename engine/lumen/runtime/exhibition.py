@@ -95,5 +95,3 @@ class Exhibition:
         for command in commands:
             self._performing(command, now)
             self._performer.perform(self.project, command, now)
-
-

@@ -4,7 +4,7 @@ import logging
 from collections.abc import Callable
 
 from lumen.errors import BusError
-from lumen.language.commands import Cancel, Command, Language, Log, Play, Publish, Start, Track
+from lumen.language.commands import BodyCommand, Cancel, Command, Language, Log, Play, Publish, Start, Track
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Perform, Robot
@@ -25,23 +25,28 @@ class Performer:
 
     def perform(self, project: Project, command: Command, now: float) -> None:
         match command:
-            case Start(id, Play(name)) if name not in project.motions:
-                self._answer("error", id, now, f"there is no motion `{name}`")
-            case Start(id, Play(name)):
-                self._robot.start(id, Perform(project.motions[name]))
-            case Start(id, Track() as track):
-                self._track(track)
-                self._answer("done", id, now)
-            case Start(id, Language()):
-                self._answer("done", id, now)
-            case Start(id, body_command):
-                self._robot.start(id, body_command)
+            case Start(id, wanted):
+                self._start(project, id, wanted, now)
             case Cancel(id):
                 self._robot.cancel(id)
             case Publish(name, body):
                 self._publish(project, name, body, now)
             case Log(text):
                 _log.info(text)
+
+    def _start(self, project: Project, id: str, wanted: BodyCommand, now: float) -> None:
+        match wanted:
+            case Play(name) if name in project.motions:
+                self._robot.start(id, Perform(project.motions[name]))
+            case Play(name):
+                self._answer("error", id, now, f"there is no motion `{name}`")
+            case Track():
+                self._track(wanted)
+                self._answer("done", id, now)
+            case Language():
+                self._answer("done", id, now)
+            case _:
+                self._robot.start(id, wanted)
 
     def _publish(self, project: Project, name: str, body: object, now: float) -> None:
         try:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
-from lumen.interpreters.statechart import Snapshot, Step, due, initial, step
+from lumen.interpreters.statechart import Snapshot, Step, elapse, initial, step
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -52,8 +52,8 @@ class Runtime:
 
     def _timers(self, until: float) -> list[Command]:
         commands: list[Command] = []
-        while (event := due(self.snapshot)) and event.at <= until:
-            commands += self._take(step(self.project.machine, self.snapshot, event))
+        for taken in elapse(self.project.machine, lambda: self.snapshot, until):
+            commands += self._take(taken)
         return commands
 
     def _take(self, taken: Step) -> list[Command]:

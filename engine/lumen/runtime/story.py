@@ -1,5 +1,6 @@
 """Plays a story: does what it says, waits for what it expects, and tells where it failed."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import assert_never
 
@@ -7,7 +8,7 @@ from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.language.stories import Arrive, Expect, Happen, Leave, Pause, Send, Speak, Story, Touch
+from lumen.language.stories import Arrive, Deed, Expect, Happen, Leave, Pause, Send, Speak, Story, Touch
 from lumen.ports import Bus, Hall
 from lumen.runtime.exhibition import Exhibition
 from lumen.runtime.visitor import Walker
@@ -49,11 +50,20 @@ class StoryPlayer:
     It is `finished` when its last step is done or one has failed; `failure` says in a line what was expected where.
     """
 
-    def __init__(self, story: Story, project: Project, hall: Hall, bus: Bus, walker: Walker) -> None:
+    def __init__(
+        self,
+        story: Story,
+        project: Project,
+        hall: Hall,
+        bus: Bus,
+        walker: Walker,
+        tell: Callable[[Deed], None] = lambda _: None,
+    ) -> None:
         self.story = story
         self.failure = ""
         self.scene = 0
         self._project, self._hall, self._bus, self._walker = project, hall, bus, walker
+        self._tell = tell
         self._witness = Witness()
         self._since = 0.0
         self._exhibition: Exhibition | None = None
@@ -68,7 +78,7 @@ class StoryPlayer:
 
     def observe(self, step: Step) -> None:
         """A step was taken."""
-        self._witness.states = step.snapshot.configuration_names
+        self._witness.states = step.snapshot.configuration
         self._witness.context = dict(step.snapshot.context)
         if bad := self._witness.states.intersection(self.story.never):
             self._fail(f"never state {_names(bad)}, but it was entered")
@@ -98,6 +108,8 @@ class StoryPlayer:
 
     def _do(self, now: float) -> bool:
         deed = self.story.scenes[self.scene].deed
+        if not isinstance(deed, Pause | Expect):
+            self._tell(deed)
         match deed:
             case Pause(seconds):
                 return now >= self._since + seconds

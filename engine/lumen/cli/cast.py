@@ -1,0 +1,45 @@
+"""Who plays: the robot, its clock and the hall around it, chosen by name."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from lumen.clocks.real import RealClock
+from lumen.clocks.simulated import SimulatedClock
+from lumen.errors import UsageError
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.ports import Clock, Hall, Robot
+
+ROBOTS = ("simulation", "recording", "none")
+SPEEDS = ("1", "4", "max")
+
+
+@dataclass(frozen=True)
+class Cast:
+    """A robot with its clock; `hall` is the simulated world around it, None for a robot in no world of ours."""
+
+    robot: Robot
+    clock: Clock
+    hall: Hall | None
+
+
+def cast(kind: str, project: Project, speed: str, story: Story | None = None) -> Cast:
+    """The robot of that name, on its feet."""
+    pace = None if speed == "max" else float(speed)
+    if kind == "simulation":
+        from lumen.robots.simulation import SimulatedRobot
+
+        simulated = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
+        return Cast(simulated, SimulatedClock(simulated.advance, pace), simulated)
+    if kind == "recording":
+        from lumen.robots.recording import RecordingRobot
+
+        recording = RecordingRobot(project.body, story.robot if story else None)
+        return Cast(recording, SimulatedClock(recording.advance, pace), recording)
+    if kind == "none":
+        from lumen.robots.none import NoRobot
+
+        if speed != "1":
+            raise UsageError("without a robot there is nothing to simulate: leave out --speed")
+        return Cast(NoRobot(), RealClock(), None)
+    raise UsageError(f"no robot `{kind}`: there are {', '.join(ROBOTS)}")

@@ -1,0 +1,88 @@
+"""`lumen play MOTION`: a motion on the simulated robot, from the posture it begins in."""
+
+import argparse
+from pathlib import Path
+
+import lumen
+from lumen.cli.cast import SPEEDS, cast
+from lumen.cli.run import film_path
+from lumen.errors import UsageError
+from lumen.language.commands import Posture
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.events import Event
+from lumen.language.motions import Motion
+from lumen.language.projects import Project
+from lumen.ports import Perform, RobotCommand
+from lumen.runtime.exhibition import TICK
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("motion", metavar="MOTION", help="a name in motions/, or a motion file")
+    parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
+    parser.add_argument("--speed", choices=SPEEDS, default="max", help="simulated time, times real time (default: max)")
+    parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="write a film of it (needs OpenGL)")
+
+
+def run(options: argparse.Namespace) -> int:
+    project = lumen.load(options.project)
+    motion = _motion(project, options.motion)
+    video = film_path(options.video, "simulation")
+    player = _Player(project, options.speed, video)
+    print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {options.speed} × real time")
+    try:
+        player.perform(Posture(motion.start or "Stand", 1.0))
+        player.perform(Perform(motion))
+    finally:
+        player.close()
+    print(f"finished, on its feet; its torso leaned {player.robot.greatest_tilt:.1f} deg at most")
+    if video:
+        print(f"wrote {video}")
+    return 0
+
+
+class _Player:
+    """The simulated robot with nobody in charge of it: one command after another, each to its end."""
+
+    def __init__(self, project: Project, speed: str, video: Path | None) -> None:
+        from lumen.robots.simulation import SimulatedRobot
+        from lumen.robots.simulation.film import Film
+
+        chosen = cast("simulation", project, speed)
+        assert isinstance(chosen.robot, SimulatedRobot)
+        self.robot, self._clock = chosen.robot, chosen.clock
+        self._film = Film(video, self.robot) if video else None
+
+    def perform(self, command: RobotCommand) -> None:
+        """Raises UsageError where the robot can't, with its reason."""
+        self.robot.start("play", command)
+        while True:
+            self._clock.wait(self._clock.now() + TICK)
+            if self._film:
+                self._film.tick(self._clock.now())
+            for event in self.robot.poll():
+                if event.name == "done.command.play":
+                    return
+                if event.name in ("error.command.play", "fallen"):
+                    raise UsageError(_reason(event))
+
+    def close(self) -> None:
+        if self._film:
+            self._film.close()
+        self.robot.close()
+
+
+def _reason(event: Event) -> str:
+    return "the robot fell" if event.name == "fallen" else str(event.data["reason"])
+
+
+def _motion(project: Project, name: str) -> Motion:
+    path = Path(name)
+    if path.suffix in (".yaml", ".yml"):
+        from lumen.motion import Motion as MotionFile
+
+        if not path.is_file():
+            raise UsageError(f"no file {path}")
+        return MotionFile.load(path)
+    if name not in project.motions:
+        raise UsageError(f"no motion `{name}`: {did_you_mean(name, project.motions, 'motions/ has')}")
+    return project.motions[name]

@@ -1,0 +1,57 @@
+"""Saved files on a running exhibition: taken where they are good, reported where they are not."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from lumen.cli.transcript import Transcript
+from lumen.language.diagnostics import Diagnostic, Severity
+from lumen.language.projects import Project
+from lumen.runtime.exhibition import Exhibition
+from lumen.runtime.watcher import Watcher
+
+PATIENCE = 60.0
+
+
+class Reloading:
+    """Stages every good bundle and applies it at the first tick at which the running state allows it."""
+
+    def __init__(self, project: Project, exhibition: Exhibition, transcript: Transcript) -> None:
+        self._exhibition, self._transcript = exhibition, transcript
+        self._watcher = Watcher(Path(project.root))
+        self._staged: Project | None = None
+        self._since = 0.0
+        self._waiting = ""
+        self._watcher.start()
+
+    def close(self) -> None:
+        self._watcher.close()
+
+    def tick(self, now: float) -> None:
+        """See what the watcher found, and apply what is staged."""
+        while not self._watcher.results.empty():
+            project, diagnostics = self._watcher.results.get()
+            self._report(diagnostics)
+            if project is None:
+                self._transcript.line("reload", "refused: the exhibition goes on as it was")
+            else:
+                self._staged, self._since, self._waiting = project, now, ""
+        if self._staged:
+            self._apply(self._staged, now)
+
+    def _apply(self, project: Project, now: float) -> None:
+        reason = self._exhibition.reload(project)
+        if not reason:
+            self._transcript.line("reload", "the saved files are in force")
+        elif now - self._since < PATIENCE:
+            if reason != self._waiting:
+                self._transcript.line("reload", f"waiting: {reason}")
+                self._waiting = reason
+            return
+        else:
+            self._transcript.line("reload", f"refused: {reason}")
+        self._staged = None
+
+    def _report(self, diagnostics: Sequence[Diagnostic]) -> None:
+        for diagnostic in diagnostics:
+            if diagnostic.severity is Severity.ERROR:
+                self._transcript.line("reload", str(diagnostic))

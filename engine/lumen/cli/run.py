@@ -1,0 +1,82 @@
+"""`lumen run`: an exhibition in one process."""
+
+import argparse
+import os
+import signal
+from pathlib import Path
+
+import lumen
+from lumen.cli.cast import ROBOTS, SPEEDS
+from lumen.cli.show import Show
+from lumen.errors import UsageError
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.loading.units import seconds
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
+    add("--story", metavar="STORY", help="a scripted visitor of behaviors/stories/; without one, you type what you say")
+    add("--robot", choices=ROBOTS, default="simulation", help="who performs it (default: simulation)")
+    add("--speed", choices=SPEEDS, default="1", help="simulated time, times real time (default: 1)")
+    add("--bus", metavar="URL", help="memory:// or amqp://user:password@host/ (default: LUMEN_BUS, then lumen.yaml's)")
+    add("--for", dest="period", metavar="60s", help="end after so much simulated time")
+    add("--language", metavar="LANG", help="which language it speaks first")
+    add("--video", metavar="FILE.mp4", type=Path, help="write a film of the run (simulation, needs OpenGL)")
+    add("--reload", choices=("auto", "off"), default="auto", help="take saved files while it runs (default: auto)")
+
+
+def run(options: argparse.Namespace) -> int:
+    project = lumen.load(options.project)
+    show = Show(
+        project,
+        robot=options.robot,
+        speed=options.speed,
+        bus_url=options.bus or os.environ.get("LUMEN_BUS") or project.bus,
+        story=_story(project, options.story),
+        period=_period(options.period),
+        language=_language(project, options.language),
+        video=film_path(options.video, options.robot),
+        watch=options.reload == "auto",
+    )
+    signal.signal(signal.SIGINT, lambda *_: show.interrupt())
+    return show.run()
+
+
+def _story(project: Project, name: str | None) -> Story | None:
+    if name is None:
+        return None
+    stem = Path(name).stem
+    if stem not in project.stories:
+        raise UsageError(f"no story `{name}`: {did_you_mean(stem, project.stories, 'behaviors/stories/ has')}")
+    return project.stories[stem]
+
+
+def _period(text: str | None) -> float | None:
+    if text is None:
+        return None
+    period = seconds(text)
+    if period is None:
+        raise UsageError(f"--for takes a duration such as 60s or 2min, not `{text}`")
+    return period
+
+
+def _language(project: Project, language: str | None) -> str:
+    if language is not None and language not in project.languages:
+        raise UsageError(
+            f"the project does not speak `{language}`: {did_you_mean(language, project.languages, 'it speaks')}"
+        )
+    return language or ""
+
+
+def film_path(path: Path | None, robot: str) -> Path | None:
+    """Where a film may be written; raises UsageError where it may not."""
+    if path is None:
+        return None
+    if robot != "simulation":
+        raise UsageError("--video films the simulation: leave out --robot")
+    if path.suffix != ".mp4" or not path.parent.is_dir():
+        raise UsageError(f"can't write a film to {path}: name an .mp4 file in a folder that is there")
+    return path

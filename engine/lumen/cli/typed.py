@@ -1,0 +1,39 @@
+"""What is typed on the terminal is what the visitor says."""
+
+import queue
+import sys
+import threading
+
+from lumen.cli.transcript import Transcript
+from lumen.language.stories import Speak
+from lumen.runtime.visitor import Walker
+
+
+class TypedSpeech:
+    """Reads lines on a thread of its own; at the end of input the visitor walks away."""
+
+    def __init__(self, walker: Walker, transcript: Transcript) -> None:
+        self._walker, self._transcript = walker, transcript
+        self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._gone: float | None = None
+        threading.Thread(target=self._read, name="lumen-typing", daemon=True).start()
+
+    def tick(self, now: float) -> None:
+        """Say what was typed since the last tick."""
+        while not self._lines.empty():
+            line = self._lines.get()
+            if line is None:
+                self._walker.leave()
+                self._gone = now
+            elif line:
+                self._transcript.deed(Speak(line))
+                self._walker.speak(line)
+
+    def gone_for(self, now: float) -> float:
+        """How long ago the visitor left [s]."""
+        return 0.0 if self._gone is None else now - self._gone
+
+    def _read(self) -> None:
+        for line in sys.stdin:
+            self._lines.put(line.strip())
+        self._lines.put(None)

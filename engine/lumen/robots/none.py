@@ -1,0 +1,30 @@
+"""No robot at all: the behaviour runs, every command is refused."""
+
+from collections.abc import Sequence
+
+from lumen.language.events import Event
+from lumen.ports import Aim, Reading, RobotCommand, Sense
+
+
+class NoRobot:
+    """Answers every command with an error; senses nothing."""
+
+    def __init__(self) -> None:
+        self._answers: list[Event] = []
+
+    def start(self, id: str, command: RobotCommand) -> None:
+        if not isinstance(command, Aim):
+            self._answers.append(Event(f"error.command.{id}", {"reason": "there is no robot (--robot none)"}))
+
+    def cancel(self, id: str) -> None:
+        """Nothing runs."""
+
+    def poll(self) -> Sequence[Event]:
+        answers, self._answers = self._answers, []
+        return answers
+
+    def read(self, sense: Sense) -> Reading | None:
+        return None
+
+    def close(self) -> None:
+        """Nothing to let go of."""
