@@ -1,5 +1,6 @@
 """Pictures of the simulated world, drawn by whichever thread asks for them."""
 
+import atexit
 import copy
 import threading
 from dataclasses import dataclass
@@ -28,7 +29,7 @@ class Quality:
 
 
 CAMERA = Quality()
-FILM = Quality(shadows=2048, samples=4)
+FILM = Quality(shadows=2048)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +74,7 @@ class Studio:
         return canvas.draw(scene, camera)
 
     def close(self) -> None:
-        """Let go of this thread's contexts; those of other threads end with them."""
+        """Let go of this thread's contexts; those of other threads stay until the program ends."""
         for canvas in self._local.__dict__.pop("canvases", {}).values():
             canvas.close()
 
@@ -89,6 +90,7 @@ class _Canvas:
         self._model.vis.global_.offheight = max(height, self._model.vis.global_.offheight)
         self._data = mujoco.MjData(self._model)
         self._renderer = mujoco.Renderer(self._model, height, width, max_geom=2000)
+        atexit.register(self.close)  # after mujoco's own, and so before it: then OpenGL would be gone
         flags = self._renderer.scene.flags
         for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
             flags[flag] = bool(quality.shadows)
@@ -107,4 +109,5 @@ class _Canvas:
         return pixels
 
     def close(self) -> None:
+        atexit.unregister(self.close)
         self._renderer.close()
