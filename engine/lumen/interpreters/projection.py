@@ -20,12 +20,9 @@ def project(point: Vector, camera: Camera) -> tuple[float, float] | None:
 
     The camera's frame keeps the robot's axes: x looks out of the lens, y left, z up.
     """
-    x, y, z = point
-    if x <= 0:
-        return None
-    u = camera.width / 2 * (1 - y / (x * tan(camera.horizontal_fov / 2)))
-    v = camera.height / 2 * (1 - z / (x * tan(camera.vertical_fov / 2)))
-    return (u, v) if 0 <= u < camera.width and 0 <= v < camera.height else None
+    pixel = _pixel(point, camera)
+    inside = pixel and 0 <= pixel[0] < camera.width and 0 <= pixel[1] < camera.height
+    return pixel if inside else None
 
 
 def camera_pose(camera: Camera, yaw: float, pitch: float, neck: Vector = NECK) -> tuple[Vector, Matrix]:
@@ -56,6 +53,30 @@ def centring(point: Vector, camera: Camera, neck: Vector = NECK) -> tuple[float,
     ahead = hypot(x, y)
     lift = sin(camera.pitch) * camera.position[0] + cos(camera.pitch) * camera.position[2]
     return atan2(y, x), asin(lift / hypot(ahead, z)) - atan2(z, ahead) - camera.pitch
+
+
+def after_turning(
+    pixel: tuple[float, float], camera: Camera, before: tuple[float, float], after: tuple[float, float]
+) -> tuple[float, float] | None:
+    """Where something far away, seen at `pixel`, appears once the head has turned from one (yaw, pitch) to another.
+
+    It may lie outside the image; None where it is no longer before the camera.
+    """
+    y = (1 - 2 * pixel[0] / camera.width) * tan(camera.horizontal_fov / 2)
+    z = (1 - 2 * pixel[1] / camera.height) * tan(camera.vertical_fov / 2)
+    ray = _times(_head(before[0], before[1] + camera.pitch), (1.0, y, z))
+    columns: Matrix = tuple(zip(*_head(after[0], after[1] + camera.pitch), strict=True))  # type: ignore[assignment]
+    return _pixel(_times(columns, ray), camera)
+
+
+def _pixel(point: Vector, camera: Camera) -> tuple[float, float] | None:
+    """The pixel of a point in the camera's frame, inside the image or not; None behind the camera."""
+    x, y, z = point
+    if x <= 0:
+        return None
+    u = camera.width / 2 * (1 - y / (x * tan(camera.horizontal_fov / 2)))
+    v = camera.height / 2 * (1 - z / (x * tan(camera.vertical_fov / 2)))
+    return u, v
 
 
 def _head(yaw: float, pitch: float) -> Matrix:

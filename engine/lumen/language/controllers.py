@@ -1,24 +1,84 @@
-"""What a fuzzy controller file says: variables, terms, rules, operators, bindings."""
+"""What a fuzzy controller file says: variables, terms, rules, operators, bindings, and how a head tracks with it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from lumen.language.diagnostics import Path
 
+TERMS: Mapping[str, tuple[str, ...]] = {
+    "triangle": ("left", "top", "right"),
+    "trapezoid": ("bottom left", "top left", "top right", "bottom right"),
+    "gaussian": ("mean", "sigma"),
+    "gaussian-product": ("mean of the left side", "its sigma", "mean of the right side", "its sigma"),
+    "bell": ("center", "width", "slope"),
+    "sigmoid": ("inflection", "slope"),
+    "sigmoid-difference": ("left inflection", "rising slope", "falling slope", "right inflection"),
+    "sigmoid-product": ("left inflection", "rising slope", "falling slope", "right inflection"),
+    "ramp": ("start", "end"),
+    "rectangle": ("start", "end"),
+    "s-shape": ("start", "end"),
+    "z-shape": ("start", "end"),
+    "pi-shape": ("bottom left", "top left", "top right", "bottom right"),
+    "spike": ("center", "width"),
+    "cosine": ("center", "width"),
+    "concave": ("inflection", "end"),
+    "semi-ellipse": ("start", "end"),
+    "arc": ("start", "end"),
+    "binary": ("start", "direction"),
+    "discrete": ("points [x, membership]",),
+    "constant": ("value",),
+    "linear": ("one coefficient for each input", "a constant"),
+}
+"""The kinds of term, and what their parameters are called, in order; `discrete` and `linear` take any number."""
+
+HEDGES = ("any", "not", "extremely", "seldom", "somewhat", "very")
+
+T_NORMS = ("minimum", "algebraic-product", "bounded-difference", "drastic-product", "einstein-product",
+           "hamacher-product", "nilpotent-minimum")  # fmt: skip
+
+S_NORMS = ("maximum", "algebraic-sum", "bounded-sum", "drastic-sum", "einstein-sum", "hamacher-sum",
+           "nilpotent-maximum", "normalized-sum", "unbounded-sum")  # fmt: skip
+
+ACTIVATIONS: Mapping[str, tuple[str, ...]] = {
+    "general": (),
+    "first": ("rules", "threshold"),
+    "last": ("rules", "threshold"),
+    "highest": ("rules",),
+    "lowest": ("rules",),
+    "proportional": (),
+    "threshold": ("comparison", "threshold"),
+}
+"""Which rules of a block take part, and the settings that each method reads."""
+
+COMPARISONS = ("<", "<=", "==", "!=", ">=", ">")
+
+INTEGRAL = ("centroid", "bisector", "smallest-of-maximum", "mean-of-maximum", "largest-of-maximum")
+WEIGHTED = ("weighted-average", "weighted-sum")
+DEFUZZIFIERS = INTEGRAL + WEIGHTED
+"""Integral ones work on the sampled set (Mamdani), weighted ones on the terms (Takagi-Sugeno, Tsukamoto)."""
+
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A linguistic value: a membership function of `kind` with its parameters in the variable's unit."""
+    """A linguistic value: a membership function of `kind` with its parameters in the variable's unit.
+
+    `parameters` stand in the order of `TERMS`; `discrete` has x, membership, x, membership, …
+    """
 
     name: str
     kind: str
     parameters: tuple[float, ...]
+    height: float = 1.0
     where: Path = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A linguistic variable over [`minimum`, `maximum`]; `default` is the output where no rule fires."""
+    """A linguistic variable over [`minimum`, `maximum`]; `default` is the output where no rule fires.
+
+    `lock_range` keeps the value within the range; `lock_previous` keeps an output as it was where no rule fires.
+    `aggregation`, `defuzzifier` and `resolution` (points of the sampled set) are an output's.
+    """
 
     name: str
     minimum: float
@@ -27,16 +87,29 @@ class Variable:
     unit: str = ""
     direction: str = ""
     default: float | None = None
+    neutral: float | None = None
+    lock_range: bool = False
+    lock_previous: bool = False
+    aggregation: str = "maximum"
+    defuzzifier: str = "centroid"
+    resolution: int = 1000
     where: Path = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Proposition:
-    """`variable is [hedges] term`."""
+    """`variable is [hedges] term`; the term is empty after the hedge `any`, which needs none."""
 
     variable: str
     term: str
     hedges: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Negation:
+    """`not (operand)`."""
+
+    operand: "Antecedent"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +128,7 @@ class Disjunction:
     right: "Antecedent"
 
 
-Antecedent = Proposition | Conjunction | Disjunction
+Antecedent = Proposition | Negation | Conjunction | Disjunction
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,15 +143,32 @@ class Rule:
 
 
 @dataclass(frozen=True, slots=True)
+class Activation:
+    """Which rules of a block take part: `method` is one of `ACTIVATIONS`, the rest its settings."""
+
+    method: str = "general"
+    rules: int = 1
+    threshold: float = 0.0
+    comparison: str = ">="
+
+
+@dataclass(frozen=True, slots=True)
 class Operators:
-    """How rules combine: T-norm, S-norm, implication, aggregation, defuzzifier and its number of points."""
+    """How the rules of a block combine: T-norm, S-norm, implication, activation."""
 
     conjunction: str = "minimum"
     disjunction: str = "maximum"
     implication: str = "minimum"
-    aggregation: str = "maximum"
-    defuzzifier: str = "centroid"
-    resolution: int = 1000
+    activation: Activation = Activation()
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Rules that are activated together; a later block may ask for what an earlier one concluded."""
+
+    rules: tuple[Rule, ...]
+    operators: Operators = Operators()
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,25 +183,55 @@ class InputBinding:
 
 @dataclass(frozen=True, slots=True)
 class OutputBinding:
-    """What an output moves: `joint` by `gain` times the output (the sign in it), within limits [rad]."""
+    """What an output moves: `joint` by `gain` times the output (the sign in it), within limits [rad].
+
+    `angle` [rad] is what one unit of the output is.
+    """
 
     variable: str
     joint: str
     gain: float
     minimum: float | None = None
     maximum: float | None = None
+    angle: float = 1.0
     where: Path = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Tracking:
+    """How joints follow what is seen, and what they do when it is lost.
+
+    For `hold` [s] they stay; for `search` [s] they swing by `sweep` [rad] to either side, once in `period` [s]; then
+    they go to `ahead` [rad]. `speed` is the fraction of the joints' greatest. A sight older than `stale` [s] does not
+    count. For each sight the controller is asked `looks` times, each time about the image as the head would see it
+    after the turn before, and at most `zoom` times magnified.
+    """
+
+    speed: float = 0.3
+    looks: int = 1
+    zoom: float = 1.0
+    hold: float = 2.0
+    search: float = 8.0
+    period: float = 4.0
+    stale: float = 1.0
+    sweep: Mapping[str, float] = field(default_factory=dict)
+    ahead: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Controller:
-    """A fuzzy controller; `angle` [rad] is what one unit of an angular output is."""
+    """A fuzzy controller; `angle` [rad] is the file's unit of angles."""
 
     name: str
     inputs: Mapping[str, Variable]
     outputs: Mapping[str, Variable]
-    rules: tuple[Rule, ...]
-    operators: Operators = Operators()
+    blocks: tuple[Block, ...]
     input_bindings: tuple[InputBinding, ...] = ()
     output_bindings: tuple[OutputBinding, ...] = ()
+    tracking: Tracking = Tracking()
     angle: float = 1.0
+
+    @property
+    def rules(self) -> tuple[Rule, ...]:
+        """All rules, in the order written."""
+        return tuple(rule for block in self.blocks for rule in block.rules)

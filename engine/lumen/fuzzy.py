@@ -1,0 +1,70 @@
+"""Fuzzy controllers from files and dicts, to evaluate and to explain."""
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from lumen.errors import ProjectError, UsageError
+from lumen.interpreters.inference import Evaluator, Explanation, explain
+from lumen.language import controllers
+from lumen.language.diagnostics import has_errors
+from lumen.loading.controllers import build_controller
+from lumen.loading.schema import check_schema
+from lumen.loading.source import Document, Report, parse
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Controller", "Evaluator", "Explanation"]
+
+
+class Controller(controllers.Controller):
+    """A fuzzy controller that can be asked; compiled when it first is."""
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """The controller in a file; raises UsageError where it can't be read, ProjectError for what it says."""
+        try:
+            content = Path(path).read_bytes()
+        except OSError as error:
+            raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
+        document, diagnostics = parse(str(path), content)
+        if document is None or has_errors(diagnostics):
+            raise ProjectError(diagnostics)
+        return cls._build(document, Path(path).stem)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], name: str = "controller") -> Self:
+        """The controller that a dict of the file's shape describes; raises ProjectError."""
+        return cls._build(Document(name, data), name)
+
+    @classmethod
+    def _build(cls, document: Document, name: str) -> Self:
+        report = Report(document)
+        controller = build_controller(check_schema(document, "controller", report), report, name=name, into=cls)
+        if controller is None or has_errors(report.diagnostics):
+            raise ProjectError(report.diagnostics)
+        return controller
+
+    @cached_property
+    def _evaluator(self) -> Evaluator:
+        return Evaluator(self)
+
+    def evaluate(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> dict[str, float]:
+        """All outputs, in the file's units; `previous` outputs serve those with `lock-previous`.
+
+        Raises UsageError for a missing, unknown or NaN input, LumenError where no rule fires and there is no default.
+        """
+        return self._evaluator.evaluate(inputs, previous)
+
+    def evaluate_batch(
+        self, inputs: "Mapping[str, ArrayLike]", previous: Mapping[str, float] | None = None
+    ) -> "dict[str, NDArray[np.float64]]":
+        """All outputs for inputs of Shape (n,) each: arrays of Shape (n,). Raises as `evaluate` does."""
+        return self._evaluator.evaluate_batch(inputs, previous)
+
+    def explain(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> Explanation:
+        """Memberships, each rule's degree, the concluded sets and the outputs, for these inputs."""
+        return explain(self._evaluator, inputs, previous)

@@ -1,0 +1,93 @@
+"""How far to turn for one sight.
+
+The plain answer is the controller's output times the binding's gain. Under minimum and maximum that answer has a flaw:
+as long as the term in the middle fires enough to cover the others, the centroid does not move at all. With Tables 1 and
+2 of the paper the head rests anywhere within 45 px of the face. Two remedies, both in the controller's `track:`.
+
+`zoom`: the image is also looked at magnified about the inputs' neutral points, and the answer made as much smaller;
+of these answers the largest counts. So the surface keeps its steepest slope down to the centre.
+
+`looks`: the controller is asked again, about the image as the head would see it after the turn so far. So what one
+step of a flat surface leaves over need not wait for the next image.
+"""
+
+from collections.abc import Iterator, Mapping
+
+from lumen.interpreters.inference import Evaluator
+from lumen.interpreters.projection import after_turning
+from lumen.language.controllers import Controller
+from lumen.language.robots import Body
+
+Angles = dict[str, float]
+
+STEP = 2**0.5
+"""From one magnification to the next."""
+
+_YAW, _PITCH = "HeadYaw", "HeadPitch"
+
+
+class Glance:
+    """Turns a sight into a turn, for a controller bound to joints of a body."""
+
+    def __init__(self, controller: Controller, body: Body) -> None:
+        self._controller, self._body = controller, body
+        self._evaluator = Evaluator(controller)
+        self._bindings = [b for b in controller.output_bindings if b.joint in body.joints]
+        self._neutral = {
+            name: (v.minimum + v.maximum) / 2 if v.neutral is None else v.neutral
+            for name, v in controller.inputs.items()
+        }
+        self._across, self._down = _image_inputs(controller)
+        self._previous: dict[str, float] = {}
+
+    def turn(self, inputs: Mapping[str, float], pose: Mapping[str, float]) -> Angles:
+        """How far to turn each joint [rad] for these inputs, seen with the joints at `pose` [rad]."""
+        turned = dict.fromkeys(pose, 0.0)
+        seen: Mapping[str, float] | None = inputs
+        for _ in range(self._controller.tracking.looks):
+            for joint, angle in self._once(seen).items() if seen else ():
+                turned[joint] += angle
+            seen = self._after(inputs, pose, turned)
+        return turned
+
+    def _once(self, inputs: Mapping[str, float]) -> Angles:
+        """What the controller says of one image."""
+        outputs: dict[str, float] = {}
+        for zoom in self._zooms():
+            magnified = {name: mid + zoom * (inputs[name] - mid) for name, mid in self._neutral.items()}
+            said = self._evaluator.evaluate(self._within(magnified) if zoom > 1.0 else inputs, self._previous)
+            for name, value in said.items():
+                if abs(value) / zoom > abs(outputs.get(name, 0.0)) or zoom == 1.0:
+                    outputs[name] = value / zoom
+        self._previous = outputs
+        turn = dict.fromkeys((b.joint for b in self._bindings), 0.0)
+        for binding in self._bindings:
+            turn[binding.joint] += outputs[binding.variable] * binding.gain * binding.angle
+        return turn
+
+    def _zooms(self) -> Iterator[float]:
+        zoom = 1.0
+        while zoom <= self._controller.tracking.zoom:
+            yield zoom
+            zoom *= STEP
+
+    def _within(self, inputs: Mapping[str, float]) -> dict[str, float]:
+        ranges = self._controller.inputs
+        return {name: min(max(x, ranges[name].minimum), ranges[name].maximum) for name, x in inputs.items()}
+
+    def _after(
+        self, inputs: Mapping[str, float], pose: Mapping[str, float], turned: Mapping[str, float]
+    ) -> dict[str, float] | None:
+        """The inputs as the camera would have them after the turn; None where that can't be told."""
+        if not (self._across and self._down and _YAW in pose and _PITCH in pose):
+            return None
+        before = (pose[_YAW], pose[_PITCH])
+        after = (pose[_YAW] + turned[_YAW], pose[_PITCH] + turned[_PITCH])
+        pixel = after_turning((inputs[self._across], inputs[self._down]), self._body.camera, before, after)
+        return {**inputs, self._across: pixel[0], self._down: pixel[1]} if pixel else None
+
+
+def _image_inputs(controller: Controller) -> tuple[str, str]:
+    """The inputs that are a place in the image: in pixels to the right, and down; empty where there is none."""
+    found = {v.direction: name for name, v in controller.inputs.items() if v.unit == "px"}
+    return found.get("right", ""), found.get("down", "")

@@ -1,0 +1,73 @@
+"""Activation methods: which rules of a block take part, and with what degree.
+
+Each takes the rules' degrees in order and returns them with 0 for a rule that does not take part; 0 is neutral in
+every aggregation.
+"""
+
+from collections.abc import Callable, Mapping
+from math import inf
+from operator import eq, ge, gt, le, lt, ne
+from typing import Any
+
+from lumen.interpreters.inference.arithmetic import Arithmetic, Number, total
+from lumen.language.controllers import Activation
+
+Degrees = list[Number]
+
+COMPARE: Mapping[str, Callable[[Any, Any], Any]] = {"<": lt, "<=": le, "==": eq, "!=": ne, ">=": ge, ">": gt}
+
+
+def general(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
+    """All of them."""
+    return degrees
+
+
+def first(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
+    """The first `rules` that reach `threshold`, in the order written."""
+    taken: Number = 0.0
+    chosen = []
+    for degree in degrees:
+        fires = (degree > 0.0) & (degree >= activation.threshold) & (taken < activation.rules)
+        chosen.append(m.where(fires, degree, 0.0))
+        taken = taken + m.where(fires, 1.0, 0.0)
+    return chosen
+
+
+def last(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
+    """The last `rules` that reach `threshold`."""
+    return first(m, activation, degrees[::-1])[::-1]
+
+
+def lowest(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
+    """The `rules` that fire least; of equals those written first."""
+    ranks = m.rank([m.where(degree > 0.0, degree, inf) for degree in degrees])
+    return [m.where(rank < activation.rules, degree, 0.0) for rank, degree in zip(ranks, degrees, strict=True)]
+
+
+def highest(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
+    """The `rules` that fire most; of equals those written first."""
+    ranks = m.rank([-degree for degree in degrees])
+    return [m.where(rank < activation.rules, degree, 0.0) for rank, degree in zip(ranks, degrees, strict=True)]
+
+
+def proportional(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
+    """All of them, scaled so that their degrees add up to 1."""
+    whole = m.maximum(total(degrees), 1e-300)
+    return [degree / whole for degree in degrees]
+
+
+def threshold(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
+    """Those whose degree compares with `threshold` as `comparison` says."""
+    compare = COMPARE[activation.comparison]
+    return [m.where(compare(degree, activation.threshold), degree, 0.0) for degree in degrees]
+
+
+METHODS: Mapping[str, Callable[[Arithmetic, Activation, Degrees], Degrees]] = {
+    "general": general,
+    "first": first,
+    "last": last,
+    "highest": highest,
+    "lowest": lowest,
+    "proportional": proportional,
+    "threshold": threshold,
+}

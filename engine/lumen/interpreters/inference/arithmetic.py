@@ -1,0 +1,93 @@
+"""One arithmetic for numbers and one for arrays, so that every formula of the inference stands once.
+
+`NUMBERS` works on Python floats and imports nothing; `arrays()` is the same on NumPy arrays. Both sides of `where` are
+evaluated, so a formula keeps its denominators and roots in their domain on either side.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, reduce
+from math import cos, exp, fabs, log, sqrt
+from typing import Any
+
+Number = Any
+"""A float, or an array of floats: what one of the two arithmetics works on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """The operations that memberships, hedges, norms and activations are made of."""
+
+    exp: Callable[[Number], Number]
+    log: Callable[[Number], Number]
+    sqrt: Callable[[Number], Number]
+    cos: Callable[[Number], Number]
+    abs: Callable[[Number], Number]
+    minimum: Callable[[Number, Number], Number]
+    maximum: Callable[[Number, Number], Number]
+    where: Callable[[Any, Number, Number], Number]
+    interpolate: Callable[[Number, tuple[float, ...], tuple[float, ...]], Number]
+    rank: Callable[[list[Number]], list[Number]]
+
+    def clamp(self, x: Number, low: float, high: float) -> Number:
+        """`x`, or the end of [low, high] that it is beyond."""
+        return self.minimum(self.maximum(x, low), high)
+
+
+def _interpolate(x: float, xs: tuple[float, ...], ys: tuple[float, ...]) -> float:
+    if x <= xs[0]:
+        return ys[0]
+    for x0, x1, y0, y1 in zip(xs, xs[1:], ys, ys[1:], strict=False):
+        if x < x1:
+            return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    return ys[-1]
+
+
+def _rank(values: list[float]) -> list[float]:
+    order = sorted(range(len(values)), key=lambda i: values[i])
+    ranks = [0.0] * len(values)
+    for rank, i in enumerate(order):
+        ranks[i] = float(rank)
+    return ranks
+
+
+NUMBERS = Arithmetic(
+    exp=exp,
+    log=log,
+    sqrt=sqrt,
+    cos=cos,
+    abs=fabs,
+    minimum=lambda a, b: a if a < b else b,
+    maximum=lambda a, b: a if a > b else b,
+    where=lambda condition, a, b: a if condition else b,
+    interpolate=_interpolate,
+    rank=_rank,
+)
+
+
+@cache
+def arrays() -> Arithmetic:
+    """The arithmetic of NumPy, which is imported when it is first asked for."""
+    import numpy as np
+
+    def rank(values: list[Number]) -> list[Number]:
+        stacked = np.stack(np.broadcast_arrays(*values))
+        return list(stacked.argsort(axis=0, kind="stable").argsort(axis=0))
+
+    return Arithmetic(
+        exp=np.exp,
+        log=np.log,
+        sqrt=np.sqrt,
+        cos=np.cos,
+        abs=np.abs,
+        minimum=np.minimum,
+        maximum=np.maximum,
+        where=np.where,
+        interpolate=np.interp,
+        rank=rank,
+    )
+
+
+def total(values: list[Number]) -> Number:
+    """The sum of numbers or of arrays; 0 of none."""
+    return reduce(lambda a, b: a + b, values, 0.0)

@@ -1,0 +1,53 @@
+"""From the degrees of an output's conclusions to its value, by the cheapest way that is exact."""
+
+from typing import TYPE_CHECKING, Protocol
+
+from lumen.interpreters.inference.arithmetic import NUMBERS
+from lumen.interpreters.inference.layers import MOST_TERMS, LayeredCentroid
+from lumen.interpreters.inference.memberships import membership
+from lumen.interpreters.inference.program import Conclusion
+from lumen.interpreters.inference.sampled import Sampled
+from lumen.interpreters.inference.weighted import Weighted
+from lumen.language.controllers import WEIGHTED, Term, Variable
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+
+class Defuzzifier(Protocol):
+    """Degrees of an output's conclusions to its value; NaN where nothing fires."""
+
+    def crisp(self, degrees: list[float], inputs: list[float]) -> float: ...
+
+    def crisp_batch(self, degrees: "list[Array]", inputs: "list[Array]") -> "Array": ...
+
+
+def defuzzifier(variable: Variable, conclusions: list[Conclusion]) -> Defuzzifier:
+    """The cheapest defuzzifier that is exact for what the rules conclude about an output."""
+    names = list(dict.fromkeys(conclusion.term for conclusion in conclusions))
+    which = [names.index(conclusion.term) for conclusion in conclusions]
+    terms = [variable.terms[name] for name in names]
+    if variable.defuzzifier in WEIGHTED:
+        return Weighted(terms, which, variable.aggregation, variable.defuzzifier == "weighted-average")
+    points = midpoints(variable)
+    memberships = [sampled(term, points) for term in terms]
+    implications = [conclusion.implication for conclusion in conclusions]
+    clipped = set(implications) <= {"minimum"} and variable.aggregation == "maximum"
+    if clipped and variable.defuzzifier == "centroid" and len(terms) <= MOST_TERMS:
+        return LayeredCentroid(points, memberships, which)
+    return Sampled(points, memberships, which, implications, variable.aggregation, variable.defuzzifier)
+
+
+def midpoints(variable: Variable) -> list[float]:
+    """Where an output's set is sampled: the middles of `resolution` equal parts of its range."""
+    step = (variable.maximum - variable.minimum) / variable.resolution
+    return [variable.minimum + (i + 0.5) * step for i in range(variable.resolution)]
+
+
+def sampled(term: Term, points: list[float]) -> list[float]:
+    """A term's memberships at these points."""
+    shape = membership(NUMBERS, term)
+    return [float(shape(y)) for y in points]

@@ -1,0 +1,153 @@
+"""Evaluates a controller: compiled once, then inputs to outputs, one by one or by the hundred thousand."""
+
+from collections.abc import Mapping
+from functools import cached_property
+from math import isnan
+from typing import TYPE_CHECKING, Any
+
+from lumen.errors import LumenError, UsageError
+from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
+from lumen.interpreters.inference.defuzzifiers import defuzzifier
+from lumen.interpreters.inference.program import Program
+from lumen.language.controllers import Controller, Variable
+from lumen.language.diagnostics import did_you_mean
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+_CHUNK = 1 << 13  # rows of a batch that are worked on together: they stay in the cache
+
+
+class Evaluator:
+    """A compiled controller. Pure: it keeps nothing between evaluations but what it has precomputed."""
+
+    def __init__(self, controller: Controller) -> None:
+        self.controller = controller
+        self.program = Program(controller, NUMBERS)
+        self._names = tuple(controller.inputs)
+        self._outputs = [
+            (variable, defuzzifier(variable, self.program.conclusions[name]), self._slots(name))
+            for name, variable in controller.outputs.items()
+        ]
+
+    def evaluate(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> dict[str, float]:
+        """The outputs in their own units; `previous` outputs serve those that lock them.
+
+        Raises UsageError for a missing, unknown or NaN input, LumenError where no rule fires and there is no default.
+        """
+        values = self._values(inputs)
+        tape = self.program.run(values)
+        result = {}
+        for variable, output, slots in self._outputs:
+            value = output.crisp([tape[slot] for slot in slots], values) if slots else float("nan")
+            if value != value:
+                value = _fallback(variable, inputs, previous)
+            elif variable.lock_range:
+                value = min(max(value, variable.minimum), variable.maximum)
+            result[variable.name] = value
+        return result
+
+    def evaluate_batch(
+        self, inputs: "Mapping[str, ArrayLike]", previous: Mapping[str, float] | None = None
+    ) -> "dict[str, Array]":
+        """The outputs for inputs of Shape (n,) each: arrays of Shape (n,). Raises as `evaluate` does."""
+        import numpy as np
+
+        columns = self._columns(inputs)
+        parts = [self._chunk([c[i : i + _CHUNK] for c in columns]) for i in range(0, len(columns[0]), _CHUNK)]
+        result = {}
+        for k, (variable, _, _) in enumerate(self._outputs):
+            values = np.concatenate([part[k] for part in parts]) if parts else np.zeros(0)
+            result[variable.name] = self._filled(variable, values, inputs, previous)
+        return result
+
+    @cached_property
+    def _array_program(self) -> Program:
+        return Program(self.controller, arrays())
+
+    def _slots(self, name: str) -> list[int]:
+        return [conclusion.slot for conclusion in self.program.conclusions[name]]
+
+    def _values(self, inputs: Mapping[str, float]) -> list[float]:
+        try:
+            values = [float(inputs[name]) for name in self._names]
+        except KeyError as error:
+            raise UsageError(f"the input `{error.args[0]}` of `{self.controller.name}` is missing") from None
+        except (TypeError, ValueError):
+            raise UsageError(f"the inputs of `{self.controller.name}` have to be numbers, not {dict(inputs)}") from None
+        if len(inputs) != len(values):
+            self._refuse_unknown(inputs)
+        for value in values:
+            if value != value:
+                raise UsageError(f"an input of `{self.controller.name}` is not a number: {dict(inputs)}")
+        return values
+
+    def _columns(self, inputs: "Mapping[str, ArrayLike]") -> "list[Array]":
+        import numpy as np
+
+        self._refuse_unknown(inputs)
+        if missing := [name for name in self._names if name not in inputs]:
+            raise UsageError(f"the input `{missing[0]}` of `{self.controller.name}` is missing")
+        columns = [np.atleast_1d(np.asarray(inputs[name], dtype=float)) for name in self._names]
+        if any(column.shape != columns[0].shape or column.ndim != 1 for column in columns):
+            shapes = {name: c.shape for name, c in zip(self._names, columns, strict=True)}
+            raise UsageError(f"the inputs of a batch have to be of one Shape (n,), not {shapes}")
+        if any(np.isnan(column).any() for column in columns):
+            raise UsageError(f"an input of `{self.controller.name}` holds values that are not numbers")
+        return columns
+
+    def _refuse_unknown(self, inputs: Mapping[str, Any]) -> None:
+        for name in inputs:
+            if name not in self._names:
+                hint = did_you_mean(name, self._names, "its inputs are")
+                raise UsageError(f"`{self.controller.name}` has no input `{name}`: {hint}")
+
+    def _chunk(self, columns: "list[Array]") -> "list[Array]":
+        import numpy as np
+
+        shape = columns[0].shape
+        with np.errstate(all="ignore"):  # both sides of a `where` are computed; the one that counts is in its domain
+            tape = self._array_program.run(columns)
+            return [
+                output.crisp_batch([np.broadcast_to(tape[slot], shape) for slot in slots], columns)
+                if slots
+                else np.full(shape, np.nan)
+                for _, output, slots in self._outputs
+            ]
+
+    def _filled(
+        self,
+        variable: Variable,
+        values: "Array",
+        inputs: "Mapping[str, ArrayLike]",
+        previous: Mapping[str, float] | None,
+    ) -> "Array":
+        """The values with their gaps filled: by the value before where the output locks it, else by the default."""
+        import numpy as np
+
+        if variable.lock_range:
+            values = np.clip(values, variable.minimum, variable.maximum)
+        if not (gaps := np.isnan(values)).any():
+            return values
+        if variable.lock_previous:
+            latest = np.maximum.accumulate(np.where(gaps, -1, np.arange(len(values))))
+            values = np.where(latest >= 0, values[latest], np.nan)
+            gaps = np.isnan(values)
+        if gaps.any():
+            row = int(gaps.argmax())
+            first = {name: float(np.atleast_1d(np.asarray(inputs[name]))[row]) for name in self._names}
+            values = np.where(gaps, _fallback(variable, first, previous), values)
+        return values
+
+
+def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping[str, float] | None) -> float:
+    """The output where no rule fires."""
+    if variable.lock_previous and previous and not isnan(previous.get(variable.name, float("nan"))):
+        return previous[variable.name]
+    if variable.default is not None:
+        return variable.default
+    given = ", ".join(f"{name} = {value:g}" for name, value in inputs.items())
+    raise LumenError(f"no rule for `{variable.name}` fires at {given}: give it a default")

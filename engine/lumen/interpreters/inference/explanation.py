@@ -1,0 +1,77 @@
+"""Why a controller says what it says: every number between the inputs and the outputs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import reduce
+
+from lumen.interpreters.inference.arithmetic import NUMBERS
+from lumen.interpreters.inference.defuzzifiers import midpoints, sampled
+from lumen.interpreters.inference.evaluator import Evaluator
+from lumen.interpreters.inference.memberships import membership
+from lumen.interpreters.inference.norms import norm
+from lumen.language.controllers import WEIGHTED, Rule, Variable
+
+
+@dataclass(frozen=True)
+class Concluded:
+    """What the rules say of an output: the degree of each term, and (not for weighted defuzzifiers) the set.
+
+    `points` are in the output's unit, `memberships` are the aggregated set's there; `fired` is false where `value` is
+    the default or the previous value, because no rule fired.
+    """
+
+    degrees: Mapping[str, float]
+    value: float
+    fired: bool
+    points: tuple[float, ...] = field(default=(), repr=False)
+    memberships: tuple[float, ...] = field(default=(), repr=False)
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Memberships by input and term, each rule with its degree, and what came of it for each output."""
+
+    inputs: Mapping[str, float]
+    memberships: Mapping[str, Mapping[str, float]]
+    rules: tuple[tuple[Rule, float], ...]
+    outputs: Mapping[str, Concluded]
+
+
+def explain(
+    evaluator: Evaluator, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None
+) -> Explanation:
+    """Everything between these inputs and the outputs; raises as `evaluate` does."""
+    controller, program = evaluator.controller, evaluator.program
+    values = evaluator.evaluate(inputs, previous)
+    tape = program.run([float(inputs[name]) for name in controller.inputs])
+    memberships = {
+        name: {key: float(membership(NUMBERS, term)(float(inputs[name]))) for key, term in variable.terms.items()}
+        for name, variable in controller.inputs.items()
+    }
+    rules = tuple((rule, float(tape[slot])) for rule, slot in zip(controller.rules, program.rules, strict=True))
+    outputs = {
+        name: _concluded(variable, [(c.term, float(tape[c.slot]), c.implication) for c in program.conclusions[name]],
+                         values[name])
+        for name, variable in controller.outputs.items()
+    }  # fmt: skip
+    return Explanation(dict(inputs), memberships, rules, outputs)
+
+
+def _concluded(variable: Variable, conclusions: list[tuple[str, float, str]], value: float) -> Concluded:
+    aggregate = norm(NUMBERS, variable.aggregation)
+    degrees: dict[str, float] = {}
+    for term, degree, _ in conclusions:
+        degrees[term] = aggregate(degrees[term], degree) if term in degrees else degree
+    fired = any(degree > 0.0 for degree in degrees.values())
+    if variable.defuzzifier in WEIGHTED:
+        return Concluded(degrees, value, fired)
+    points = midpoints(variable)
+    parts = [_implied(variable, points, conclusion) for conclusion in conclusions]
+    whole = tuple(reduce(aggregate, column, 0.0) for column in zip(*parts, strict=True))
+    return Concluded(degrees, value, fired, tuple(points), whole)
+
+
+def _implied(variable: Variable, points: list[float], conclusion: tuple[str, float, str]) -> list[float]:
+    term, degree, implication = conclusion
+    imply = norm(NUMBERS, implication)
+    return [imply(degree, y) for y in sampled(variable.terms[term], points)]

@@ -1,0 +1,184 @@
+"""Membership functions: for each kind of term its formula, prepared once for its parameters.
+
+The shapes and their edges are FuzzyLite's (Rada-Vilela, fuzzylite.com), with every vertical edge allowed. A prepared
+function takes x (a float or an array, as its arithmetic has it) and returns the membership, before the term's height.
+"""
+
+from collections.abc import Callable, Mapping
+from math import inf, pi
+
+from lumen.interpreters.inference.arithmetic import Arithmetic, Number
+from lumen.language.controllers import Term
+
+Membership = Callable[[Number], Number]
+
+TINY = 1e-300
+"""A denominator or an exponent's base that must not be zero; far below every membership that matters."""
+
+LARGE = 700.0
+"""The largest exponent: e^700 is still a float."""
+
+
+def membership(m: Arithmetic, term: Term) -> Membership:
+    """The membership function of a term, its height included; not for `constant` and `linear`, which have none."""
+    shape = SHAPES[term.kind](m, *term.parameters)
+    if term.height == 1.0:
+        return shape
+    return lambda x: term.height * shape(x)
+
+
+def _rising(m: Arithmetic, start: float, end: float) -> Membership:
+    """0 before `start`, 1 from `end` on, a line between; a step where they are equal, 1 where `start` is infinite."""
+    if start == -inf:
+        return lambda x: 1.0
+    if end <= start:
+        return lambda x: m.where(x >= start, 1.0, 0.0)
+    slope = 1.0 / (end - start)
+    return lambda x: m.clamp((x - start) * slope, 0.0, 1.0)
+
+
+def _falling(m: Arithmetic, start: float, end: float) -> Membership:
+    """1 until `start`, 0 after `end`, a line between; a step where they are equal, 1 where `end` is infinite."""
+    mirrored = _rising(m, -end, -start)
+    return lambda x: mirrored(-x)
+
+
+def triangle(m: Arithmetic, left: float, top: float, right: float) -> Membership:
+    return trapezoid(m, left, top, top, right)
+
+
+def trapezoid(m: Arithmetic, a: float, b: float, c: float, d: float) -> Membership:
+    up, down = _rising(m, a, b), _falling(m, c, d)
+    return lambda x: m.minimum(up(x), down(x))
+
+
+def gaussian(m: Arithmetic, mean: float, sigma: float) -> Membership:
+    k, exp = -0.5 / (sigma * sigma), m.exp
+    return lambda x: exp(k * (x - mean) * (x - mean))
+
+
+def gaussian_product(m: Arithmetic, mean_a: float, sigma_a: float, mean_b: float, sigma_b: float) -> Membership:
+    a, b = gaussian(m, mean_a, sigma_a), gaussian(m, mean_b, sigma_b)
+    return lambda x: a(m.minimum(x, mean_a)) * b(m.maximum(x, mean_b))
+
+
+def bell(m: Arithmetic, center: float, width: float, slope: float) -> Membership:
+    def shape(x: Number) -> Number:
+        exponent = 2.0 * slope * m.log(m.maximum(m.abs((x - center) / width), TINY))
+        return 1.0 / (1.0 + m.exp(m.clamp(exponent, -LARGE, LARGE)))
+
+    return shape
+
+
+def sigmoid(m: Arithmetic, inflection: float, slope: float) -> Membership:
+    return lambda x: 1.0 / (1.0 + m.exp(m.clamp(slope * (inflection - x), -LARGE, LARGE)))
+
+
+def sigmoid_difference(m: Arithmetic, left: float, rising: float, falling: float, right: float) -> Membership:
+    a, b = sigmoid(m, left, rising), sigmoid(m, right, falling)
+    return lambda x: m.abs(a(x) - b(x))
+
+
+def sigmoid_product(m: Arithmetic, left: float, rising: float, falling: float, right: float) -> Membership:
+    a, b = sigmoid(m, left, rising), sigmoid(m, right, falling)
+    return lambda x: a(x) * b(x)
+
+
+def ramp(m: Arithmetic, start: float, end: float) -> Membership:
+    return _rising(m, start, end) if start < end else _falling(m, end, start)
+
+
+def rectangle(m: Arithmetic, start: float, end: float) -> Membership:
+    low, high = min(start, end), max(start, end)
+    return lambda x: m.where((low <= x) & (x <= high), 1.0, 0.0)
+
+
+def s_shape(m: Arithmetic, start: float, end: float) -> Membership:
+    ramp = _rising(m, start, end)
+
+    def shape(x: Number) -> Number:
+        t = ramp(x)
+        return m.where(t <= 0.5, 2.0 * t * t, 1.0 - 2.0 * (1.0 - t) * (1.0 - t))
+
+    return shape
+
+
+def z_shape(m: Arithmetic, start: float, end: float) -> Membership:
+    mirrored = s_shape(m, -end, -start)
+    return lambda x: mirrored(-x)
+
+
+def pi_shape(m: Arithmetic, a: float, b: float, c: float, d: float) -> Membership:
+    up, down = s_shape(m, a, b), z_shape(m, c, d)
+    return lambda x: up(x) * down(x)
+
+
+def spike(m: Arithmetic, center: float, width: float) -> Membership:
+    k = -10.0 / abs(width)
+    return lambda x: m.exp(k * m.abs(x - center))
+
+
+def cosine(m: Arithmetic, center: float, width: float) -> Membership:
+    half = 0.5 * width
+    return lambda x: 0.5 * (1.0 + m.cos(pi * m.clamp((x - center) / half, -1.0, 1.0)))
+
+
+def concave(m: Arithmetic, inflection: float, end: float) -> Membership:
+    reach = end - inflection
+    clip = m.minimum if reach >= 0 else m.maximum
+    return lambda x: reach / (2.0 * end - inflection - clip(x, end))
+
+
+def semi_ellipse(m: Arithmetic, start: float, end: float) -> Membership:
+    centre, radius = 0.5 * (start + end), 0.5 * abs(end - start)
+
+    def shape(x: Number) -> Number:
+        t = (x - centre) / radius
+        return m.sqrt(m.maximum(1.0 - t * t, 0.0))
+
+    return shape
+
+
+def arc(m: Arithmetic, start: float, end: float) -> Membership:
+    quarter = ramp(m, start, end)
+
+    def shape(x: Number) -> Number:
+        t = 1.0 - quarter(x)
+        return m.sqrt(m.maximum(1.0 - t * t, 0.0))
+
+    return shape
+
+
+def binary(m: Arithmetic, start: float, direction: float) -> Membership:
+    if direction > start:
+        return lambda x: m.where(x >= start, 1.0, 0.0)
+    return lambda x: m.where(x <= start, 1.0, 0.0)
+
+
+def discrete(m: Arithmetic, *points: float) -> Membership:
+    xs, ys = points[::2], points[1::2]
+    return lambda x: m.interpolate(x, xs, ys)
+
+
+SHAPES: Mapping[str, Callable[..., Membership]] = {
+    "triangle": triangle,
+    "trapezoid": trapezoid,
+    "gaussian": gaussian,
+    "gaussian-product": gaussian_product,
+    "bell": bell,
+    "sigmoid": sigmoid,
+    "sigmoid-difference": sigmoid_difference,
+    "sigmoid-product": sigmoid_product,
+    "ramp": ramp,
+    "rectangle": rectangle,
+    "s-shape": s_shape,
+    "z-shape": z_shape,
+    "pi-shape": pi_shape,
+    "spike": spike,
+    "cosine": cosine,
+    "concave": concave,
+    "semi-ellipse": semi_ellipse,
+    "arc": arc,
+    "binary": binary,
+    "discrete": discrete,
+}

@@ -1,0 +1,64 @@
+"""T-norms and S-norms: how `and`, `or`, implication and aggregation combine two degrees."""
+
+from collections.abc import Callable, Mapping
+
+from lumen.interpreters.inference.arithmetic import Arithmetic, Number
+
+Norm = Callable[[Arithmetic, Number, Number], Number]
+
+_TINY = 1e-300  # what keeps a denominator from being zero where the other side of `where` counts
+
+
+def _drastic_product(m: Arithmetic, a: Number, b: Number) -> Number:
+    return m.where(m.maximum(a, b) == 1.0, m.minimum(a, b), 0.0)
+
+
+def _hamacher_product(m: Arithmetic, a: Number, b: Number) -> Number:
+    return a * b / m.maximum(a + b - a * b, _TINY)
+
+
+def _nilpotent_minimum(m: Arithmetic, a: Number, b: Number) -> Number:
+    return m.where(a + b > 1.0, m.minimum(a, b), 0.0)
+
+
+def _drastic_sum(m: Arithmetic, a: Number, b: Number) -> Number:
+    return m.where(m.minimum(a, b) == 0.0, m.maximum(a, b), 1.0)
+
+
+def _hamacher_sum(m: Arithmetic, a: Number, b: Number) -> Number:
+    rest = 1.0 - a * b
+    return m.where(rest == 0.0, 1.0, (a + b - 2.0 * a * b) / m.where(rest == 0.0, 1.0, rest))
+
+
+def _nilpotent_maximum(m: Arithmetic, a: Number, b: Number) -> Number:
+    return m.where(a + b < 1.0, m.maximum(a, b), 1.0)
+
+
+NORMS: Mapping[str, Norm] = {
+    "minimum": lambda m, a, b: m.minimum(a, b),
+    "algebraic-product": lambda m, a, b: a * b,
+    "bounded-difference": lambda m, a, b: m.maximum(a + b - 1.0, 0.0),
+    "drastic-product": _drastic_product,
+    "einstein-product": lambda m, a, b: a * b / (2.0 - (a + b - a * b)),
+    "hamacher-product": _hamacher_product,
+    "nilpotent-minimum": _nilpotent_minimum,
+    "maximum": lambda m, a, b: m.maximum(a, b),
+    "algebraic-sum": lambda m, a, b: a + b - a * b,
+    "bounded-sum": lambda m, a, b: m.minimum(a + b, 1.0),
+    "drastic-sum": _drastic_sum,
+    "einstein-sum": lambda m, a, b: (a + b) / (1.0 + a * b),
+    "hamacher-sum": _hamacher_sum,
+    "nilpotent-maximum": _nilpotent_maximum,
+    "normalized-sum": lambda m, a, b: (a + b) / m.maximum(a + b, 1.0),
+    "unbounded-sum": lambda m, a, b: a + b,
+}
+
+
+def norm(m: Arithmetic, name: str) -> Callable[[Number, Number], Number]:
+    """The norm of that name on numbers or arrays."""
+    if name == "minimum":
+        return m.minimum
+    if name == "maximum":
+        return m.maximum
+    function = NORMS[name]
+    return lambda a, b: function(m, a, b)

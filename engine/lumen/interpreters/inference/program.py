@@ -1,0 +1,142 @@
+"""Compiles a controller's rules into a straight line of operations on a tape.
+
+The tape begins with the inputs, in the controller's order; every operation reads what stands before it and appends
+one value. What is asked for twice is computed once, and a rule that merely passes a membership on costs nothing.
+Outputs read only their own slots, so groups of outputs that have nothing in common never meet.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import reduce
+from typing import Any, NamedTuple
+
+from lumen.interpreters.inference.activations import METHODS
+from lumen.interpreters.inference.arithmetic import Arithmetic
+from lumen.interpreters.inference.hedges import hedged
+from lumen.interpreters.inference.memberships import membership
+from lumen.interpreters.inference.norms import norm
+from lumen.language.controllers import (
+    Antecedent,
+    Block,
+    Conjunction,
+    Controller,
+    Disjunction,
+    Negation,
+    Operators,
+    Proposition,
+    Rule,
+)
+
+Tape = list[Any]
+Operation = Callable[[Tape], Any]
+
+
+class Conclusion(NamedTuple):
+    """A rule concludes `term` of an output: its degree stands in `slot` and cuts the term by `implication`."""
+
+    term: str
+    slot: int
+    implication: str
+
+
+class Program:
+    """The operations of a controller under one arithmetic.
+
+    `rules` has the slot of each rule's degree, in the order written; `conclusions` those of each output.
+    """
+
+    def __init__(self, controller: Controller, m: Arithmetic) -> None:
+        self._controller, self._m = controller, m
+        self._operations: list[Operation] = []
+        self._known: dict[Any, int] = {}
+        self.conclusions: dict[str, list[Conclusion]] = {name: [] for name in controller.outputs}
+        self._inputs = {name: i for i, name in enumerate(controller.inputs)}
+        self.rules = [slot for block in controller.blocks for slot in self._block(block)]
+
+    def run(self, inputs: Sequence[Any]) -> Tape:
+        """The tape for these inputs: numbers or arrays, as the arithmetic has them."""
+        tape = list(inputs)
+        append = tape.append
+        for operation in self._operations:
+            append(operation(tape))
+        return tape
+
+    def _add(self, operation: Operation, key: Any = None) -> int:
+        slot = len(self._inputs) + len(self._operations)
+        self._operations.append(operation)
+        if key is not None:
+            self._known[key] = slot
+        return slot
+
+    def _block(self, block: Block) -> list[int]:
+        """The slots of the rules' degrees. Only where all rules take part may one read what another concludes."""
+        operators = block.operators
+        if operators.activation.method in ("general", "threshold"):
+            return [self._conclude(rule, self._activated([rule], operators)[0], operators) for rule in block.rules]
+        slots = self._activated(block.rules, operators)
+        return [self._conclude(rule, slot, operators) for rule, slot in zip(block.rules, slots, strict=True)]
+
+    def _activated(self, rules: Sequence[Rule], operators: Operators) -> list[int]:
+        slots = [self._degree(rule, operators) for rule in rules]
+        if operators.activation.method == "general":
+            return slots
+        m, method, activation = self._m, METHODS[operators.activation.method], operators.activation
+        whole = self._add(lambda tape: method(m, activation, [tape[slot] for slot in slots]))
+        return [self._add(lambda tape, i=i: tape[whole][i]) for i in range(len(slots))]  # type: ignore[misc]
+
+    def _degree(self, rule: Rule, operators: Operators) -> int:
+        slot, weight = self._antecedent(rule.antecedent, operators), rule.weight
+        return slot if weight == 1.0 else self._add(lambda tape: weight * tape[slot])
+
+    def _conclude(self, rule: Rule, slot: int, operators: Operators) -> int:
+        for proposition in rule.consequents:
+            hedges = proposition.hedges
+            degree = self._hedge(slot, hedges) if hedges else slot
+            conclusion = Conclusion(proposition.term, degree, operators.implication)
+            self.conclusions[proposition.variable].append(conclusion)
+        return slot
+
+    def _hedge(self, slot: int, hedges: tuple[str, ...]) -> int:
+        return self._add(lambda tape: hedged(self._m, hedges, tape[slot]))
+
+    def _antecedent(self, node: Antecedent, operators: Operators) -> int:
+        match node:
+            case Proposition():
+                return self._proposition(node)
+            case Negation(operand):
+                inner = self._antecedent(operand, operators)
+                return self._add(lambda tape: 1.0 - tape[inner])
+            case Conjunction(left, right):
+                combine = norm(self._m, operators.conjunction)
+            case Disjunction(left, right):
+                combine = norm(self._m, operators.disjunction)
+        a, b = self._antecedent(left, operators), self._antecedent(right, operators)
+        return self._add(lambda tape: combine(tape[a], tape[b]))
+
+    def _proposition(self, node: Proposition) -> int:
+        if node.variable in self._controller.outputs:
+            return self._concluded(node)
+        if (slot := self._known.get(node)) is not None:
+            return slot
+        x, m, hedges = self._value(node.variable), self._m, node.hedges
+        if hedges and hedges[-1] == "any":
+            return self._add(lambda tape: hedged(m, hedges, tape[x]), node)
+        degree = membership(m, self._controller.inputs[node.variable].terms[node.term])
+        if hedges:
+            return self._add(lambda tape: hedged(m, hedges, degree(tape[x])), node)
+        return self._add(lambda tape: degree(tape[x]), node)
+
+    def _value(self, name: str) -> int:
+        """The slot of an input's value: its own, or the one locked into its range."""
+        variable, x = self._controller.inputs[name], self._inputs[name]
+        if not variable.lock_range:
+            return x
+        if (slot := self._known.get(name)) is not None:
+            return slot
+        return self._add(lambda tape: self._m.clamp(tape[x], variable.minimum, variable.maximum), name)
+
+    def _concluded(self, node: Proposition) -> int:
+        """How far the rules so far have concluded a term of an output."""
+        slots = [c.slot for c in self.conclusions[node.variable] if c.term == node.term]
+        aggregate = norm(self._m, self._controller.outputs[node.variable].aggregation)
+        m, hedges = self._m, node.hedges
+        return self._add(lambda tape: hedged(m, hedges, reduce(aggregate, [tape[s] for s in slots]) if slots else 0.0))

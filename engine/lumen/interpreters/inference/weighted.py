@@ -1,0 +1,99 @@
+"""Weighted defuzzifiers: Takagi-Sugeno's terms have a value, Tsukamoto's are read backwards."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
+from math import nan
+from typing import TYPE_CHECKING
+
+from lumen.interpreters.inference.arithmetic import NUMBERS, Arithmetic, Number, arrays, total
+from lumen.interpreters.inference.norms import norm
+from lumen.language.controllers import Term
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+Value = Callable[[Number, Sequence[Number]], Number]
+"""What a term stands for at a degree, the controller's inputs being as they are."""
+
+_TINY = 1e-300
+
+
+def _concave(m: Arithmetic, h: float, i: float, e: float) -> Callable[[Number], Number]:
+    return lambda w: h * (i - e) / m.maximum(w, _TINY) + 2.0 * e - i
+
+
+def _sigmoid(m: Arithmetic, h: float, i: float, s: float) -> Callable[[Number], Number]:
+    return lambda w: i - m.log(m.maximum(h / m.maximum(w, _TINY) - 1.0, _TINY)) / s
+
+
+def _s_shape(m: Arithmetic, h: float, s: float, e: float) -> Callable[[Number], Number]:
+    def value(w: Number) -> Number:
+        low, high = m.sqrt(w / (2.0 * h)), m.sqrt(m.maximum(h - w, 0.0) / (2.0 * h))
+        return m.where(w <= h / 2.0, s + (e - s) * low, e - (e - s) * high)
+
+    return value
+
+
+def _arc(m: Arithmetic, h: float, s: float, e: float) -> Callable[[Number], Number]:
+    r = e - s
+    return lambda w: e - r * m.sqrt(m.maximum(1.0 - (w / h) * (w / h), 0.0))
+
+
+INVERSES: Mapping[str, Callable[..., Callable[[Number], Number]]] = {
+    "ramp": lambda m, h, s, e: lambda w: s + (e - s) * w / h,
+    "sigmoid": _sigmoid,
+    "s-shape": _s_shape,
+    "z-shape": lambda m, h, s, e: _s_shape(m, h, e, s),
+    "concave": _concave,
+    "arc": _arc,
+}
+"""For each monotonic kind the x at which the membership is w, from the term's height and parameters."""
+
+
+def value(m: Arithmetic, term: Term) -> Value:
+    """The value of a term of `constant`, `linear` or a monotonic kind (`INVERSES`)."""
+    if term.kind == "constant":
+        return lambda w, inputs: term.parameters[0]
+    if term.kind == "linear":
+        return lambda w, inputs: _line(term.parameters, inputs)
+    inverse = INVERSES[term.kind](m, term.height, *term.parameters)
+    return lambda w, inputs: inverse(w)
+
+
+def _line(coefficients: tuple[float, ...], inputs: Sequence[Number]) -> Number:
+    products = [k * x for k, x in zip(coefficients, inputs, strict=False)]
+    return total([*products, *coefficients[len(inputs) :]])
+
+
+class Weighted:
+    """Defuzzifies by weighted average or sum; `which` says for each degree handed in whose weight it is."""
+
+    def __init__(self, terms: Sequence[Term], which: Sequence[int], aggregation: str, average: bool) -> None:
+        self._terms, self._which, self._aggregation, self._average = terms, which, aggregation, average
+        self._on_numbers = [value(NUMBERS, term) for term in terms]
+        self._on_arrays: list[Value] = []
+
+    def crisp(self, degrees: Sequence[float], inputs: Sequence[float]) -> float:
+        """The output; NaN where no term has a weight."""
+        return float(self._crisp(NUMBERS, self._on_numbers, degrees, inputs))
+
+    def crisp_batch(self, degrees: "Sequence[Array]", inputs: "Sequence[Array]") -> "Array":
+        """The outputs, Shape (n,), of degrees of Shape (n,) each; NaN where no term has a weight."""
+        self._on_arrays = self._on_arrays or [value(arrays(), term) for term in self._terms]
+        return self._crisp(arrays(), self._on_arrays, degrees, inputs)  # type: ignore[no-any-return]
+
+    def _crisp(self, m: Arithmetic, values: list[Value], degrees: Sequence[Number], inputs: Sequence[Number]) -> Number:
+        by_term = self._weights(m, degrees)
+        whole = total(list(by_term.values()))
+        some = whole > 0.0
+        sums = total([m.where(w > 0.0, w * values[k](w, inputs), 0.0) for k, w in by_term.items()])
+        return m.where(some, sums / m.where(some, whole, 1.0) if self._average else sums, nan)
+
+    def _weights(self, m: Arithmetic, degrees: Sequence[Number]) -> dict[int, Number]:
+        by_term: dict[int, list[Number]] = {}
+        for term, degree in zip(self._which, degrees, strict=True):
+            by_term.setdefault(term, []).append(degree)
+        return {term: reduce(norm(m, self._aggregation), found) for term, found in by_term.items()}

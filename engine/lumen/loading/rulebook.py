@@ -1,0 +1,93 @@
+"""The rules of a fuzzy controller, in blocks, with each of their words checked against the variables."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from lumen.language.controllers import Activation, Block, Operators, Rule, Variable
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.loading.rules import Mention, RuleSyntaxError, Word, parse_rule
+from lumen.loading.source import Report
+from lumen.loading.words import place_of
+
+
+class Rulebook:
+    """Reads the rules of one file, whose usable variables are these.
+
+    A word is unknown where the file does not write it; one that names something broken has been reported already, and
+    only costs its rule.
+    """
+
+    def __init__(
+        self, data: Mapping[str, Any], report: Report, inputs: Mapping[str, Variable], outputs: Mapping[str, Variable]
+    ) -> None:
+        self.data, self.report = data, report
+        self.built = {"inputs": inputs, "outputs": outputs}
+        self.operators = data.get("operators") or {}
+
+    def blocks(self) -> list[Block]:
+        """The rules under `rules:`, then those of each of `blocks:`."""
+        own = Block(tuple(self.rules(("rules",), self.data.get("rules") or ())), self.combination({}))
+        blocks = [own] if own.rules else []
+        for name, spec in (self.data.get("blocks") or {}).items():
+            rules = tuple(self.rules(("blocks", name, "rules"), spec.get("rules") or ()))
+            blocks.append(Block(rules, self.combination(spec.get("operators") or {}), name))
+        if not any(block.rules for block in blocks) and not self.report.diagnostics:
+            self.report("no-rules", (), "the controller has no rules", hint="write `rules:` and a list of them")
+        return blocks
+
+    def combination(self, differing: Mapping[str, Any]) -> Operators:
+        """The file's operators where the block does not differ."""
+        operators = {**self.operators, **differing}
+        names = ("conjunction", "disjunction", "implication")
+        given = {name: operators[name] for name in names if name in operators}
+        activation = operators.get("activation") or {}
+        return Operators(**given, activation=Activation(**activation) if "method" in activation else Activation())
+
+    def rules(self, path: Path, texts: Any) -> list[Rule]:
+        found = (self.rule((*path, i), text) for i, text in enumerate(texts))
+        return [rule for rule in found if rule]
+
+    def rule(self, path: Path, text: str) -> Rule | None:
+        try:
+            said = parse_rule(text)
+        except RuleSyntaxError as error:
+            self.at_word("rule-syntax", path, text, error.word, error.message, error.hint)
+            return None
+        known = [self.mentioned(path, text, mention) for mention in said.mentions]
+        return Rule(said.antecedent, said.consequents, said.weight, text, path) if all(known) else None
+
+    def mentioned(self, path: Path, text: str, mention: Mention) -> bool:
+        """Whether both words of a proposition name something usable."""
+        word, term = mention.variable, mention.term
+        side = "outputs" if mention.concluded or word.text not in self.data["inputs"] else "inputs"
+        spec = self.data[side].get(word.text)
+        if spec is None:
+            self.unknown_variable(path, text, mention)
+            return False
+        terms = spec.get("terms", {})
+        if term and term.text not in terms:
+            hint = did_you_mean(term.text, terms, f"`{word.text}` has")
+            self.at_word("unknown-term", path, text, term, f"`{word.text}` has no term `{term.text}`", hint)
+            return False
+        variable = self.built[side].get(word.text)
+        return variable is not None and (term is None or term.text in variable.terms)
+
+    def unknown_variable(self, path: Path, text: str, mention: Mention) -> None:
+        word = mention.variable
+        if mention.concluded and word.text in self.data["inputs"]:
+            hint = did_you_mean(word.text, self.data["outputs"], "the outputs are")
+            message = f"`{word.text}` is an input: a rule concludes an output"
+            self.at_word("not-an-output", path, text, word, message, hint)
+            return
+        names = [*([] if mention.concluded else self.data["inputs"]), *self.data["outputs"]]
+        hint = did_you_mean(word.text, names, "the variables are")
+        self.at_word("unknown-variable", path, text, word, f"there is no variable `{word.text}`", hint)
+
+    def at_word(self, code: str, path: Path, text: str, word: Word, message: str, hint: str) -> None:
+        """Report something of one word of a rule."""
+        before = len(self.report.diagnostics)
+        self.report(code, path, message, hint=hint)
+        if len(self.report.diagnostics) > before:
+            place = place_of(self.report.document, path, text, word.offset, len(word.text))
+            self.report.diagnostics[-1] = replace(self.report.diagnostics[-1], place=place)

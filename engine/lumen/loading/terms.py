@@ -1,0 +1,125 @@
+"""The terms of a fuzzy variable: which kind, how many parameters, and whether they make a shape."""
+
+from collections.abc import Mapping
+from math import inf, isfinite
+from typing import Any
+
+from lumen.language.controllers import TERMS, Term
+from lumen.language.diagnostics import Path
+from lumen.loading.rules import KEYWORDS
+from lumen.loading.source import Report
+
+_POSITIVE: Mapping[str, tuple[int, ...]] = {
+    "gaussian": (1,), "gaussian-product": (1, 3), "bell": (1,), "spike": (1,), "cosine": (1,),
+}  # fmt: skip
+_ASCENDING = ("triangle", "trapezoid", "pi-shape", "s-shape", "z-shape", "discrete")
+_DIFFERENT = ("ramp", "arc", "semi-ellipse", "concave", "binary", "s-shape", "z-shape")
+_INFINITE = ("triangle", "trapezoid", "binary", "rectangle")
+
+
+def build_terms(data: Mapping[str, Any], report: Report, path: Path, inputs: int) -> dict[str, Term]:
+    """The usable ones of these terms, by name; what is wrong with the others is reported at its number.
+
+    `inputs` is how many inputs the controller has, of which each `linear` term takes a coefficient.
+    """
+    terms = (_Term(name, shape, report, (*path, name), inputs).build() for name, shape in data.items())
+    return {term.name: term for term in terms if term}
+
+
+def plain_name(name: str, report: Report, path: Path) -> None:
+    """Report a name that a rule could not tell from its own words."""
+    if name.lower() in KEYWORDS:
+        report("reserved-name", path, f"`{name}` is a word of the rules", hint="choose another name", key=True)
+
+
+class _Term:
+    """One term under construction."""
+
+    def __init__(self, name: str, shape: Mapping[str, Any], report: Report, path: Path, inputs: int) -> None:
+        self.name, self.shape, self.report, self.path, self.inputs = name, shape, report, path, inputs
+        self.kinds = [kind for kind in shape if kind in TERMS]
+
+    def build(self) -> Term | None:
+        plain_name(self.name, self.report, self.path)
+        if len(self.kinds) != 1:
+            self.shapeless()
+            return None
+        kind = self.kinds[0]
+        parameters = _flat(self.shape[kind])
+        if not (self.counted(kind, parameters) and self.sound(kind, parameters)):
+            return None
+        return Term(self.name, kind, parameters, float(self.shape.get("height", 1.0)), self.path)
+
+    def shapeless(self) -> None:
+        if len(self.kinds) > 1:
+            message = f"`{self.name}` is a `{self.kinds[0]}` and a `{self.kinds[1]}`: a term has one shape"
+            self.report("two-shapes", (*self.path, self.kinds[1]), message, hint="make them two terms", key=True)
+        elif not any(pruned[: len(self.path)] == self.path for pruned in self.report.pruned):
+            hint = "write, for example, `gaussian: [0, 80]`"
+            self.report("no-shape", self.path, f"`{self.name}` has no shape", hint=hint, key=True)
+
+    def counted(self, kind: str, parameters: tuple[float, ...]) -> bool:
+        names, count = TERMS[kind], len(parameters)
+        if kind == "discrete":
+            right, wanted = count >= 2, "at least one point [x, membership]"
+        elif kind == "linear":
+            right = count in (self.inputs, self.inputs + 1)
+            wanted = f"{self.inputs} coefficients, one for each input, and then a constant if you like"
+        else:
+            right, wanted = count == len(names), f"{len(names)} ({', '.join(names)})"
+        if not right:
+            message = f"`{kind}` of `{self.name}` has {count} parameter{'s' * (count != 1)}, it takes {wanted}"
+            hint = f"write `{kind}: [{', '.join(names)}]`" if kind not in ("discrete", "linear") else ""
+            self.report("wrong-parameters", (*self.path, kind), message, hint=hint)
+        return right
+
+    def sound(self, kind: str, parameters: tuple[float, ...]) -> bool:
+        return self.finite(kind, parameters) and self.positive(kind, parameters) and self.ordered(kind, parameters)
+
+    def finite(self, kind: str, parameters: tuple[float, ...]) -> bool:
+        for i, parameter in enumerate(parameters):
+            if not isfinite(parameter):
+                if parameter in (inf, -inf) and kind in _INFINITE:
+                    continue
+                message = f"{self.what(kind, i)} of `{self.name}` is not a finite number"
+                self.report("not-finite", self.at(kind, i), message, hint="write a number")
+                return False
+        return True
+
+    def positive(self, kind: str, parameters: tuple[float, ...]) -> bool:
+        for i in _POSITIVE.get(kind, ()):
+            if not parameters[i] > 0:
+                message = f"{self.what(kind, i)} of `{self.name}` is {parameters[i]:g}: it has to be above 0"
+                self.report("not-positive", self.at(kind, i), message, hint="it says how wide the term is")
+                return False
+        return True
+
+    def ordered(self, kind: str, parameters: tuple[float, ...]) -> bool:
+        values = parameters[::2] if kind == "discrete" else parameters
+        if kind in _ASCENDING:
+            for i in range(1, len(values)):
+                if values[i] < values[i - 1]:
+                    message = f"{self.what(kind, i)} of `{self.name}`, {values[i]:g}, comes before {values[i - 1]:g}"
+                    hint = f"write them in ascending order: {', '.join(f'{v:g}' for v in sorted(values))}"
+                    self.report("not-ascending", self.at(kind, i), message, hint=hint)
+                    return False
+        if kind in _DIFFERENT and values[0] == values[1]:
+            message = f"`{kind}` of `{self.name}` begins and ends at {values[0]:g}"
+            self.report("empty-term", (*self.path, kind), message, hint="give it two different numbers")
+            return False
+        return True
+
+    def what(self, kind: str, i: int) -> str:
+        return (
+            f"point {i + 1}" if kind == "discrete" else f"the {TERMS[kind][i]}" if i < len(TERMS[kind]) else "a number"
+        )
+
+    def at(self, kind: str, i: int) -> Path:
+        return (*self.path, kind) if kind == "constant" else (*self.path, kind, i)
+
+
+def _flat(value: Any) -> tuple[float, ...]:
+    """A number, a list of numbers or a list of points as one row of numbers."""
+    if isinstance(value, list | tuple):
+        return tuple(number for item in value for number in _flat(item))
+    return (float(value),)

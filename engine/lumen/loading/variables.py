@@ -1,0 +1,100 @@
+"""The variables of a fuzzy controller: range, terms, and an output's way to a number."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import isfinite
+from typing import Any
+
+from lumen.interpreters.inference.weighted import INVERSES
+from lumen.language.controllers import WEIGHTED, Variable
+from lumen.language.diagnostics import Path
+from lumen.loading.source import Report
+from lumen.loading.terms import build_terms, plain_name
+
+
+def build_variables(data: Mapping[str, Any], report: Report, side: str) -> dict[str, Variable]:
+    """The usable `inputs` or `outputs` (`side`) of a controller's data, by name."""
+    reader = _Variables(data, report, side)
+    found = (reader.variable(name, spec) for name, spec in data[side].items())
+    return {variable.name: variable for variable in found if variable}
+
+
+class _Variables:
+    """Reads one side of a controller."""
+
+    def __init__(self, data: Mapping[str, Any], report: Report, side: str) -> None:
+        self.data, self.report, self.side = data, report, side
+        self.operators = data.get("operators") or {}
+
+    def variable(self, name: str, spec: Mapping[str, Any]) -> Variable | None:
+        self.named(name)
+        if "range" not in spec or "terms" not in spec:
+            return None
+        low, high = (float(end) for end in spec["range"])
+        if not self.spans(name, low, high):
+            return None
+        path: Path = (self.side, name)
+        variable = Variable(
+            name,
+            low,
+            high,
+            build_terms(spec["terms"], self.report, (*path, "terms"), len(self.data["inputs"])),
+            unit=spec.get("unit", ""),
+            direction=spec.get("direction", ""),
+            default=spec.get("default"),
+            neutral=spec.get("neutral"),
+            lock_range=spec.get("lock-range", False),
+            lock_previous=spec.get("lock-previous", False),
+            where=path,
+        )
+        if self.side == "outputs":
+            variable = self.defuzzified(variable, spec)
+        self.fits(variable)
+        return variable
+
+    def named(self, name: str) -> None:
+        plain_name(name, self.report, (self.side, name))
+        if self.side == "outputs" and name in self.data["inputs"]:
+            message = f"`{name}` is an input already"
+            self.report("duplicate-variable", ("outputs", name), message, hint="give one another name", key=True)
+
+    def spans(self, name: str, low: float, high: float) -> bool:
+        """Whether the range holds something; an input's may be without end."""
+        path: Path = (self.side, name, "range")
+        if not low < high:
+            hint = f"write [{high:g}, {low:g}]" if high < low else "the second number has to be greater"
+            self.report("empty-range", path, f"the range [{low:g}, {high:g}] of `{name}` is empty", hint=hint)
+        elif self.side == "outputs" and not (isfinite(low) and isfinite(high)):
+            message = f"the range of the output `{name}` has no end"
+            self.report("not-finite", path, message, hint="its set is sampled between two numbers")
+        else:
+            return True
+        return False
+
+    def defuzzified(self, variable: Variable, spec: Mapping[str, Any]) -> Variable:
+        """The output with its own or the file's way to a number; weights add up where nothing else is said."""
+        said = {**self.operators, **spec}
+        method = said.get("defuzzifier", "centroid")
+        usual = "unbounded-sum" if method in WEIGHTED else "maximum"
+        return replace(
+            variable,
+            defuzzifier=method,
+            aggregation=said.get("aggregation", usual),
+            resolution=int(said.get("resolution", 1000)),
+        )
+
+    def fits(self, variable: Variable) -> None:
+        """Report terms that the variable can't use: a value where a set is asked for, or the other way round."""
+        output = self.side == "outputs"
+        weighted = output and variable.defuzzifier in WEIGHTED
+        for term in variable.terms.values():
+            path = (*term.where, term.kind)
+            if weighted and term.kind not in ("constant", "linear", *INVERSES):
+                message = f"`{variable.defuzzifier}` can't use `{term.kind}`, which has no single value"
+                hint = f"use one of `constant`, `linear`, {', '.join(f'`{k}`' for k in INVERSES)}"
+                self.report("term-without-value", path, message, hint=hint, key=True)
+            elif not weighted and term.kind in ("constant", "linear"):
+                what = f"`{variable.defuzzifier}` needs sets" if output else "an input needs sets"
+                hint = "use `defuzzifier: weighted-average`" if output else "use a shape, as `triangle`"
+                message = f"{what}, and `{term.kind}` is a single value"
+                self.report("term-without-set", path, message, hint=hint, key=True)

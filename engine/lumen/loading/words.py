@@ -1,0 +1,53 @@
+"""The place of a single word within a text of a document."""
+
+from lumen.language.diagnostics import Path, Place
+from lumen.loading.source import Document
+
+
+def place_of(document: Document, path: Path, text: str, offset: int, length: int) -> Place:
+    """The place of `text[offset : offset + length]`, where `text` is the scalar at `path`.
+
+    Follows the text through quotes, folded lines and blocks by its visible characters. What can't be followed so (an
+    escape), and a document without a source, gives the place of the whole text. At the end of the text it is the
+    character after it.
+    """
+    whole = document.place(path)
+    columns = _columns(document, whole, text)
+    if not columns:
+        return whole
+    shown = [i for i, c in enumerate(text) if not c.isspace()]
+    inside = [columns[i] for i in shown if offset <= i < offset + max(length, 1)]
+    if not inside:
+        line, column = columns[shown[-1]]
+        return Place(whole.file, line, column + 1, line, column + 2)
+    (line, column), (end_line, end_column) = inside[0], inside[-1]
+    return Place(whole.file, line, column, end_line, end_column + 1)
+
+
+def _columns(document: Document, whole: Place, text: str) -> dict[int, tuple[int, int]]:
+    """Line and column of each visible character of the text; empty where one can't be found."""
+    lines = document.text.split("\n")
+    first = lines[whole.line - 1] if document.text and whole.line <= len(lines) else ""
+    line, column = whole.line, whole.column
+    if first[column - 1 : column] in ("|", ">"):
+        line, column = line + 1, 1
+    found: dict[int, tuple[int, int]] = {}
+    for i, character in enumerate(text):
+        if character.isspace():
+            continue
+        while line <= whole.end_line and line <= len(lines):
+            at = lines[line - 1].find(character, column - 1)
+            limit = whole.end_column - 1 if line == whole.end_line else len(lines[line - 1])
+            if 0 <= at < limit and _skippable(lines[line - 1][column - 1 : at]):
+                found[i] = (line, at + 1)
+                column = at + 2
+                break
+            line, column = line + 1, 1
+        else:
+            return {}
+    return found
+
+
+def _skippable(between: str) -> bool:
+    """Whether only spaces and quotes stand between two characters of a text."""
+    return not between.strip(" \t'\"")

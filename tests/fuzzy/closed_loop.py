@@ -1,0 +1,84 @@
+"""A head, a camera and a face, without physics: joints that move at limited speed, images that arrive late."""
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import copysign, degrees, radians
+
+from lumen.interpreters.projection import Vector, centring, seen
+from lumen.interpreters.tracking import Tracker
+from lumen.language.controllers import Controller
+from tests.fuzzy.nao import HEAD, TOP
+
+STEP = 1 / 300
+"""[s] of the joints' motion."""
+
+Pose = tuple[float, float]
+
+
+@dataclass
+class Run:
+    """The head's yaw and pitch [rad] by time [s], and where the face was in each image [px]."""
+
+    poses: list[tuple[float, float, float]]
+    pixels: list[tuple[float, float] | None]
+
+    def settled(self, axis: int, goal: float, within: float = radians(0.5)) -> float:
+        """[s] after which the axis (0 yaw, 1 pitch) never leaves the goal again."""
+        return next((pose[0] for pose in reversed(self.poses) if abs(pose[1 + axis] - goal) > within), 0.0)
+
+    def overshoot(self, axis: int, goal: float) -> float:
+        """How far the axis went beyond the goal, as a part of the way to it."""
+        way = self.poses[0][1 + axis] - goal
+        return max(0.0, *(-(pose[1 + axis] - goal) * copysign(1.0, way) for pose in self.poses)) / abs(way)
+
+
+def run(
+    controller: Controller,
+    face: Callable[[float], Vector],
+    start: Pose,
+    *,
+    latency: float = 0.0,
+    tick: float = 0.033,
+    duration: float = 4.0,
+) -> Run:
+    """Let the controller follow a face (its place in the torso frame [m] by time) for `duration` [s]."""
+    tracker = Tracker(controller, HEAD)
+    head, target = list(start), list(start)
+    arriving: deque[tuple[float, tuple[float, float], float]] = deque()
+    result, ticks = Run([], []), 0
+    speeds = [HEAD.joints[joint].speed * controller.tracking.speed for joint in ("HeadYaw", "HeadPitch")]
+    for now in (k * STEP for k in range(round(duration / STEP))):
+        if now >= ticks * tick - 1e-9:
+            ticks += 1
+            tracker.pose(now, {"HeadYaw": head[0], "HeadPitch": head[1]})
+            pixel = seen(face(now), TOP, head[0], head[1])
+            result.pixels.append(pixel)
+            if pixel:
+                arriving.append((now + latency, pixel, now))
+            while arriving and arriving[0][0] <= now + 1e-9:
+                _, (u, v), captured_at = arriving.popleft()
+                if aim := tracker.see({"x": round(u), "y": round(v)}, captured_at):
+                    target = [aim["HeadYaw"], aim["HeadPitch"]]
+        for i, speed in enumerate(speeds):
+            head[i] += max(-speed * STEP, min(speed * STEP, target[i] - head[i]))
+        result.poses.append((now, head[0], head[1]))
+    return result
+
+
+def off_by(face: Vector, yaw: float, pitch: float) -> Pose:
+    """The head's pose [rad] that is so far [deg] beside the one that centres the face."""
+    goal = centring(face, TOP)
+    return goal[0] + radians(yaw), goal[1] + radians(pitch)
+
+
+def figures(controller: Controller, face: Vector, yaw: float, pitch: float, latency: float, tick: float) -> list[str]:
+    """Overshoot, settling time and final error of one run, for a report."""
+    goal = centring(face, TOP)
+    outcome = run(controller, lambda now: face, off_by(face, yaw, pitch), latency=latency, tick=tick)
+    last = outcome.poses[-1]
+    return [
+        f"{name}: overshoot {100 * outcome.overshoot(i, goal[i]):.1f} %, settled {outcome.settled(i, goal[i]):.2f} s, "
+        f"rests {degrees(last[1 + i] - goal[i]):+.2f} deg"
+        for i, name in enumerate(("yaw", "pitch"))
+    ]
