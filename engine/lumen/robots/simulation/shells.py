@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
 Section = tuple[float, float, float, float, float, float]
-"""Place along the axis, centre (x, y of the ring), half widths (x, y of the ring), exponent (2 an ellipse, more a box)."""
+"""Place along the axis, centre and half widths (x, y of the ring each), exponent (2 an ellipse, more a box)."""
 
 SEGMENTS, STEPS = 28, 3
 
