@@ -21,7 +21,7 @@ LIMIT = 600.0
 
 @dataclass
 class Run:
-    """What happened: texts with their times [s], motions begun, states in the order entered, errors, log lines."""
+    """What happened: texts with their times [s], motions begun, states entered in order, errors by name, log lines."""
 
     failure: str = ""
     time: float = 0.0
@@ -46,7 +46,7 @@ def play(project: Project, story: Story) -> Run:
 
     def observe(step: Step) -> None:
         run.entered += step.entered
-        run.errors += step.errors
+        run.errors += [event.name for event in step.raised if event.name.startswith("error.")]
         player.observe(step)
 
     def performing(command: Command, now: float) -> None:

@@ -1,0 +1,125 @@
+"""What the documentation says of the files is what the files and the schemas say."""
+
+import json
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.cli.main import VERBS
+from tests.tour.names import ROOT
+
+FOLDERS = ("behaviors", "fuzzy", "motions", "schemas", "models")
+CHANGE = (ROOT / "docs" / "change-the-tour.md").read_text("utf-8")
+VOCABULARY = (ROOT / "docs" / "yaml.md").read_text("utf-8")
+PAPER = (ROOT / "docs" / "paper.md").read_text("utf-8")
+BLOCKS = re.findall(r"```yaml\n(.*?)```", CHANGE, re.S)
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """The shipped project, to be changed."""
+    shutil.copy(ROOT / "lumen.yaml", tmp_path)
+    for folder in FOLDERS:
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    return tmp_path
+
+
+def change(project: Path, old: str, new: str) -> None:
+    """Replace a text of the tour once; it has to be there."""
+    tour = project / "behaviors" / "tour.yaml"
+    text = tour.read_text("utf-8")
+    assert old in text
+    tour.write_text(text.replace(old, new, 1), "utf-8")
+
+
+def test_the_state_that_the_tutorial_shows_is_the_one_in_the_tour() -> None:
+    assert BLOCKS[0] in (ROOT / "behaviors" / "tour.yaml").read_text("utf-8")
+
+
+def test_the_tutorials_question_can_be_added(copy: Path) -> None:
+    change(copy, "\ntype: parallel\n", f"{BLOCKS[1]}\ntype: parallel\n")
+    assert lumen.check(copy) == []
+    row = lumen.load(copy).machine.answers["faq"][-1]
+    assert "your favourite colour" in row.phrases["en"]
+
+
+def test_the_tutorials_motion_can_be_added(copy: Path) -> None:
+    before = BLOCKS[0].partition("            do:\n")[2]
+    change(copy, f"            do:\n{before}", BLOCKS[2])
+    assert lumen.check(copy) == []
+
+
+def test_lint_says_what_the_tutorial_quotes(copy: Path) -> None:
+    change(copy, f"{BLOCKS[0]}            onDone: offer\n", f"{BLOCKS[0]}            onDone: ofer\n")
+    quoted = next(line.strip() for line in CHANGE.splitlines() if "[unknown-state]" in line)
+    assert [str(d) for d in lumen.check(copy)] == [quoted]
+
+
+@pytest.mark.parametrize("kind", ["behavior", "story", "motion", "controller", "lumen"])
+def test_the_vocabulary_names_every_key_of_the_schemas(kind: str) -> None:
+    schema = json.loads((ROOT / "schemas" / f"{kind}.schema.json").read_text("utf-8"))
+    written = set(re.findall(r"[A-Za-z_]+", " ".join(re.findall(r"`[^`]+`", VOCABULARY))))
+    wanted = set(schema["properties"])
+    if kind == "behavior":
+        wanted |= {key for name in ("state", "transition", "action") for key in schema["$defs"][name]["properties"]}
+    if kind == "story":
+        step = schema["$defs"]["step"]["properties"]
+        wanted |= {*step, *step["expect"]["properties"]}
+    if kind == "motion":
+        wanted |= set(schema["$defs"]["keyframe"]["properties"])
+    if kind == "lumen":
+        wanted |= set(schema["$defs"]["route"]["properties"])
+    assert wanted - written == set()
+
+
+def test_the_schemas_know_every_file_that_the_vocabulary_lists() -> None:
+    for name in re.findall(r"`(schemas/[a-z]+\.schema\.json)`", VOCABULARY):
+        assert (ROOT / name).is_file(), name
+
+
+def commands(text: str) -> Iterator[list[str]]:
+    """The commands between backticks or in indented lines."""
+    for found in re.findall(r"`((?:lumen|make|pytest|python) [^`]+)`", text):
+        yield found.split()
+    for line in text.splitlines():
+        if re.match(r" {4}(lumen|make|pytest|python) ", line):
+            yield line.split()
+
+
+@pytest.mark.parametrize("page", ["change-the-tour.md", "yaml.md", "paper.md"])
+def test_the_commands_in_the_documentation_exist(page: str) -> None:
+    makefile = (ROOT / "Makefile").read_text("utf-8")
+    for command, *rest in commands((ROOT / "docs" / page).read_text("utf-8")):
+        match command:
+            case "lumen":
+                assert rest[0] in VERBS, rest
+                exists(rest, "--story", ROOT / "behaviors" / "stories")
+                if rest[0] == "play":
+                    assert (ROOT / "motions" / f"{rest[1]}.yaml").is_file(), rest
+            case "make":
+                assert f"\n{rest[0]}:" in makefile, rest
+            case _:
+                assert (ROOT / rest[0].partition("::")[0]).exists(), rest
+
+
+def exists(words: list[str], option: str, folder: Path) -> None:
+    if option in words:
+        name: Any = words[words.index(option) + 1]
+        assert (folder / f"{name}.yaml").is_file(), words
+
+
+def test_the_paper_has_a_row_for_each_figure_table_and_conclusion() -> None:
+    lines = [line for line in PAPER.splitlines() if line.startswith("| ")]
+    rows = [line for line in lines if not line.startswith(("| paper", "| ---"))]
+    figures = {int(n) for row in rows for n in re.findall(r"^\| Fig\. (\d+)", row)}
+    assert figures == set(range(1, 18))
+    for named in ("Table 1", "Table 2", "The table of the state machine", "Code:", "1. ", "2. ", "3a. ", "4. "):
+        assert any(row.startswith(f"| {named}") for row in rows), named
+    for row in rows:
+        reproduced = re.search(r"`(lumen|make|pytest|python) ", row)
+        assert reproduced or "missing" in row or "as Fig." in row, row
