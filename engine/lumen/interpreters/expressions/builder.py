@@ -110,6 +110,11 @@ class Builder:
         name = f"v{next(self.temporary)}"
         return ast.NamedExpr(ast.Name(name, ast.Store()), value), _load(name)
 
+    def hidden(self, node: Node) -> ast.expr:
+        """The node, so that Python does not see where it is a literal: it would warn of `1['a']` and `1 is None`."""
+        built = self.node(node)
+        return self.named(built)[0] if isinstance(node, Literal | Items) else built
+
     def build(self, node: Node) -> ast.expr:
         match node:
             case Literal(value=value):
@@ -117,9 +122,9 @@ class Builder:
             case Name(name=name):
                 return _at(_load("scope"), ROOTS.index(name))
             case Field(base=base, name=name):
-                return _at(self.node(base), name)
+                return _at(self.hidden(base), name)
             case Index(base=base, key=Literal(value=str() as key)):
-                return _at(self.node(base), key)
+                return _at(self.hidden(base), key)
             case Items(items=items):
                 return ast.List([self.node(item) for item in items], ast.Load())
             case Entries(keys=keys, values=entries):
@@ -175,7 +180,7 @@ class Builder:
             operator: ast.cmpop = ast.IsNot() if negated else ast.Is()
         else:
             operator = ast.NotEq() if negated else ast.Eq()
-        return ast.Compare(self.node(left), [operator], [self.node(right)])
+        return ast.Compare(self.hidden(left), [operator], [self.node(right)])
 
     def compares_number(self, sign: str, left: Node, right: Literal) -> ast.expr:
         """`left < number` without a call where `left` is an int, and with all checks where it is not."""

@@ -64,7 +64,7 @@ def _failing(traceback: TracebackType | None, tree: Node) -> Node:
 def _missing(error: KeyError | TypeError, source: str, node: Field | Index, scope: Scope) -> ExpressionError:
     base = source[node.base.offset : node.base.end]
     at = node.end - len(node.name) if isinstance(node, Field) else node.key.offset
-    name = node.name if isinstance(node, Field) else source[node.key.offset : node.key.end]
+    name = node.name if isinstance(node, Field) else source[node.key.offset : node.key.end].strip("'\"")
     value = _value(node.base, scope)
     if base == "event" and value is None:
         return ExpressionError("there is no event here", node.offset)

@@ -80,7 +80,7 @@ class _Parser:
     def expression(self, power: int) -> Node:
         """An expression whose operators all bind more tightly than `power`."""
         self.level += 1
-        if self.level > MAX_DEPTH:
+        if self.level > 2 * MAX_DEPTH:  # brackets make levels here, though none in the tree
             raise _too_deep(self.token.offset)
         left = self.prefix()
         while (stronger := _POWERS.get(self.token.text, 0)) > power:

@@ -1,8 +1,8 @@
 """The patterns of `matches`: regular expressions in time proportional to the text.
 
 Ours because Python's `re` tries alternatives one after another, so that an innocent pattern can take minutes on a
-text that a message brought. What others repeat without bound inside a repetition is refused all the same, because
-authors who write it mean something simpler.
+text that a message brought. A pattern is read into parts and those become an automaton. Repetitions inside
+repetitions, references back and looking around are refused: they are where patterns become riddles.
 """
 
 import re
@@ -17,7 +17,7 @@ _ATOM = re.compile(
 _CONFUSING = re.compile(r"\[|--|&&|\|\||~~")
 _COUNT = re.compile(r"\{(\d{1,4})(,?)(\d{0,4})\}")
 _MAX_GROUPS = 20
-MAX_STATES = 400
+MAX_STATES = 200
 
 
 @lru_cache(maxsize=512)
@@ -27,7 +27,7 @@ def compile_pattern(source: str) -> Pattern:
 
 
 class _Compiler:
-    """Reads a pattern from its end to its beginning of meaning: every part is built knowing where it leads."""
+    """Reads a pattern into nested parts, then builds their states from the last part to the first."""
 
     def __init__(self, source: str) -> None:
         self.ignore_case = source.startswith("(?i)")

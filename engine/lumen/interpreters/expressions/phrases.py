@@ -8,7 +8,8 @@ from unicodedata import category, normalize
 from lumen.interpreters.expressions.scope import CUT, Scope
 
 _APOSTROPHES = frozenset("'’ʼ‘`´")
-_AROUND = " \t\r\n.,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
+_BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace())
+_AROUND = _BLANKS + ".,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
 _TABLES = 256
 
 

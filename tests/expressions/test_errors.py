@@ -1,0 +1,123 @@
+"""What is said of expressions that can't be read, or have no value, and where."""
+
+import pytest
+
+from lumen.interpreters.expressions import ExpressionError, Scope, compile_expression, compile_guard
+from tests.expressions.scopes import SCOPE
+
+# source: offset, message, part of the hint
+UNREADABLE: dict[str, tuple[int, str, str]] = {
+    "": (0, "there is no expression", ""),
+    "1 +": (3, "the expression ends too early", ""),
+    "(1": (2, "the expression ends too early", "a `)` is missing"),
+    "[1 2]": (3, "`2` can't stand here", "a `]` is missing"),
+    "1 1": (2, "`1` can't stand here", ""),
+    "context.": (8, "the expression ends too early", "a name follows"),
+    "context.n = 2": (10, "`=` has no meaning here", "compare with `==`"),
+    "context.n & true": (10, "`&` has no meaning here", "`&&`"),
+    "context.n and true": (10, "`and` can't stand here", "write `&&`"),
+    "not true": (0, "`not` can't stand here", "write `!`"),
+    "True": (0, "`True` can't stand here", "write `true`"),
+    "in": (0, "`in` can't stand here", ""),
+    "true ? 1": (8, "the expression ends too early", "a `:` is missing"),
+    "'abc": (0, "this text is not closed", "close the text"),
+    "“abc”": (0, "`“` has no meaning here", "straight quotes"),
+    r"'\d'": (1, r"`\d` is not an escape", "r'…'"),
+    r"'\ud800'": (1, r"`\ud800` is not an escape", ""),
+    "12u": (2, "`u` can't follow a number", "no `u`"),
+    "9223372036854775808": (0, "`9223372036854775808` is too large", "64 bits"),
+    "1e999": (0, "`1e999` is too large a number", ""),
+    "{a: 1}": (1, "`a` can't stand here", "put the key in quotes: 'a'"),
+    "{'a': 1, 'a': 2}": (9, "the key 'a' stands twice", ""),
+    "visitor == 1": (0, "there is nothing named `visitor`", "`context`"),
+    "contxt.n": (0, "there is nothing named `contxt`", "did you mean `context`?"),
+    "hour == 1": (0, "there is nothing named `hour`", "write `hour(…)`"),
+    "sze('a')": (0, "there is no function `sze`", "did you mean `size`?"),
+    "context.name.startsWith('A')": (13, "there is no function `startsWith`", "did you mean `matches`?"),
+    "1 + size()": (4, "`size` takes 1 argument, and none are given", "write `size(text)`"),
+    "hour(1)": (0, "`hour` takes no arguments, and 1 is given", "write `hour()`"),
+    "'a'.contains()": (4, "`contains` takes 2 arguments, and 1 is given", ""),
+    "has(1)": (4, "`has` asks whether a field is there", "has(event.data.x)"),
+    "has(context)": (4, "`has` asks whether a field is there", ""),
+    "matches('a', context.name)": (13, "`matches` needs its pattern written as a text", ""),
+    "matches('a', '(a+)+')": (13, "in the pattern, a repetition stands inside a repetition", ""),
+    "false && nothing()": (9, "there is no function `nothing`", ""),
+}
+WORTHLESS: dict[str, tuple[int, str, str]] = {
+    "context.m": (8, "`context` has no `m`", ""),
+    "context.nam": (8, "`context` has no `nam`", "did you mean `name`?"),
+    "1 + context.map.q": (16, "`context.map` has no `q`", "`context.map` has `a`"),
+    "context['nam']": (8, "`context` has no `nam`", "did you mean `name`?"),
+    "context.n.x": (10, "`context.n` is a number, so it has no `x`", ""),
+    "context.name['x']": (13, "`context.name` is a text, so it has no `x`", ""),
+    "context.list.x": (13, "`context.list` is a list, so it has no `x`", ""),
+    "lookup('x', 'faq').y": (19, "`lookup('x', 'faq')` is not a map, so it has no `y`", ""),
+    "context.list[3]": (0, "there is no element 3 in a list of 3", "the first one is 0"),
+    "context.list[-1]": (0, "there is no element -1 in a list of 3", ""),
+    "context.list[0.5]": (0, "there is no element 0.5 in a list of 3", ""),
+    "context.list[true]": (13, "`true` is true or false, and `[…]` needs a number", ""),
+    "context.map[context.n]": (12, "`context.n` is a number, and `[…]` needs a text", ""),
+    "context.n[0]": (0, "`context.n` is a number, and `[…]` needs a list or a map", ""),
+    "1 < 'a'": (0, "a number and a text don't go together in `<`", ""),
+    "context.yes < 2": (0, "true or false and a number don't go together in `<`", ""),
+    "[1] < [2]": (0, "a list and a list don't go together in `<`", ""),
+    "true && context.none >= 1": (8, "null and a number don't go together in `>=`", ""),
+    "1 + 'a'": (0, "a number and a text don't go together in `+`", ""),
+    "context.name - 1": (0, "`context.name` is a text, and `-` needs a number", ""),
+    "1 * context.name": (4, "`context.name` is a text, and `*` needs a number", ""),
+    "true + 1": (0, "true or false and a number don't go together in `+`", ""),
+    "-context.name": (1, "`context.name` is a text, and `-` needs a number", ""),
+    "!context.n": (1, "`context.n` is a number, and `!` needs true or false", ""),
+    "true && context.n": (8, "`context.n` is a number, and true or false is needed", ""),
+    "context.n || false": (0, "`context.n` is a number, and true or false is needed", ""),
+    "context.n ? 1 : 2": (0, "`context.n` is a number, and true or false is needed", ""),
+    "1 / 0": (0, "this divides by zero", ""),
+    "1.5 / 0.0": (0, "this divides by zero", ""),
+    "1 % 0": (0, "this divides by zero", ""),
+    "context.big + 1": (0, "the number becomes too large", "64 bits"),
+    "context.big * context.big": (0, "the number becomes too large", ""),
+    "-9223372036854775808 / -1": (0, "the number becomes too large", ""),
+    "1e308 * 10": (0, "the number becomes too large", ""),
+    "1 in 'a'": (5, "`'a'` is a text, and `in` needs a list or a map", ""),
+    "size(1)": (5, "`1` is a number, and `size` needs a text or a list or a map", ""),
+    "contains('a', context.n)": (14, "`context.n` is a number, and `contains` needs a text", ""),
+    "lower(context.none)": (6, "`context.none` is null, and `lower` needs a text", ""),
+    "heard('a', 'danse')": (0, "there are no phrases named `danse`", "did you mean `dance`?"),
+    "lookup('a', 'fqa')": (0, "there are no answers named `fqa`", "did you mean `faq`?"),
+}
+
+
+@pytest.mark.parametrize("source", UNREADABLE)
+def test_unreadable(source: str) -> None:
+    with pytest.raises(ExpressionError) as raised:
+        compile_expression(source)
+    expect(raised.value, UNREADABLE[source])
+
+
+@pytest.mark.parametrize("source", WORTHLESS)
+def test_worthless(source: str) -> None:
+    evaluate = compile_expression(source)
+    with pytest.raises(ExpressionError) as raised:
+        evaluate(SCOPE)
+    expect(raised.value, WORTHLESS[source])
+
+
+def expect(error: ExpressionError, expected: tuple[int, str, str]) -> None:
+    assert (error.offset, error.message) == expected[:2]
+    assert expected[2] in error.hint
+    assert "\n" not in str(error)
+
+
+def test_no_event() -> None:
+    with pytest.raises(ExpressionError, match="there is no event here"):
+        compile_expression("event.data.x")(Scope())
+
+
+def test_a_guard_is_true_or_false() -> None:
+    with pytest.raises(ExpressionError, match=r"`context\.n` is a number, and true or false is needed"):
+        compile_guard("context.n")(SCOPE)
+
+
+def test_what_is_not_json_is_refused() -> None:
+    with pytest.raises(ExpressionError, match="a value here that an expression can't use"):
+        compile_expression("context.x == context.x")(Scope(context={"x": object()}))

@@ -1,0 +1,207 @@
+"""Laws of the language, on random expressions."""
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from lumen.interpreters.expressions import (
+    ExpressionError,
+    Node,
+    Scope,
+    check_expression,
+    check_template,
+    compile_expression,
+    compile_guard,
+    compile_template,
+    parse_expression,
+    unparse,
+)
+from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Call,
+    Choice,
+    Entries,
+    Field,
+    Index,
+    Items,
+    Literal,
+    Logic,
+    Name,
+    Unary,
+)
+from tests.expressions.scopes import SCOPE
+
+PATIENT = settings(deadline=None)
+"""A busy machine is no fault of an expression."""
+
+WORDS = st.sampled_from(
+    ["n", "x", "name", "list", "map", "a", "b", "none", "yes", "data", "result", "path", "q", "in", "true"]
+)
+LITERALS = st.one_of(
+    st.none(), st.booleans(), st.integers(-(2**63), 2**63 - 1), st.integers(-3, 3), st.text(max_size=5),
+    st.floats(allow_nan=False, allow_infinity=False),
+).map(Literal)  # fmt: skip
+ROOTS = st.sampled_from(["context", "event", "state"]).map(Name)
+PATHS = st.recursive(ROOTS, lambda base: st.builds(Field, base, WORDS), max_leaves=4)
+SIGNS = st.sampled_from(["==", "!=", "<", "<=", ">", ">=", "in", "+", "-", "*", "/", "%"])
+
+
+def _minus(operand: Node) -> bool:
+    """`-` before a number is read as a part of it, so that the tree of it can't come from a text."""
+    return not (isinstance(operand, Literal) and type(operand.value) in (int, float))
+
+
+def _larger(nodes: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
+    several = st.lists(nodes, min_size=2, max_size=3).map(tuple)
+    keys = st.lists(st.text(max_size=3), max_size=3, unique=True).map(tuple)
+    entries = keys.flatmap(lambda k: st.tuples(st.just(k), st.tuples(*[nodes] * len(k))))
+    calls = st.sampled_from(sorted(FUNCTIONS)).flatmap(
+        lambda name: st.tuples(st.just(name), st.tuples(*[nodes] * len(FUNCTIONS[name].parameters)))
+    )
+    unary = st.builds(Unary, st.just("!"), nodes) | st.builds(Unary, st.just("-"), nodes.filter(_minus))
+    return st.one_of(
+        st.builds(Field, nodes, WORDS),
+        st.builds(Index, nodes, nodes),
+        st.lists(nodes, max_size=3).map(tuple).map(Items),
+        entries.map(lambda e: Entries(*e)),
+        unary,
+        st.builds(Binary, SIGNS, nodes, nodes),
+        st.builds(Logic, st.sampled_from(["&&", "||"]), several),
+        st.builds(Choice, nodes, nodes, nodes),
+        calls.map(lambda c: Call(*c)),
+    )
+
+
+TREES = st.recursive(LITERALS | PATHS, _larger, max_leaves=15)
+
+
+def run(source: str, scope: Scope) -> Any:
+    """The value, or None where there is none; warnings of Python's compiler count as failures."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return attempt(source, lambda: compile_expression.__wrapped__(source)(scope))
+
+
+def attempt(source: str, action: Callable[[], Any]) -> Any:
+    """What the action returns, or None where it raises an ExpressionError; its place must be in the source."""
+    offset = 0
+    try:
+        return action()
+    except ExpressionError as error:
+        offset = error.offset
+    assert 0 <= offset <= len(source)
+    return None
+
+
+@PATIENT
+@given(TREES)
+@example(Literal("\x7f\u2028\"'\\\n"))
+@example(Field(Literal(-1), "a"))
+@example(Unary("-", Field(Literal(1), "a")))
+@example(Logic("&&", (Logic("&&", (Literal(True), Literal(False))), Literal(True))))
+def test_printed_and_parsed_it_is_the_same_tree(tree: Node) -> None:
+    assert repr_without_places(parse_expression(unparse(tree))) == repr_without_places(tree)
+
+
+def repr_without_places(tree: Any) -> Any:
+    """The tree as tuples, in which 1, 1.0 and true are different."""
+    if isinstance(tree, tuple):
+        return tuple(map(repr_without_places, tree))
+    if not hasattr(tree, "__slots__"):
+        return repr(tree)
+    shown = {name: getattr(tree, name) for name in tree.__match_args__ if name not in ("offset", "end", "named")}
+    return type(tree).__name__, {name: repr_without_places(value) for name, value in shown.items()}
+
+
+@PATIENT
+@given(TREES)
+@example(Binary("==", Literal(1), Literal(None)))
+@example(Field(Items((Literal(1),)), "a"))
+@example(Index(Literal("a"), Literal("a")))
+def test_evaluation_gives_a_value_or_an_expression_error(tree: Node) -> None:
+    run(unparse(tree), SCOPE)
+    run(unparse(tree), Scope())
+    check_expression(unparse(tree), context={"n": {"type": "integer"}, "map": {"type": "object"}}, events={"heard": {}})
+
+
+@PATIENT
+@given(TREES)
+def test_evaluation_is_pure(tree: Node) -> None:
+    before = repr(SCOPE)
+    first = run(unparse(tree), SCOPE)
+    assert repr(run(unparse(tree), SCOPE)) == repr(first)
+    assert repr(SCOPE) == before
+
+
+@PATIENT
+@given(TREES)
+def test_what_is_found_wrong_has_no_value(tree: Node) -> None:
+    """A type mismatch at the top that lint is sure of is an error at run time, or a comparison decided before."""
+    source = unparse(Binary("-", tree, Literal(1)))
+    found = check_expression(source, context=None)
+    if any(f.code == "type-mismatch" and f.message.endswith("needed by `-`") and f.offset == 0 for f in found):
+        assert run(source, SCOPE) is None
+
+
+@PATIENT
+@given(st.lists(TREES, min_size=2, max_size=4))
+def test_the_order_of_a_conjunction_does_not_matter(trees: list[Node]) -> None:
+    def decided(operands: list[Node]) -> Any:
+        return run(unparse(Logic("&&", tuple(operands))), SCOPE)
+
+    assert decided(trees) is decided(trees[::-1])
+
+
+@PATIENT
+@given(st.binary(max_size=60).map(lambda data: data.decode("utf-8", "surrogateescape")) | st.text(max_size=60))
+def test_any_text_is_read_or_refused(source: str) -> None:
+    run(source, SCOPE)
+    check_expression(source, context={})
+    check_template(source, context={})
+
+
+PIECES = [
+    "context",
+    ".",
+    "n",
+    "event",
+    "(",
+    ")",
+    "[",
+    "]",
+    "{",
+    "}",
+    "'a'",
+    ",",
+    ":",
+    "?",
+    "&&",
+    "||",
+    "!",
+    "-",
+    "+",
+    "==",
+    "<",
+    "1",
+    "2.5",
+    "in",
+    "size",
+    "has",
+    "{{",
+    "}}",
+    " ",
+    "'",
+    "null",
+]
+
+
+@PATIENT
+@given(st.lists(st.sampled_from(PIECES), max_size=15).map("".join))
+def test_any_row_of_pieces_is_read_or_refused(source: str) -> None:
+    run(source, SCOPE)
+    attempt(source, lambda: compile_guard(source)(SCOPE))
+    attempt(source, lambda: compile_template(source)(SCOPE))
