@@ -65,3 +65,10 @@ def test_a_robot_with_its_motors_off_does_not_get_up_by_itself(project: Project,
 def test_whatever_of_the_robot_is_broken_it_is_idle_again(project: Project, verb: str, how: str) -> None:
     deeds = [Arrive(Visitor()), Expect(("talking",)), Expect(("goodbye",), within=90.0), Leave(), Expect(("idle",))]
     assert visit(project, deeds, robot={verb: how}).failure == ""
+
+
+def test_a_stop_is_announced_even_where_the_robot_can_not_crouch(project: Project) -> None:
+    deeds = [Pause(1.0), Happen("stop"), Expect(("stopped", "paused"), said="I have stopped"), Pause(3.0)]
+    run = visit(project, deeds, robot={"rest": "fails"})
+    assert run.failure == ""
+    assert run.errors == ["error.communication"]

@@ -1,0 +1,51 @@
+"""One line of `behaviors/tour.yaml` changes, and the run changes; no Python is touched."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+import lumen
+from tests.tour.names import ROOT
+from tests.tour.playing import Run, play
+
+GLAD = "That is good to hear, {{ context.title_en }}."
+
+
+@pytest.fixture
+def changed(tmp_path: Path):  # type: ignore[no-untyped-def]
+    """Plays the shipped story on a project in whose tour a line was replaced."""
+    shutil.copy(ROOT / "lumen.yaml", tmp_path)
+    for folder in ("behaviors", "fuzzy", "motions", "schemas", "models"):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    tour = tmp_path / "behaviors" / "tour.yaml"
+
+    def replay(old: str, new: str) -> Run:
+        text = tour.read_text("utf-8")
+        assert text.count(old) == 1
+        tour.write_text(text.replace(old, new), "utf-8")
+        project = lumen.load(tmp_path)
+        return play(project, project.stories["visitor"])
+
+    return replay
+
+
+def test_another_text(changed) -> None:  # type: ignore[no-untyped-def]
+    run = changed(f'[I am glad to hear that., "{GLAD}"]', "[What a splendid day!]")
+    assert run.failure == ""
+    assert "What a splendid day!" in [text for _, text in run.said]
+
+
+def test_another_target(changed) -> None:  # type: ignore[no-untyped-def]
+    run = changed(
+        "heard(event.data.result, 'fine')\", target: fine}", "heard(event.data.result, 'fine')\", target: offer}"
+    )
+    assert "fine" not in run.guide()
+    assert "expected" in run.failure
+    assert "`fine`" in run.failure
+
+
+def test_another_motion(changed) -> None:  # type: ignore[no-untyped-def]
+    run = changed("- {play: dance}", "- {play: photo}")
+    assert run.played == ["photo"]
+    assert "the motion `dance`" in run.failure
