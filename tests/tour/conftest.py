@@ -1,7 +1,11 @@
+import shutil
+from pathlib import Path
+
 import pytest
 
 import lumen
 from lumen.language.projects import Project
+from lumen.loading.project import FOLDERS, MAIN_FILE
 from tests.tour.names import ROOT
 
 
@@ -9,3 +13,12 @@ from tests.tour.names import ROOT
 def project() -> Project:
     """The shipped exhibition."""
     return lumen.load(ROOT)
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """A copy of the shipped exhibition, to be changed."""
+    shutil.copy(ROOT / MAIN_FILE, tmp_path)
+    for folder in FOLDERS:
+        shutil.copytree(ROOT / folder, tmp_path / folder)
+    return tmp_path

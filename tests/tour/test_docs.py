@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,20 +12,10 @@ import lumen
 from lumen.cli.main import VERBS
 from tests.tour.names import ROOT
 
-FOLDERS = ("behaviors", "fuzzy", "motions", "schemas", "models")
 CHANGE = (ROOT / "docs" / "change-the-tour.md").read_text("utf-8")
 VOCABULARY = (ROOT / "docs" / "yaml.md").read_text("utf-8")
 PAPER = (ROOT / "docs" / "paper.md").read_text("utf-8")
 BLOCKS = re.findall(r"```yaml\n(.*?)```", CHANGE, re.S)
-
-
-@pytest.fixture
-def copy(tmp_path: Path) -> Path:
-    """The shipped project, to be changed."""
-    shutil.copy(ROOT / "lumen.yaml", tmp_path)
-    for folder in FOLDERS:
-        shutil.copytree(ROOT / folder, tmp_path / folder)
-    return tmp_path
 
 
 def change(project: Path, old: str, new: str) -> None:

@@ -37,7 +37,7 @@ def test_what_is_said_during_the_greeting_does_not_cut_it(project: Project) -> N
 
 def test_another_trouble_during_the_first_is_not_forgotten_by_the_guide(project: Project) -> None:
     """A fall while the battery's call is on: the guide stays out of it until the robot stands."""
-    deeds = [
+    deeds: list[Deed] = [
         Arrive(Visitor()),
         Expect(("ask_name",)),
         Happen("battery.low", {"percentage": 9}),
@@ -52,9 +52,11 @@ def test_another_trouble_during_the_first_is_not_forgotten_by_the_guide(project:
 @pytest.mark.parametrize("state", ["stopped", "resting", "helpless"])
 def test_a_robot_with_its_motors_off_does_not_get_up_by_itself(project: Project, state: str) -> None:
     """`fallen` there is noted, and nothing moves until a hand holds its head."""
-    begin = {"stopped": [Happen("stop")], "resting": [Happen("head.held")], "helpless": [Happen("fallen")]}[state]
+    begin: list[Deed] = {"stopped": [Happen("stop")], "resting": [Happen("head.held")], "helpless": [Happen("fallen")]}[
+        state
+    ]
     robot = {"posture": "fails"} if state == "helpless" else {}
-    deeds = [Pause(1.0), *begin, Expect((state,)), Happen("fallen"), Pause(5.0), Expect((state, "paused"))]
+    deeds: list[Deed] = [Pause(1.0), *begin, Expect((state,)), Happen("fallen"), Pause(5.0), Expect((state, "paused"))]
     run = visit(project, deeds, robot=robot)
     assert run.failure == ""
     assert any("fallen" in line for line in run.logged)
@@ -63,12 +65,18 @@ def test_a_robot_with_its_motors_off_does_not_get_up_by_itself(project: Project,
 @pytest.mark.parametrize("verb", ["say", "play", "posture", "wake", "rest"])
 @pytest.mark.parametrize("how", ["fails", "hangs"])
 def test_whatever_of_the_robot_is_broken_it_is_idle_again(project: Project, verb: str, how: str) -> None:
-    deeds = [Arrive(Visitor()), Expect(("talking",)), Expect(("goodbye",), within=90.0), Leave(), Expect(("idle",))]
+    deeds: list[Deed] = [
+        Arrive(Visitor()),
+        Expect(("talking",)),
+        Expect(("goodbye",), within=90.0),
+        Leave(),
+        Expect(("idle",)),
+    ]
     assert visit(project, deeds, robot={verb: how}).failure == ""
 
 
 def test_a_stop_is_announced_even_where_the_robot_can_not_crouch(project: Project) -> None:
-    deeds = [Pause(1.0), Happen("stop"), Expect(("stopped", "paused"), said="I have stopped"), Pause(3.0)]
+    deeds: list[Deed] = [Pause(1.0), Happen("stop"), Expect(("stopped", "paused"), said="I have stopped"), Pause(3.0)]
     run = visit(project, deeds, robot={"rest": "fails"})
     assert run.failure == ""
     assert run.errors == ["error.communication"]
