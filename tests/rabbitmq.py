@@ -4,6 +4,9 @@
 """
 
 import atexit
+import base64
+import hashlib
+import json
 import os
 import shutil
 import signal
@@ -18,6 +21,11 @@ import pytest
 
 PREFIX = Path("/usr/lib/rabbitmq/lib")
 READY = 60.0
+HASHING = "rabbit_password_hashing_sha256"
+
+
+USERS = {"guest": (".*", ".*"), "visual": (r"^lumen\.visual\.", r"^avatar\.")}
+"""Who may use the broker: which keys of `amq.topic` each may write, and which read."""
 
 
 class RabbitMQ:
@@ -26,13 +34,18 @@ class RabbitMQ:
     def __init__(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="lumen-rabbitmq-"))
         self.port, self.distribution, self.epmd = _free_ports(3)
-        self.url = f"amqp://guest:guest@127.0.0.1:{self.port}/"
+        self.url = self.url_of("guest")
         self._process: subprocess.Popen[bytes] | None = None
+
+    def url_of(self, user: str) -> str:
+        """The address for one of `USERS`, whose password is the same as the name."""
+        return f"amqp://{user}:{user}@127.0.0.1:{self.port}/"
 
     def start(self) -> None:
         """Start it, or start it again with what it had stored, and wait until it accepts connections."""
         (self.folder / "plugins").write_text("[].")
-        (self.folder / "rabbitmq.conf").write_text("loopback_users.guest = true\n")
+        (self.folder / "rabbitmq.conf").write_text(f"load_definitions = {self.folder}/definitions.json\n")
+        (self.folder / "definitions.json").write_text(json.dumps(_definitions()))
         with (self.folder / "log").open("ab") as log:
             self._process = subprocess.Popen(
                 [_script()], env=self._environment(), stdout=log, stderr=log, start_new_session=True
@@ -105,6 +118,27 @@ def _shared() -> RabbitMQ:
     rabbitmq.start()
     atexit.register(rabbitmq.stop)
     return rabbitmq
+
+
+def _definitions() -> dict[str, object]:
+    """Users and permissions as the broker imports them."""
+    return {
+        "vhosts": [{"name": "/"}],
+        "users": [
+            {"name": user, "password_hash": _hashed(user), "hashing_algorithm": HASHING, "tags": ""} for user in USERS
+        ],
+        "permissions": [{"user": user, "vhost": "/", "configure": ".*", "write": ".*", "read": ".*"} for user in USERS],
+        "topic_permissions": [
+            {"user": user, "vhost": "/", "exchange": "amq.topic", "write": write, "read": read}
+            for user, (write, read) in USERS.items()
+        ],
+    }
+
+
+def _hashed(password: str) -> str:
+    """As RabbitMQ stores it: four bytes of salt, and SHA-256 of salt and password."""
+    salt = b"salt"
+    return base64.b64encode(salt + hashlib.sha256(salt + password.encode()).digest()).decode()
 
 
 def _script() -> str:

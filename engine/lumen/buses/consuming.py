@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from pika.exceptions import AMQPError, ChannelClosedByBroker
+from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
 
 from lumen.buses.addresses import Address
 from lumen.buses.bodies import MAX_BYTES
@@ -66,12 +66,13 @@ class Consuming(Link):
     def begin(self) -> None:
         self._epoch += 1
         self._acknowledged = 0
+        self.channel.add_on_cancel_callback(self._cancelled)
         self.channel.basic_qos(prefetch_count=PREFETCH)
         for subscription in self.subscriptions():
             self._bind(subscription)
 
     def serve(self) -> bool:
-        self.connection.process_data_events(1.0)
+        self.process(1.0)
         return not self.ending.is_set()
 
     def subscriptions(self) -> list[Subscription]:
@@ -129,19 +130,23 @@ class Consuming(Link):
     def _bind(self, subscription: Subscription) -> None:
         if not subscription.active or self.channel is None or subscription.epoch == self._epoch:
             return
-        subscription.epoch = self._epoch
         arguments = {"x-max-length": WAITING, "x-overflow": "drop-head"}
         try:
             declared = self.channel.queue_declare("", exclusive=True, auto_delete=True, arguments=arguments)
             subscription.queue = declared.method.queue
             self.channel.queue_bind(subscription.queue, EXCHANGE, subscription.pattern)
             subscription.tag = self.channel.basic_consume(subscription.queue, self._callback(subscription))
+            subscription.epoch = self._epoch
         except ChannelClosedByBroker as error:
             subscription.refusal = error.reply_text
             self.remove(subscription)
             raise
         finally:
             subscription.bound.set()
+
+    def _cancelled(self, frame: Any) -> None:
+        """The broker took a queue from us (somebody deleted it): start anew."""
+        raise ConsumerCancelled(frame.method.consumer_tag)
 
     def _cancel(self, subscription: Subscription) -> None:
         if subscription.tag and self.channel is not None:

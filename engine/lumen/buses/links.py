@@ -9,7 +9,7 @@ from contextlib import suppress
 from typing import Any
 
 import pika
-from pika.exceptions import AMQPError
+from pika.exceptions import AMQPChannelError, AMQPError, ChannelClosedByBroker
 
 from lumen.buses.addresses import Address
 
@@ -56,6 +56,15 @@ class Link:
     def serve(self) -> bool:
         """Do what there is to do, at most for a second; false when all is done and the link may end."""
         raise NotImplementedError
+
+    def process(self, seconds: float) -> None:
+        """Let the connection live: heartbeats, deliveries, and whatever the broker has against us, as its exception.
+
+        pika tells nobody that the broker closed a channel, unless the channel is used; what it knows, it keeps.
+        """
+        self.connection.process_data_events(seconds)
+        if self.channel.is_closed:
+            raise getattr(self.channel, "_closing_reason", None) or AMQPChannelError("the channel is closed")
 
     def _run(self) -> None:
         while not self.ending.is_set():
@@ -104,7 +113,8 @@ class Link:
         if time.monotonic() - since > STEADY:
             self._delay = FIRST_DELAY
         if not self.ending.is_set():
-            _log.warning("the broker at %s is lost: %r", self.address, error)
+            what = "refuses" if isinstance(error, ChannelClosedByBroker) else "is lost"
+            _log.warning("the broker at %s %s: %r", self.address, what, error)
             self._pause(None)
 
     def _pause(self, error: Exception | None) -> None:

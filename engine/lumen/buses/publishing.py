@@ -33,7 +33,7 @@ class Publishing(Link):
             except BaseException:
                 self.outbox.put_back(parcels[sent:])
                 raise
-        self.connection.process_data_events(0)
+        self.process(0)
         self._report_dropped()
         return bool(self.outbox) or not self.ending.is_set()
 

@@ -1,0 +1,165 @@
+"""Commands as the modules of 2015 wrote them, misspellings included, as what our robots understand.
+
+A body is `{"type": …, "method": …, "parameter": {…}}`; the C# modules wrote `Method`. Names of keys and methods compare
+case-insensitively. A method is known by its own name, whatever its type; those that are the name of a motion play it.
+"""
+
+from collections.abc import Callable, Mapping
+from math import isfinite
+from typing import Any
+
+from lumen.errors import RobotError
+from lumen.language.commands import Language, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.projects import Project
+from lumen.ports import Aim, Perform, RobotCommand
+
+SPEED = 0.3
+POSTURE_SPEED = 0.5
+MOTIONS = {"dancing": "dance", "singing": "sing", "photopose": "photo"}
+LANGUAGES = {"english": "en", "indonesian": "id", "bahasa": "id"}
+NOT_HERE = ("setstiffnesses", "setwalkarmsenabled", "sendremotebuffertooutput", "record")
+
+
+Angles = Callable[[], Mapping[str, float]]
+
+
+def command_from(body: Any, project: Project, angles: Angles = dict) -> RobotCommand | Language:
+    """The command that a body asks for; `angles` is asked where the joints stand [rad], for `changeangle` alone.
+
+    `setlanguage` is a `Language`, for whoever keeps the language. Raises RobotError, saying what would be right, for a
+    method that is unknown or can't be done, and for a parameter that is missing or wrong.
+    """
+    order = _lowered(body, "a command")
+    method = order.get("method")
+    if not isinstance(method, str):
+        raise RobotError("a command needs a `method`, like `say` or `goodbye`")
+    return _Order(method.strip().lower(), order.get("parameter"), project, angles).command()
+
+
+class _Order:
+    """One command under translation."""
+
+    def __init__(self, method: str, parameter: Any, project: Project, angles: Angles) -> None:
+        self.method, self.project, self.angles = method, project, angles
+        self.parameter = {} if parameter is None else _lowered(parameter, "the `parameter` of a command")
+
+    def command(self) -> RobotCommand | Language:
+        motion = MOTIONS.get(self.method, self.method)
+        if motion in self.project.motions:
+            return Perform(self.project.motions[motion])
+        if method := _METHODS.get(self.method):
+            return method(self)
+        if self.method in NOT_HERE:
+            raise RobotError(f"`{self.method}` can't be done with this robot")
+        known = [*_METHODS, *MOTIONS, *self.project.motions]
+        raise RobotError(f"there is no method `{self.method[:40]}`: {did_you_mean(self.method[:40], known)}")
+
+    def number(self, name: str, default: float | None = None) -> float:
+        value = self.parameter.get(name)
+        if value is None and default is not None:
+            return default
+        return _number(value, f"the parameter `{name}` of `{self.method}`")
+
+    def fraction(self, name: str, default: float) -> float:
+        """A speed: NAOqi has it as a fraction of the greatest."""
+        return min(max(self.number(name, default), 0.01), 1.0)
+
+    def text(self, name: str, default: str | None = None) -> str:
+        value = self.parameter.get(name)
+        if value is None and default is not None:
+            return default
+        if not isinstance(value, str):
+            raise RobotError(f"the parameter `{name}` of `{self.method}` has to be a text")
+        return value.strip()
+
+    def language(self, name: str) -> str:
+        """One of the project's languages, by its code or its English name; empty where none is given."""
+        given = self.text(name, "").lower()
+        code = LANGUAGES.get(given, given)
+        if code and code not in self.project.languages:
+            raise RobotError(
+                f"the language `{given[:40]}` is not spoken here: {did_you_mean(code, self.project.languages)}"
+            )
+        return code
+
+    def set_language(self) -> Language:
+        if not self.text("language"):
+            raise RobotError("`setlanguage` needs a `language`")
+        return Language(self.language("language"))
+
+    def turn(self) -> float:
+        """`tetha` was how it was spelt."""
+        return self.number("tetha", self.number("theta", 0.0))
+
+    def joints(self) -> dict[str, float]:
+        """`angles` by `jointNames`; one of either may stand without a list."""
+        names, values = _listed(self.parameter.get("jointnames")), _listed(self.parameter.get("angles"))
+        if not names or len(names) != len(values):
+            raise RobotError(f"`{self.method}` needs as many `angles` as `jointNames`, and at least one")
+        return {self.joint(n): _number(v, f"the angle of `{n}`") for n, v in zip(names, values, strict=True)}
+
+    def joint(self, name: object) -> str:
+        """The joint that is meant: `"LHipPitch "` and `LAngklePitch` were how they were spelt."""
+        meant = str(name).strip().replace("Angkle", "Ankle")
+        if meant not in self.project.body.joints:
+            raise RobotError(f"there is no joint `{meant[:40]}`: {did_you_mean(meant[:40], self.project.body.joints)}")
+        return meant
+
+    def aim(self, angles: Mapping[str, float]) -> Aim:
+        """Inside the joints' limits, as NAOqi would clip them."""
+        limits = self.project.body.joints
+        inside = {n: min(max(a, limits[n].minimum), limits[n].maximum) for n, a in angles.items()}
+        return Aim(inside, self.fraction("speed", SPEED))
+
+    def set_angles(self) -> Aim:
+        return self.aim(self.joints())
+
+    def change_angles(self) -> Aim:
+        changes = self.joints()
+        angles = self.angles()
+        if missing := [name for name in changes if name not in angles]:
+            raise RobotError(f"nobody knows where `{missing[0]}` stands")
+        return self.aim({name: angles[name] + change for name, change in changes.items()})
+
+    def hand(self, opening: float) -> Aim:
+        return self.aim({self.joint(self.text("handname")): opening})
+
+    def posture(self) -> Posture:
+        name = self.text("posturename")
+        postures = {p.lower(): p for p in self.project.body.postures}
+        if name.lower() not in postures:
+            raise RobotError(f"there is no posture `{name[:40]}`: {did_you_mean(name[:40], postures.values())}")
+        return Posture(postures[name.lower()], self.fraction("speed", POSTURE_SPEED))
+
+
+_METHODS: Mapping[str, Callable[[_Order], RobotCommand | Language]] = {
+    "wakeup": lambda order: Wake(),
+    "rest": lambda order: Rest(),
+    "stopmove": lambda order: Stop(),
+    "moveinit": lambda order: Posture("StandInit"),
+    "moveto": lambda order: Walk(order.number("x", 0.0), order.number("y", 0.0), order.turn()),
+    "gotoposture": _Order.posture,
+    "setangles": _Order.set_angles,
+    "changeangle": _Order.change_angles,
+    "openhand": lambda order: order.hand(1.0),
+    "closehand": lambda order: order.hand(0.0),
+    "say": lambda order: Say(order.text("text"), order.language("language")),
+    "setlanguage": _Order.set_language,
+}
+
+
+def _lowered(data: Any, what: str) -> dict[str, Any]:
+    if not isinstance(data, Mapping):
+        raise RobotError(f"{what} has to be an object with names and values")
+    return {str(key).lower(): value for key, value in data.items()}
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [] if value is None else [value]
+
+
+def _number(value: Any, what: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+        raise RobotError(f"{what} has to be a number")
+    return float(value)

@@ -1,0 +1,119 @@
+"""Lumen Server: the five senses on the bus, each on a thread of its own, while commands execute."""
+
+import logging
+import time
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from functools import partial
+from itertools import count
+from typing import Any
+
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.language.routes import Route
+from lumen.ports import Bus, Image, Robot, Sense
+from lumen.robots.bodies import body_of, image_body
+from lumen.robots.broadcast import Broadcast, Count, Handed
+from lumen.robots.orders import Orders
+
+PERIOD = 0.1
+CLOSING = 5.0
+SOON = 1e-9
+
+_log = logging.getLogger(__name__)
+
+
+def _date() -> str:
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+class Server:
+    """A robot on a bus, as the project's routes `image`, `joint`, `sonar`, `tactile` and `battery` say.
+
+    Whoever owns the clock calls `sample` at each tick; that reads the senses that are due and begins the commands that
+    have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
+    one seed says the same things in the same order; `settle` waits until they have. `date` is what images are dated.
+    """
+
+    def __init__(self, project: Project, robot: Robot, bus: Bus, *, date: Callable[[], str] = _date) -> None:
+        self._robot, self._bus = robot, bus
+        self._frames, self._date = count(), date
+        self._project = project
+        self._routes: dict[Sense, Route] = {}
+        self._next: dict[Sense, float] = {}
+        self._broadcasts: dict[Sense, Broadcast] = {}
+        self._last: Handed | None = None
+        self._listen(project)
+        self._orders = Orders(project, robot, bus)
+        self._closed = False
+
+    @property
+    def counts(self) -> Mapping[str, Count]:
+        """What became of the readings of each sense."""
+        return {sense: self._broadcasts[sense].count for sense in Sense if sense in self._broadcasts}
+
+    def sample(self, now: float) -> None:
+        """Read the senses that are due at `now` [s] and hand them on; begin the commands that have come."""
+        for sense, route in self._routes.items():
+            if now + SOON >= self._next[sense] and not self._broadcasts[sense].count.off:
+                self._schedule(sense, route, now)
+                self._read(sense)
+        self._orders.begin()
+
+    def use(self, project: Project) -> None:
+        """Go on with another bundle: its routes and periods from the next sample on, its motions in commands to come."""
+        self._listen(project)
+        self._orders.use(project)
+
+    def settle(self, timeout: float = 1.0) -> bool:
+        """Wait until every reading but images has been published; whether it was within `timeout` [s]."""
+        return self._last is None or self._last.done.wait(timeout)
+
+    def answer(self, event: Event) -> bool:
+        """Pass on what the robot says about a command that came from the bus; whether the event was about one."""
+        return self._orders.answer(event)
+
+    def close(self) -> None:
+        """Publish what was taken and end the threads; harmless when repeated."""
+        if self._closed:
+            return
+        self._closed = True
+        self._orders.close()
+        deadline = time.monotonic() + CLOSING
+        ended = [b.close(deadline - time.monotonic()) for b in self._broadcasts.values()]
+        if not all(ended):
+            _log.warning("a sense still works %g s after it was told to end", CLOSING)
+
+    def _schedule(self, sense: Sense, route: Route, now: float) -> None:
+        """The next time on the grid of the sense's period; where ticks are coarser than that, a period from now."""
+        period = route.every or PERIOD
+        self._next[sense] += period
+        if self._next[sense] <= now:
+            self._next[sense] = now + period
+
+    def _read(self, sense: Sense) -> None:
+        reading = self._robot.read(sense)
+        if reading is None:
+            return
+        if isinstance(reading, Image):
+            self._broadcasts[sense].hand(Handed(reading))
+            return
+        after = self._last if self._last and not self._last.done.is_set() else None
+        self._last = Handed(reading, after)
+        self._broadcasts[sense].hand(self._last)
+
+    def _listen(self, project: Project) -> None:
+        """Give every sense that has a route its thread."""
+        self._project = project
+        self._routes = {sense: project.routes[sense] for sense in Sense if sense in project.routes}
+        for sense in self._routes.keys() - self._broadcasts.keys():
+            encode = self._picture if sense is Sense.IMAGE else body_of
+            self._broadcasts[sense] = Broadcast(sense, encode, partial(self._publish, sense))
+            self._next[sense] = 0.0
+
+    def _publish(self, sense: Sense, body: dict[str, Any]) -> None:
+        if route := self._routes.get(sense):
+            self._bus.publish(route.key_for(self._project.robot), body, ttl=route.ttl)
+
+    def _picture(self, image: Image) -> dict[str, Any]:
+        return image_body(image, next(self._frames), self._date())

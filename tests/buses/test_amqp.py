@@ -1,0 +1,245 @@
+"""What only the bus on RabbitMQ promises, with a real broker."""
+
+import json
+import logging
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pika
+import pytest
+
+from lumen.bus import Bus, BusError, Message, connect
+from tests.rabbitmq import RabbitMQ
+from tests.waiting import Collector, until
+
+pytestmark = pytest.mark.xdist_group("rabbitmq")
+
+
+@pytest.fixture
+def bus(broker: RabbitMQ) -> Iterator[Bus]:
+    bus = connect(broker.url)
+    yield bus
+    bus.close()
+
+
+@pytest.fixture
+def stranger(broker: RabbitMQ) -> Iterator[Any]:
+    """A channel of a module that uses pika itself."""
+    connection = pika.BlockingConnection(pika.URLParameters(broker.url))
+    yield connection.channel()
+    connection.close()
+
+
+@pytest.mark.parametrize(
+    ("url", "says"),
+    [
+        ("amqp://127.0.0.1:1/", "no broker listens at 127.0.0.1:1"),
+        ("amqp://guest:secret@127.0.0.1:{port}/", "refuses user `guest`"),
+        ("amqp://nobody:secret@127.0.0.1:{port}/", "refuses user `nobody`"),
+        ("amqp://guest:guest@127.0.0.1:{port}/nowhere", "virtual host `nowhere`"),
+        ("amqp://host.invalid/", "`host.invalid` is unknown"),
+        ("amqps://guest:guest@127.0.0.1:{port}/", "does not speak TLS"),
+        ("amqp://guest:secret@127.0.0.1:{epmd}/", "no AMQP 0-9-1 broker"),
+        ("amqp://guest:secret@127.0.0.1:port/", "no address of a broker"),
+        ("amqp://", "there is no host"),
+        ("amqp://h/?heartbeat=often", "no address of a broker"),
+        ("redis://user:secret@h", "`redis://` is no bus: write memory://"),
+        ("lumen", "the address of a bus begins with"),
+    ],
+)
+def test_a_bus_that_cant_be_reached_says_so_in_one_line(broker: RabbitMQ, url: str, says: str) -> None:
+    with pytest.raises(BusError) as caught:
+        connect(url.format(port=broker.port, epmd=broker.epmd))
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert "secret" not in str(caught.value)
+
+
+def test_a_failed_connection_leaves_no_thread(broker: RabbitMQ) -> None:
+    before = threading.active_count()
+    with pytest.raises(BusError):
+        connect("amqp://127.0.0.1:1/")
+    until(lambda: threading.active_count() <= before)
+
+
+def test_closing_leaves_no_thread_and_no_queue(broker: RabbitMQ, stranger: Any) -> None:
+    before = threading.active_count()
+    bus = connect(broker.url)
+    bus.subscribe("lumen.#", Collector())
+    queue = bus._consuming.subscriptions()[0].queue  # type: ignore[attr-defined]
+    bus.close()
+    assert threading.active_count() == before
+    with pytest.raises(pika.exceptions.ChannelClosedByBroker, match="NOT_FOUND"):
+        stranger.queue_declare(queue, passive=True)
+
+
+def test_on_the_wire_it_is_json_on_amq_topic(bus: Bus, stranger: Any) -> None:
+    queue = stranger.queue_declare("", exclusive=True).method.queue
+    stranger.queue_bind(queue, "amq.topic", "avatar.NAO.data.*")
+    body = {"name": "Budi", "text": "selamat siang – 你好"}
+    bus.publish("avatar.NAO.data.sonar", body, reply_to="lumen.me", correlation_id="7", ttl=2.0)
+    bus.close()
+    method, properties, data = stranger.basic_get(queue, auto_ack=True)
+    assert json.loads(data.decode("utf-8")) == body
+    assert "你好".encode() in data
+    assert (method.routing_key, properties.content_type) == ("avatar.NAO.data.sonar", "application/json")
+    assert (properties.reply_to, properties.correlation_id) == ("lumen.me", "7")
+    assert 1500 < int(properties.expiration) <= 2000
+
+
+def test_a_module_of_2015_gets_its_answer_in_its_queue_as_plain_text(bus: Bus, stranger: Any) -> None:
+    bus.subscribe("avatar.NAO.command", lambda message: bus.reply(message, "command finished"))
+    queue = stranger.queue_declare("", exclusive=True).method.queue
+    properties = pika.BasicProperties(reply_to=queue, correlation_id="abc")
+    stranger.basic_publish("amq.topic", "avatar.NAO.command", b'{"method": "rest"}', properties)
+    answers: list[Any] = []
+    until(lambda: answers.append(stranger.basic_get(queue, auto_ack=True)) or answers[-1][0])
+    assert answers[-1][2] == b"command finished"
+    assert answers[-1][1].correlation_id == "abc"
+
+
+POISON = [b"\xff\xfe", b"", b"{", b"[NaN]", b"[" * 10_000 + b"]" * 10_000, b'"' + b"x" * 10_000_000 + b'"']
+
+
+def test_poison_is_dropped_with_a_warning_and_harms_nobody(
+    bus: Bus, stranger: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.a", seen)
+    for body in POISON:
+        stranger.basic_publish("amq.topic", "lumen.a", body)
+    stranger.basic_publish("amq.topic", "lumen.a", b'"well"')
+    assert seen.wait(1) == ["well"]
+    dropped = [r.getMessage() for r in caplog.records if "was dropped" in r.getMessage()]
+    assert len(dropped) == len(POISON)
+    assert all("`lumen.a`" in text and len(text) < 200 for text in dropped)
+
+
+def test_a_text_of_type_text_plain_is_a_text(bus: Bus, stranger: Any) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.visual.command", seen)
+    properties = pika.BasicProperties(content_type="text/plain")
+    stranger.basic_publish("amq.topic", "lumen.visual.command", b"Budi", properties)
+    assert seen.wait(1) == ["Budi"]
+
+
+def test_a_slow_handler_costs_no_heartbeat(broker: RabbitMQ, caplog: pytest.LogCaptureFixture) -> None:
+    bus, seen, release = connect(broker.url + "?heartbeat=1"), Collector(), threading.Event()
+
+    def slow(message: Message) -> None:
+        seen(message)
+        assert release.wait(20)
+
+    bus.subscribe("lumen.a", slow)
+    bus.publish("lumen.a", 1)
+    seen.wait(1)
+    beats = time.monotonic() + 4.0
+    until(lambda: time.monotonic() > beats)
+    bus.publish("lumen.a", 2)
+    release.set()
+    assert seen.wait(2) == [1, 2]
+    bus.close()
+    assert "lost" not in caplog.text
+
+
+def test_a_publisher_does_not_wait_for_a_broker_that_is_busy(bus: Bus) -> None:
+    began = time.monotonic()
+    for i in range(1000):
+        bus.publish("lumen.a", i)
+    assert time.monotonic() - began < 1.0
+
+
+def test_a_flood_arrives_whole(bus: Bus) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.flood", seen)
+    for i in range(5_000):
+        bus.publish("lumen.flood", i)
+    assert seen.wait(5_000, 60) == list(range(5_000))
+
+
+def test_a_key_that_may_not_be_read_is_refused_and_the_others_go_on(broker: RabbitMQ) -> None:
+    bus, seen = connect(broker.url_of("visual")), Collector()
+    bus.subscribe("avatar.#", seen)
+    with pytest.raises(BusError, match=r"refuses to let us read `lumen\.secret`: ACCESS_REFUSED"):
+        bus.subscribe("lumen.secret", seen)
+    until(lambda: bus._consuming.connection and _subscriptions(bus)[0].epoch == 2)
+    stranger = connect(broker.url)
+    stranger.publish("avatar.NAO.data.sonar", "still heard")
+    assert seen.wait(1) == ["still heard"]
+    stranger.close()
+    bus.close()
+
+
+def test_a_key_that_may_not_be_written_is_logged_and_the_others_go_on(
+    broker: RabbitMQ, bus: Bus, caplog: pytest.LogCaptureFixture
+) -> None:
+    seen = Collector()
+    bus.subscribe("#", seen)
+    visual = connect(broker.url_of("visual"))
+    visual.publish("avatar.NAO.command", {"method": "dance"})
+    until(lambda: "ACCESS_REFUSED" in caplog.text)
+    visual.publish("lumen.visual.face.detection", {"x": 1, "y": 2})
+    assert seen.wait(1) == [{"x": 1, "y": 2}]
+    visual.close()
+
+
+def test_a_queue_that_somebody_deletes_is_made_again(bus: Bus, stranger: Any) -> None:
+    seen = Collector()
+    bus.subscribe("lumen.a", seen)
+    bus._consuming._later(lambda: bus._consuming.channel.queue_delete(_subscriptions(bus)[0].queue))
+    until(lambda: _subscriptions(bus)[0].epoch == 2)
+    bus.publish("lumen.a", "again")
+    assert seen.wait(1) == ["again"]
+
+
+def test_a_broker_that_is_killed_and_comes_back_finds_everything_again(caplog: pytest.LogCaptureFixture) -> None:
+    broker = RabbitMQ()
+    broker.start()
+    try:
+        with caplog.at_level(logging.WARNING):
+            _live_through_a_power_cut(broker)
+        assert "is lost: StreamLostError" in caplog.text or "is lost: ConnectionClosed" in caplog.text
+        assert "is back" in caplog.text
+    finally:
+        broker.stop()
+
+
+def _live_through_a_power_cut(broker: RabbitMQ) -> None:
+    bus, seen, later = connect(broker.url), Collector(), Collector()
+    bus.subscribe("lumen.a", seen)
+    bus.publish("lumen.a", "before")
+    seen.wait(1)
+    links = (bus._publishing, bus._consuming)  # type: ignore[attr-defined]
+    broker.kill()
+    until(lambda: all(link.connection is None for link in links))
+    began = time.monotonic()
+    bus.subscribe("lumen.b", later)
+    bus.publish("lumen.a", "stale", ttl=0.001)
+    assert time.monotonic() - began < 1.0
+    broker.start()
+    until(lambda: all(link.connection for link in links) and all(s.epoch == 2 for s in _subscriptions(bus)[:1]), 60)
+    bus.publish("lumen.a", "after")
+    bus.publish("lumen.b", "bound since")
+    assert seen.wait(2) == ["before", "after"]
+    assert later.wait(1) == ["bound since"]
+    bus.close()
+
+
+def _subscriptions(bus: Any) -> list[Any]:
+    return list(bus._consuming.subscriptions())
+
+
+def test_closing_while_the_broker_is_away_takes_no_longer_than_promised(caplog: pytest.LogCaptureFixture) -> None:
+    broker = RabbitMQ()
+    broker.start()
+    bus = connect(broker.url)
+    broker.stop()
+    links = (bus._publishing, bus._consuming)  # type: ignore[attr-defined]
+    until(lambda: all(link.connection is None for link in links))
+    bus.publish("lumen.a", "for nobody")
+    began = time.monotonic()
+    bus.close()
+    assert time.monotonic() - began < 8.0
+    assert "1 messages unsent" in caplog.text

@@ -1,0 +1,144 @@
+"""Only bodies that fit their route cross the boundary, in either direction."""
+
+import logging
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
+
+from lumen.bus import BusError, connect
+from lumen.buses.checking import SchemaCheck
+from lumen.buses.quick import quick
+from tests.exhibits import messages, project
+from tests.waiting import Collector
+
+FACE = "lumen.visual.face.detection"
+SCHEMAS = messages()
+
+
+def test_a_body_of_ours_that_does_not_fit_is_our_own_fault() -> None:
+    bus = connect("memory://", project())
+    with pytest.raises(BusError, match=r"lumen\.visual\.face\.detection.*x: 'left' is not of type 'integer'"):
+        bus.publish(FACE, {"x": "left", "y": 1})
+    with pytest.raises(BusError, match="'y' is a required property"):
+        bus.publish(FACE, {"x": 1})
+
+
+def test_a_wrong_body_that_comes_in_is_reported_and_goes_no_further() -> None:
+    seen, refused = Collector(), []
+    bus = connect("memory://hall", project(), on_refused=lambda key, reason: refused.append((key, reason)))
+    bus.subscribe("lumen.#", seen)
+    stranger = connect("memory://hall")
+    stranger.publish(FACE, {"x": 1, "y": None})
+    stranger.publish(FACE, {"x": 1, "y": 2, "confidence": 0.9})
+    assert seen.bodies == [{"x": 1, "y": 2, "confidence": 0.9}]
+    assert refused == [(FACE, "y: None is not of type 'integer'")]
+
+
+def test_a_refusal_is_logged_where_nobody_else_is_told(caplog: pytest.LogCaptureFixture) -> None:
+    bus = connect("memory://hall", project())
+    bus.subscribe(FACE, Collector())
+    with caplog.at_level(logging.WARNING):
+        connect("memory://hall").publish(FACE, "here")
+    assert f"a message on `{FACE}` was refused: 'here' is not of type 'object'" in caplog.text
+
+
+@pytest.mark.parametrize("key", ["visitor.here", "", "lumenary.x", "Avatar.NAO"])
+def test_keys_begin_with_avatar_or_lumen(key: str) -> None:
+    bus = connect("memory://", project())
+    with pytest.raises(BusError, match="`avatar` nor `lumen`"):
+        bus.publish(key, 1)
+
+
+def test_a_key_without_a_route_passes() -> None:
+    bus, seen = connect("memory://", project()), Collector()
+    bus.subscribe("#", seen)
+    bus.publish("lumen.motion.head", {"anything": [1]})
+    bus.publish("avatar.PEPPER.data.joint", "another robot's")
+    assert seen.bodies == [{"anything": [1]}, "another robot's"]
+
+
+def test_a_reason_holds_no_picture() -> None:
+    bus = connect("memory://", project())
+    with pytest.raises(BusError) as caught:
+        bus.publish("avatar.NAO.data.image", {"name": "1", "contentType": "image/jpeg", "contentUrl": "x" * 100_000})
+    assert len(str(caught.value)) < 400
+
+
+def test_another_bundle_brings_its_own_schemas() -> None:
+    before = project()
+    after = replace(before, messages={**before.messages, "face.detection": {"type": "string"}})
+    bus, seen = connect("memory://", before), Collector()
+    bus.subscribe(FACE, seen)
+    bus.use(after)  # type: ignore[attr-defined]
+    bus.publish(FACE, "in the middle")
+    assert seen.bodies == ["in the middle"]
+
+
+def test_a_reply_needs_no_key_of_ours() -> None:
+    bus, plain, seen = connect("memory://hall", project()), connect("memory://hall"), Collector()
+    plain.subscribe("answers", seen)
+    bus.subscribe("avatar.NAO.command", lambda message: bus.reply(message, "command finished"))
+    plain.publish("avatar.NAO.command", {"method": "rest"}, reply_to="answers", correlation_id="1")
+    assert [(m.body, m.correlation_id) for m in seen.messages] == [("command finished", "1")]
+
+
+BODIES_OF_2015: list[tuple[str, Any]] = [
+    ("sonar", {"rightSensor": 0.5, "leftSensor": 2.55}),
+    ("battery", {"percentage": 80, "isPlugged": False, "isCharging": False}),
+    ("joint", {"name": ["LHipPitch "], "angle": [0.1], "stiffness": [1]}),
+    ("tactile", {"name": ["RightBumper"], "value": [0]}),
+    ("recording", {"name": "a", "content": "UklGRg=="}),
+    ("command", {"type": "motion", "Method": "moveTo", "parameter": {"x": 0.2, "y": 0, "tetha": 0}}),
+    ("command", {"type": "Motion", "method": "wakeup", "parameter": None}),
+    ("speech.recognition", {"name": "speech", "result": "hello", "date": "2015-06-01"}),
+    ("gender.identification", {"name": "a", "gender": "female"}),
+    ("wav.stream", {"name": "a", "content": "UklGRg==", "language": "en"}),
+    ("text.stream", {"name": "a", "text": "hello", "date": "x"}),
+    ("text.to.speech", {"name": "a", "sound": "UklGRg==", "date": "x"}),
+    ("face.detection", {"x": 160, "y": 120}),
+    ("human.detection", {"x": 160, "y": 120}),
+    ("face.tracking", {"x": 160.5, "y": 120.25}),
+    ("face.recognition", {"name": "unknown"}),
+]
+
+
+@pytest.mark.parametrize(("name", "body"), BODIES_OF_2015)
+def test_the_bodies_of_2015_fit_and_may_hold_more(name: str, body: dict[str, Any]) -> None:
+    check = SchemaCheck(SCHEMAS[name])
+    assert check(body) == ""
+    assert check({**body, "more": 1}) == ""
+    assert check([body]) != ""
+
+
+@pytest.mark.parametrize("schema", SCHEMAS.values(), ids=SCHEMAS)
+def test_message_schemas_are_schemas_and_say_what_they_are(schema: dict[str, Any]) -> None:
+    Draft202012Validator.check_schema(schema)
+    assert schema["title"]
+    assert all(p["description"] for p in schema["properties"].values())
+
+
+TEXTS = st.sampled_from(["", "male", "data:image/jpeg;base64,"])
+SCALARS = st.none() | st.booleans() | st.integers(-2, 400) | st.floats(-1, 2) | TEXTS
+VALUES = st.recursive(SCALARS, lambda v: st.lists(v, max_size=3), max_leaves=5)
+FIELDS = st.sampled_from(sorted({field for schema in SCHEMAS.values() for field in schema["properties"]}))
+
+
+@given(name=st.sampled_from(sorted(SCHEMAS)), body=st.dictionaries(FIELDS, VALUES, max_size=6) | VALUES)
+def test_a_quick_yes_is_never_wrong(name: str, body: Any) -> None:
+    assert not quick(SCHEMAS[name])(body) or Draft202012Validator(SCHEMAS[name]).is_valid(body)
+
+
+@pytest.mark.parametrize(("name", "body"), BODIES_OF_2015)
+def test_the_usual_bodies_get_a_quick_yes(name: str, body: dict[str, Any]) -> None:
+    assert quick(SCHEMAS[name])(body)
+
+
+def test_a_schema_beyond_the_quick_keywords_is_left_to_jsonschema() -> None:
+    schema = {"type": "object", "oneOf": [{"required": ["a"]}, {"required": ["b"]}]}
+    assert not quick(schema)({"a": 1})
+    assert SchemaCheck(schema)({"a": 1}) == ""
+    assert SchemaCheck(schema)({"a": 1, "b": 1}) != ""

@@ -1,0 +1,61 @@
+"""A small project, made of values: a few joints and motions, the routes of the senses, the shipped schemas."""
+
+import json
+from pathlib import Path
+
+from lumen.language.machines import Kind, Machine, State
+from lumen.language.motions import Key, Motion
+from lumen.language.projects import Project
+from lumen.language.robots import Body, Camera, Joint
+from lumen.language.routes import Direction, Route
+
+MESSAGES = Path(__file__).parents[1] / "schemas" / "messages"
+ENDING = ".schema.json"
+
+JOINTS = {
+    name: Joint(name, low, high)
+    for name, low, high in [
+        ("HeadYaw", -2.0, 2.0),
+        ("HeadPitch", -0.6, 0.5),
+        ("LHipPitch", -1.5, 0.4),
+        ("LAnklePitch", -1.1, 0.9),
+        ("RHand", 0.0, 1.0),
+    ]
+}
+TACTILE = (
+    "RightBumper", "LeftBumper", "ChestButton", "FrontTactil", "MiddleTactil", "RearTactil", "HandRightBack",
+    "HandRightLeft", "HandRightRight", "HandLeftBack", "HandLeftLeft", "HandLeftRight",
+)  # fmt: skip
+BODY = Body(
+    name="NAO",
+    mjcf="nao.xml",
+    joints=JOINTS,
+    parts={"head": ("HeadYaw", "HeadPitch")},
+    postures={name: dict.fromkeys(JOINTS, 0.0) for name in ("Stand", "StandInit", "Crouch")},
+    coupled=(),
+    camera=Camera(320, 240, 1.06, 0.83, (0.0, 0.0, 0.0), 0.0),
+    tactile=TACTILE,
+    hands=("RHand",),
+)
+SENSES = {"image": 0.066, "joint": 0.06, "sonar": 0.1, "tactile": 0.1, "battery": 1.0}
+
+
+def messages() -> dict[str, dict[str, object]]:
+    """The shipped message schemas by name."""
+    return {path.name.removesuffix(ENDING): json.loads(path.read_text("utf-8")) for path in MESSAGES.glob(f"*{ENDING}")}
+
+
+def project(**changes: object) -> Project:
+    """The project, with these fields of `Project` set otherwise."""
+    out = {n: Route(n, f"avatar.{{robot}}.data.{n}", Direction.OUT, n, every=every) for n, every in SENSES.items()}
+    face = Route("face", "lumen.visual.face.detection", Direction.IN, "face.detection", event="face")
+    command = Route("command", "avatar.{robot}.command", Direction.IN, "command")
+    fields: dict[str, object] = {
+        "root": "", "name": "test", "robot": "NAO", "body": BODY, "hall": "", "behavior": "tour",
+        "behaviors": {"tour": Machine("tour", {"": State("", Kind.ATOMIC)})},
+        "motions": {n: Motion(n, 1.0, {"HeadYaw": (Key(1.0, 0.1),)}) for n in ("goodbye", "dance", "sing", "photo")},
+        "routes": {**out, "face": face, "command": command},
+        "messages": messages(),
+        "languages": ("en", "id"),
+    }  # fmt: skip
+    return Project(**{**fields, **changes})  # type: ignore[arg-type]

@@ -1,0 +1,106 @@
+"""What the modules of 2015 wrote, as commands; and what they get told when it can't be done."""
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lumen.errors import RobotError
+from lumen.language.commands import Language, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.ports import Aim, Perform
+from lumen.robots.dialect import command_from
+from tests.exhibits import project
+
+PROJECT = project()
+
+
+def order(method: str, /, **parameter: Any) -> dict[str, Any]:
+    return {"type": "motion", "method": method, "parameter": parameter}
+
+
+@pytest.mark.parametrize(
+    ("body", "command"),
+    [
+        (order("wakeup"), Wake()),
+        ({"type": "MOTION", "Method": "WakeUp", "parameter": None}, Wake()),
+        ({"method": "rest"}, Rest()),
+        ({"type": "posture", "method": "stopMove"}, Stop()),
+        (order("moveInit"), Posture("StandInit")),
+        (order("moveTo", x=0.2, y=0, tetha=0), Walk(0.2, 0.0, 0.0)),
+        (order("moveto", x=0.2, theta=1), Walk(0.2, 0.0, 1.0)),
+        (order("goToPosture", postureName="Stand", speed=0.8), Posture("Stand", 0.8)),
+        (order("gotoposture", postureName="crouch"), Posture("Crouch", 0.5)),
+        (order("setAngles", jointNames=["HeadYaw", "HeadPitch"], angles=[0.5, -0.1], speed=0.2),
+         Aim({"HeadYaw": 0.5, "HeadPitch": -0.1}, 0.2)),
+        (order("setangles", jointNames="HeadYaw", angles=0.5), Aim({"HeadYaw": 0.5})),
+        (order("setangles", jointNames=["LHipPitch ", "LAngklePitch"], angles=[0.1, 0.2]),
+         Aim({"LHipPitch": 0.1, "LAnklePitch": 0.2})),
+        (order("setangles", jointNames=["HeadYaw"], angles=[100]), Aim({"HeadYaw": 2.0})),
+        (order("changeangle", jointNames=["HeadYaw"], angles=[-0.2]), Aim({"HeadYaw": pytest.approx(0.3)})),
+        (order("openhand", handName="RHand"), Aim({"RHand": 1.0})),
+        (order("closeHand", handName="RHand"), Aim({"RHand": 0.0})),
+        (order("say", text="Hello", language="English"), Say("Hello", "en")),
+        (order("say", text="Halo"), Say("Halo", "")),
+        (order("setLanguage", language="Indonesian"), Language("id")),
+    ],
+)  # fmt: skip
+def test_methods(body: dict[str, Any], command: object) -> None:
+    assert command_from(body, PROJECT, lambda: {"HeadYaw": 0.5}) == command
+
+
+@pytest.mark.parametrize(
+    ("method", "motion"),
+    [("goodbye", "goodbye"), ("dance", "dance"), ("Dancing", "dance"), ("sing", "sing"), ("singing", "sing"),
+     ("photopose", "photo")],
+)  # fmt: skip
+def test_the_papers_names_and_the_sources_names_play_the_motion(method: str, motion: str) -> None:
+    assert command_from({"method": method}, PROJECT) == Perform(PROJECT.motions[motion])
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        (order("danse"), "no method `danse`: did you mean `dance`?"),
+        (order("x" * 10_000), "no method"),
+        ({"type": "motion"}, "needs a `method`"),
+        ({"method": 1}, "needs a `method`"),
+        ("dance", "has to be an object"),
+        (None, "has to be an object"),
+        ({"method": "moveto", "parameter": [1]}, "`parameter` of a command has to be an object"),
+        (order("moveto", x="near"), "`x` of `moveto` has to be a number"),
+        (order("moveto", x=True), "has to be a number"),
+        (order("gotoposture", postureName="Stnd"), "no posture `Stnd`: did you mean `Stand`?"),
+        (order("gotoposture"), "`posturename` of `gotoposture` has to be a text"),
+        (order("setangles", jointNames=["HeadYow"], angles=[0]), "no joint `HeadYow`: did you mean `HeadYaw`?"),
+        (order("setangles", jointNames=["HeadYaw"], angles=[]), "as many `angles`"),
+        (order("setangles", jointNames=["HeadYaw"], angles=["a"]), "has to be a number"),
+        (order("changeangle", jointNames=["HeadYaw"], angles=[0.1]), "nobody knows where"),
+        (order("say", text=5), "has to be a text"),
+        (order("say", text="x", language="Klingon"), "`klingon` is not spoken here"),
+        (order("setlanguage"), "has to be a text"),
+        (order("record", recordingName="a"), "can't be done with this robot"),
+    ],
+)
+def test_what_cant_be_done_is_said(body: Any, says: str) -> None:
+    with pytest.raises(RobotError) as caught:
+        command_from(body, PROJECT)
+    assert says in str(caught.value)
+    assert len(str(caught.value)) < 300
+
+
+METHODS = st.sampled_from(["moveto", "setangles", "say", "gotoposture", "openhand", "dance", "setlanguage"]) | st.text()
+VALUES = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
+    lambda v: st.lists(v, max_size=3) | st.dictionaries(st.text(), v, max_size=2),
+    max_leaves=4,
+)
+NAMES = st.sampled_from(["x", "speed", "jointNames", "angles", "handName", "text", "language", "postureName"])
+
+
+@given(method=METHODS, parameter=st.dictionaries(NAMES, VALUES) | VALUES)
+def test_whatever_comes_is_a_command_or_a_refusal(method: str, parameter: Any) -> None:
+    try:
+        command_from({"method": method, "parameter": parameter}, PROJECT)
+    except RobotError as error:
+        assert "\n" not in str(error)  # noqa: PT017
