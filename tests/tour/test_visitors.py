@@ -52,11 +52,18 @@ def test_another_trouble_during_the_first_is_not_forgotten_by_the_guide(project:
 @pytest.mark.parametrize("state", ["stopped", "resting", "helpless"])
 def test_a_robot_with_its_motors_off_does_not_get_up_by_itself(project: Project, state: str) -> None:
     """`fallen` there is noted, and nothing moves until a hand holds its head."""
-    begin: list[Deed] = {"stopped": [Happen("stop")], "resting": [Happen("head.held")], "helpless": [Happen("fallen")]}[
-        state
-    ]
+    begin: dict[str, Deed] = {
+        "stopped": Happen("stop"), "resting": Happen("head.held"), "helpless": Happen("fallen"),
+    }  # fmt: skip
     robot = {"posture": "fails"} if state == "helpless" else {}
-    deeds: list[Deed] = [Pause(1.0), *begin, Expect((state,)), Happen("fallen"), Pause(5.0), Expect((state, "paused"))]
+    deeds: list[Deed] = [
+        Pause(1.0),
+        begin[state],
+        Expect((state,)),
+        Happen("fallen"),
+        Pause(5.0),
+        Expect((state, "paused")),
+    ]
     run = visit(project, deeds, robot=robot)
     assert run.failure == ""
     assert any("fallen" in line for line in run.logged)
