@@ -26,7 +26,8 @@ class Figure:
         self._places = model.geom_pos[self._geoms].copy()
         self._bounds = model.geom_rbound[self._geoms].copy()
         self._boxes = model.geom_aabb[self._geoms].copy()
-        self._face = model.site("visitor_face").pos.copy()
+        self._site = model.site("visitor_face").id
+        self._face = model.site_pos[self._site].copy()
         self._stage = model.site(STAGE).pos.copy()
         self._visitor: Visitor | None = None
         self.place(None)
@@ -59,6 +60,7 @@ class Figure:
 
     def _scale(self, factor: float) -> None:
         model = self._model
+        model.site_pos[self._site] = self._face * factor
         model.geom_size[self._geoms] = self._sizes * factor
         model.geom_pos[self._geoms] = self._places * factor
         model.geom_rbound[self._geoms] = self._bounds * factor

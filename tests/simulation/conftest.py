@@ -1,0 +1,76 @@
+"""A NAO on its stage."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+from lumen.interpreters.projection import centring
+from lumen.language.commands import Look
+from lumen.language.events import Event
+from lumen.language.robots import Body
+from lumen.loading.bodies import build_body
+from lumen.loading.source import Report, parse
+from lumen.ports import RobotCommand
+from lumen.robots.simulation import SimulatedRobot
+
+MODELS = Path(__file__).parents[2] / "models"
+
+
+@pytest.fixture(scope="session")
+def body() -> Body:
+    document, _ = parse("models/nao.yaml", (MODELS / "nao.yaml").read_bytes())
+    assert document
+    built = build_body(document.data, Report(document), name="nao")
+    assert built
+    return built
+
+
+@pytest.fixture
+def robot(body: Body) -> SimulatedRobot:
+    return SimulatedRobot(body, MODELS, "hall.xml")
+
+
+Do = Callable[[RobotCommand], str]
+
+
+@pytest.fixture
+def do(robot: SimulatedRobot) -> Do:
+    """Performs a command to its end; returns the name of its answer, and the reason of an error."""
+
+    def perform(command: RobotCommand) -> str:
+        robot.start("x", command)
+        return answer(until_answered(robot, "x"), "x")
+
+    return perform
+
+
+def until_answered(robot: SimulatedRobot, id: str, limit: float = 60.0) -> list[Event]:
+    """Live until that command is answered; all that happened."""
+    events: list[Event] = []
+    end = robot.time + limit
+    while not answer(events, id):
+        assert robot.time < end, f"no answer within {limit} s"
+        robot.advance(0.02)
+        events += robot.poll()
+    return events
+
+
+def answer(events: Sequence[Event], id: str) -> str:
+    """`done`, `cancelled` or `error: REASON` of that command, empty where none came."""
+    for event in events:
+        kind, _, rest = event.name.partition(".command.")
+        if rest == id:
+            return f"{kind}: {event.data['reason']}" if kind == "error" else kind
+    return ""
+
+
+def look_at_face(robot: SimulatedRobot, do: Do, body: Body) -> None:
+    """Turn the head so that the visitor's face should stand in the middle of the image."""
+    robot.advance(0.2)
+    torso = robot.world.data.body("nao/Torso")
+    face = robot.world.data.site("visitor_face").xpos
+    x, y, z = torso.xmat.reshape(3, 3).T @ (face - torso.xpos)
+    yaw, pitch = centring((float(x), float(y), float(z)), body.camera)
+    assert do(Look(yaw, pitch)) == "done"
+    robot.advance(0.5)

@@ -1,0 +1,101 @@
+"""Senses and the world around: visitor, face, sonar, touch, battery, heat."""
+
+import numpy as np
+import pytest
+
+from lumen.errors import UsageError
+from lumen.language.commands import Look
+from lumen.language.robots import Body
+from lumen.language.stories import Visitor
+from lumen.ports import Battery, Joints, Sense, Sonar, Tactile
+from lumen.robots.simulation import SimulatedRobot
+from lumen.robots.simulation.condition import Condition
+from tests.simulation.conftest import Do, look_at_face
+
+
+@pytest.mark.parametrize("visitor", [Visitor(), Visitor(1.5, 0.5), Visitor(1.2, -0.4, 1.1)])
+def test_who_looks_at_the_visitor_has_their_face_in_the_middle(
+    robot: SimulatedRobot, do: Do, body: Body, visitor: Visitor
+) -> None:
+    robot.place(visitor)
+    look_at_face(robot, do, body)
+    assert robot.face() == pytest.approx((160, 120), abs=6)
+
+
+def test_a_face_moves_as_the_camera_turns(robot: SimulatedRobot, do: Do, body: Body) -> None:
+    robot.place(Visitor())
+    look_at_face(robot, do, body)
+    yaw, pitch = (float(robot.world.angles[i]) for i in (0, 1))
+    do(Look(yaw + 0.2, pitch + 0.1))
+    robot.advance(0.5)
+    x, y = robot.face() or (0, 0)
+    assert x > 190  # the head turned left, the face is on the right
+    assert y < 105  # the head went down, the face went up
+    do(Look(yaw - 1.5, pitch))
+    robot.advance(0.5)
+    assert robot.face() is None
+
+
+def test_nobody_has_no_face(robot: SimulatedRobot) -> None:
+    assert robot.face() is None
+    robot.place(Visitor())
+    robot.place(None)
+    assert robot.face() is None
+
+
+def test_the_sonars_hear_the_visitor(robot: SimulatedRobot) -> None:
+    robot.advance(0.1)
+    silent = robot.read(Sense.SONAR)
+    robot.place(Visitor(1.0, 0.0))
+    robot.advance(0.1)
+    near = robot.read(Sense.SONAR)
+    robot.place(Visitor(0.8, 0.5))
+    robot.advance(0.1)
+    aside = robot.read(Sense.SONAR)
+    assert isinstance(silent, Sonar)
+    assert isinstance(near, Sonar)
+    assert isinstance(aside, Sonar)
+    assert min(silent.left, silent.right) > 2.0
+    assert (near.left, near.right) == pytest.approx((0.83, 0.83), abs=0.1)
+    assert aside.left < 0.9 < aside.right
+
+
+def test_joints_are_read_in_naoqi_s_order(robot: SimulatedRobot, body: Body) -> None:
+    joints = robot.read(Sense.JOINT)
+    assert isinstance(joints, Joints)
+    assert joints.names == tuple(body.joints)
+    assert joints.angles[joints.names.index("LKneePitch")] == pytest.approx(-0.0923, abs=1e-3)
+    assert set(joints.stiffness) == {1.0}
+
+
+def test_touch_is_an_event_and_a_reading(robot: SimulatedRobot, body: Body) -> None:
+    robot.touch("MiddleTactil", True)
+    robot.touch("MiddleTactil", True)
+    tactile = robot.read(Sense.TACTILE)
+    assert isinstance(tactile, Tactile)
+    assert tactile.names == body.tactile
+    assert [n for n, v in zip(tactile.names, tactile.values, strict=True) if v] == ["MiddleTactil"]
+    robot.touch("MiddleTactil", False)
+    assert [(e.name, e.data) for e in robot.poll()] == [
+        ("touched", {"sensor": "MiddleTactil"}),
+        ("released", {"sensor": "MiddleTactil"}),
+    ]
+    with pytest.raises(UsageError, match="did you mean `MiddleTactil`"):
+        robot.touch("MidleTactil", True)
+
+
+def test_the_battery_drains_slowly(robot: SimulatedRobot) -> None:
+    robot.advance(5.0)
+    battery = robot.read(Sense.BATTERY)
+    assert isinstance(battery, Battery)
+    assert battery.percentage == 100
+    assert not battery.plugged
+
+
+def test_a_low_battery_and_hot_motors_speak_up_once() -> None:
+    condition = Condition(("knee", "hip"), (3.0, 3.0), charge=0.206)
+    events = [e for t in range(1200) for e in condition.live(np.array([3.0, 0.0]), np.zeros(2), 1.0, float(t))]
+    assert [e.name for e in events] == ["battery.low", "motors.hot"]
+    assert events[0].data == {"percentage": 20}
+    assert events[1].data["joint"] == "knee"
+    assert events[1].data["temperature"] >= 75.0

@@ -1,0 +1,101 @@
+"""What is drawn: camera images, films, shells. Needs an OpenGL library, which the tests' packages bring."""
+
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import imageio_ffmpeg
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.language.robots import Body
+from lumen.language.stories import Visitor
+from lumen.ports import Image, Sense
+from lumen.robots.simulation import SimulatedRobot
+from lumen.robots.simulation.film import RATE, Film
+from lumen.robots.simulation.shells import write
+from tests.simulation.conftest import MODELS, Do, look_at_face
+
+Pixels = NDArray[np.uint8]
+
+
+def image(robot: SimulatedRobot) -> Image:
+    reading = robot.read(Sense.IMAGE)
+    assert isinstance(reading, Image)
+    return reading
+
+
+def test_the_camera_sees_the_visitor_s_face_where_it_is_said_to_be(robot: SimulatedRobot, do: Do, body: Body) -> None:
+    robot.place(Visitor())
+    look_at_face(robot, do, body)
+    seen = image(robot)
+    robot.place(None)
+    empty = image(robot)
+    with_visitor, without = seen.pixels().astype(int), empty.pixels().astype(int)
+    assert with_visitor.shape == (240, 320, 3)
+    changed = np.abs(with_visitor - without).sum(axis=2) > 40
+    assert changed[108:134, 150:170].mean() > 0.9
+    assert not changed[:, :60].any()
+
+
+def test_another_thread_draws_the_moment_of_the_reading(robot: SimulatedRobot) -> None:
+    robot.place(Visitor())
+    robot.advance(0.1)
+    reading = image(robot)
+    before = reading.pixels().copy()
+    robot.place(None)
+    robot.advance(1.0)
+    drawn: list[Pixels] = []
+    thread = threading.Thread(target=lambda: drawn.append(reading.pixels()))
+    thread.start()
+    thread.join(30)
+    assert (drawn[0] == before).all()
+
+
+def test_a_film_has_a_frame_for_every_twenty_fifth_of_a_second(robot: SimulatedRobot, tmp_path: Path) -> None:
+    path = tmp_path / "film.mp4"
+    film = Film(path, robot)
+    for _ in range(20):
+        robot.advance(0.02)
+        film.tick(robot.time)
+    film.close()
+    film.close()
+    frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(path))
+    assert frames == film.frames == 11
+    assert seconds * RATE == frames
+
+
+def test_without_opengl_there_are_no_images_and_a_remedy() -> None:
+    script = f"""
+import pathlib
+from lumen.loading.bodies import build_body
+from lumen.loading.source import Report, parse
+from lumen.ports import Sense
+from lumen.robots.simulation import SimulatedRobot, available
+models = pathlib.Path({str(MODELS)!r})
+document, _ = parse("models/nao.yaml", (models / "nao.yaml").read_bytes())
+robot = SimulatedRobot(build_body(document.data, Report(document), name="nao"), models, "hall.xml")
+robot.advance(0.1)
+print(robot.read(Sense.IMAGE), available())
+"""
+    environment = {**os.environ, "MUJOCO_GL": "disable"}
+    run = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
+    assert run.stdout.startswith("None there is no OpenGL library")
+    assert "libegl1 and libgl1" in run.stdout
+    assert not run.stderr
+
+
+def test_the_shells_are_what_the_script_makes(tmp_path: Path) -> None:
+    write(tmp_path)
+    made = {path.name: path.read_text().split("\n") for path in tmp_path.iterdir()}
+    shipped = {path.name: path.read_text().split("\n") for path in (MODELS / "nao").iterdir()}
+    assert made.keys() == shipped.keys()
+    for name, lines in made.items():
+        assert [line[0:1] for line in lines] == [line[0:1] for line in shipped[name]]
+        assert np.abs(numbers(lines) - numbers(shipped[name])).max() < 2e-5, name
+
+
+def numbers(lines: list[str]) -> NDArray[np.float64]:
+    return np.array([float(word) for line in lines for word in line.split()[1:]])
