@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.language.diagnostics import Path, did_you_mean
+from lumen.loading.source import resolve
+from lumen.loading.units import seconds
 
 Error = Any
 """A `jsonschema.ValidationError`; its stubs allow for an unset state that a validator never yields."""
@@ -19,6 +21,7 @@ TYPES: Mapping[str, str] = {
     "boolean": "true or false",
     "null": "empty",
 }
+_TRUTHS = {"yes": "true", "y": "true", "on": "true", "no": "false", "n": "false", "off": "false"}
 _MEANT = "did you mean `"
 
 
@@ -114,6 +117,8 @@ def _unknown_keys(error: Error, path: Path) -> Iterator[Complaint]:
         if key in known or any(re.search(pattern, key) for pattern in patterns):
             continue
         hint = did_you_mean(key, [k for k in known if k not in error.instance] or known, "allowed here:")
+        if key == "<<":
+            hint = "YAML 1.2 has no merge keys: write the keys themselves"
         meant = hint[len(_MEANT) : -2] if hint.startswith(_MEANT) else ""
         message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key of this kind of file"
         here = (*path, key)
@@ -155,7 +160,9 @@ def _words(error: Error, path: Path) -> tuple[str, str]:
             wanted = [bound] if isinstance(bound, str) else bound
             if value is None:
                 return f"{name} is empty, it should be {_either(wanted)}", hint
-            return f"{name} should be {_either(wanted)}, not {kind(value)}", _quotes(value, wanted) or hint
+            return f"{name} should be {_either(wanted)}, not {kind(value)}", _instead(
+                value, wanted, error.schema
+            ) or hint
         case "enum" | "const":
             allowed = [str(v) for v in (bound if error.validator == "enum" else [bound])]
             return f"{name} can't be `{_short(value)}`", did_you_mean(_short(value), allowed, "it is one of")
@@ -182,9 +189,15 @@ def _words(error: Error, path: Path) -> tuple[str, str]:
     return f"{name} is not as it should be", hint
 
 
-def _quotes(value: Any, wanted: Iterable[str]) -> str:
-    """A number or a truth where a text is wanted is a text without its quotes."""
+def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> str:
+    """What to write in place of a value of the wrong type that is nearly right."""
+    if "boolean" in wanted and isinstance(value, str) and (truth := _TRUTHS.get(value.lower())):
+        return f"write `{truth}`: in YAML 1.2 `{value}` is a text"
+    if {"number", "integer"} & set(wanted) and isinstance(value, str) and type(resolve(value)) in (int, float):
+        return f"leave out the quotes: {value}"
     if "string" in wanted and isinstance(value, bool | int | float):
+        if any(seconds(example) is not None for example in schema.get("examples", ())):
+            return "write the unit too, as in `500ms`, `20s` or `2min`"
         written = str(value).lower() if isinstance(value, bool) else f"{value}"
         return f'put it in quotes: "{written}"'
     return ""

@@ -5,9 +5,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, Path
-from lumen.loading.source import Document, Report, parse
+from lumen.loading.complaints import complaints
+from lumen.loading.source import Document, Report, merge_conflict, parse
 
 ENDING = ".schema.json"
+SHORT = 200
+"""Characters that a hint may have."""
 
 
 def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, list[Diagnostic]]:
@@ -41,8 +44,9 @@ def _check(data: Mapping[str, Any], report: Report) -> None:
         report("too-large", (), "the schema is nested too deeply to be read", hint="use fewer levels")
         return
     if error is not None:
-        hint = "it has to be JSON Schema, draft 2020-12"
-        report("bad-schema", tuple(error.absolute_path), f"this is no JSON Schema: {error.message[:120]}", hint=hint)
+        found = next(complaints(error))
+        hint = found.hint if len(found.hint) < SHORT else "it has to be JSON Schema, draft 2020-12"
+        report("bad-schema", found.path, f"this is no JSON Schema: {found.message}", hint=hint, key=found.key)
 
 
 def _references(data: Any) -> list[tuple[Path, str]]:
@@ -82,6 +86,8 @@ def _places(file: str, content: bytes, data: Any) -> Document:
 def _syntax(file: str, content: bytes, error: Exception) -> Diagnostic:
     from lumen.language.diagnostics import Place
 
+    if conflict := merge_conflict(file, content.decode("utf-8", "replace")):
+        return conflict
     hint = "look for a missing comma, quote or bracket here or in the line above"
     if isinstance(error, json.JSONDecodeError):
         place = Place(file, error.lineno, error.colno, error.lineno, error.colno + 1)

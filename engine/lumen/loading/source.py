@@ -26,6 +26,13 @@ _HEX = re.compile(r"0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _INF = re.compile(r"([-+]?)\.(inf|Inf|INF)")
 _QUOTED = re.compile(r"(?<=[`.#])[^`.#]+(?=[`.])")
+_LOOK = "look at the indentation, a missing colon, quote or bracket here or in the line above"
+_HINTS = {
+    "another document": "a file holds one document: delete the line `---`",
+    "undefined alias": "put quotes around a text that begins with `*`",
+    "duplicate anchor": "give each anchor `&` a name of its own",
+}
+_PLAIN = frozenset(("tag:yaml.org,2002:str", "tag:yaml.org,2002:seq", "tag:yaml.org,2002:map"))
 _CONFLICT = re.compile(r"^(<{7}|={7}|>{7})(?= |$)", re.MULTILINE)
 _NAN = frozenset((".nan", ".NaN", ".NAN"))
 
@@ -99,9 +106,8 @@ class Report:
 
     def follows(self, code: str, message: str) -> bool:
         """Whether a finding only follows from what was pruned: a name is unknown that stood there."""
-        return (
-            code.startswith("unknown-") and bool(self.lost) and bool(self.lost.intersection(_QUOTED.findall(message)))
-        )
+        named = code.startswith("unknown-") and code != "unknown-key" and self.lost
+        return bool(named) and not self.lost.isdisjoint(_QUOTED.findall(message))
 
 
 def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
@@ -162,6 +168,8 @@ class _Reader:
         if depth > MAX_DEPTH or len(self.spans) > MAX_NODES:
             self.overflow(node, depth)
             return None
+        if node.tag not in _PLAIN:
+            self.say("yaml-tag", node, "a tag (a word that begins with `!`) means nothing here", "delete the tag")
         if isinstance(node, yaml.ScalarNode):
             return node.value if node.style else resolve(node.value)
         if isinstance(node, yaml.SequenceNode):
@@ -196,16 +204,24 @@ class _Reader:
         return Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
 
 
+def merge_conflict(file: str, text: str) -> Diagnostic | None:
+    """What to say of a file that holds both sides of a merge, None where it does not."""
+    found = _CONFLICT.search(text)
+    if found is None:
+        return None
+    line = text.count("\n", 0, found.start()) + 1
+    place = Place(file, line, 1, line, len(found[0]) + 1)
+    hint = "keep one of the two versions, and delete the lines with <<<<<<<, ======= and >>>>>>>"
+    return Diagnostic("merge-conflict", "both sides of a merge stand in the file", place, hint)
+
+
 def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     if isinstance(error, yaml.reader.ReaderError):
         line = text.count("\n", 0, error.position) + 1
         place = Place(file, line, 1, line, 2)
         return Diagnostic("yaml-syntax", "the file holds a character that YAML does not allow", place, "delete it")
-    if conflict := _CONFLICT.search(text):
-        line = text.count("\n", 0, conflict.start()) + 1
-        place = Place(file, line, 1, line, len(conflict[0]) + 1)
-        hint = "keep one of the two versions, and delete the lines with <<<<<<<, ======= and >>>>>>>"
-        return Diagnostic("merge-conflict", "both sides of a merge stand in the file", place, hint)
+    if conflict := merge_conflict(file, text):
+        return conflict
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     if mark is None:
         return Diagnostic("too-large", "the file is nested too deeply to be read", Place(file), "use fewer levels")
@@ -219,5 +235,5 @@ def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     problem = " ".join(str(getattr(error, "problem", error)).split())
     context = getattr(error, "context", None)
     detail = f"{problem} {context}" if context else problem
-    hint = "look at the indentation, a missing colon, quote or bracket here or in the line above"
+    hint = next((words for sign, words in _HINTS.items() if sign in problem), _LOOK)
     return Diagnostic("yaml-syntax", f"this is not YAML: {detail}", place, hint)

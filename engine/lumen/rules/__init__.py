@@ -10,8 +10,8 @@ from lumen.loading.packaged import find_project
 from lumen.loading.project import assemble, draft, read_files
 from lumen.rules import controllers, events, expressions, references, routes, speech, statecharts, stories
 
-FAMILIES = (references, routes, expressions, events, statecharts, speech, controllers, stories)
-"""The rules, in the order they look; `statecharts` looks only at behaviours in which nothing else is wrong."""
+FAMILIES = (references, expressions, events, routes, speech, controllers, statecharts, stories)
+"""The rules, in the order they look: what is unused or never reached is looked for where nothing else is wrong."""
 
 
 def load(path: str | Path | None = None) -> Project:

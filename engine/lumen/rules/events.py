@@ -24,7 +24,7 @@ def check(draft: Draft) -> None:
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         _waited(draft, machine, report)
-        if not report.pruned:
+        if not report.diagnostics:
             _raised(machine, report)
 
 

@@ -1,6 +1,7 @@
 """How a rule says what it found."""
 
 from collections.abc import Mapping
+from typing import Any
 
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.loading.project import Draft
@@ -18,6 +19,17 @@ def first(report: Report, *paths: Path) -> Path:
     return next((path for path in paths if path in report.document.spans), paths[-1])
 
 
+def value_at(report: Report, path: Path) -> Any:
+    """The plain data at that path, None where there is nothing."""
+    node = report.document.data
+    for step in path:
+        try:
+            node = node[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return node
+
+
 _FOLDERS: Mapping[str, tuple[str, str]] = {
     "behavior": ("behaviors", "behaviour"),
     "story": ("behaviors/stories", "story"),
@@ -33,7 +45,7 @@ class References:
 
     def __init__(self, draft: Draft) -> None:
         self._names = draft.names
-        self._empty: set[str] = set()
+        self._missing = draft.missing
 
     def look_up(self, report: Report, path: Path, kind: str, name: str, *, key: bool = False) -> bool:
         """Whether there is a file of that kind and name; reported at `path` where there is none."""
@@ -44,8 +56,8 @@ class References:
         if names:
             hint = did_you_mean(name, names, f"{folder}/ has")
             find(report, f"unknown-{kind}", path, f"there is no {what} `{name}`", hint, key=key)
-        elif folder not in self._empty:
-            self._empty.add(folder)
+        elif folder not in self._missing:
+            self._missing.add(folder)
             hint = f"make the folder {folder}/ and put the file into it"
             find(report, "missing-folder", path, f"there is no {what} `{name}`: {folder}/ is missing or empty", hint)
         return False

@@ -42,7 +42,7 @@ def _main(draft: Draft, references: References) -> None:
     if settings.model and references.look_up(report, ("robot", "model"), "model", settings.model) and draft.body:
         body_report = draft.report("models", settings.model)
         _model_file(draft, body_report, ("mjcf",), draft.body.mjcf)
-    if settings.hall:
+    if settings.hall and "models" not in draft.missing:
         _model_file(draft, report, ("hall",), settings.hall)
 
 

@@ -2,7 +2,7 @@
 
 import re
 
-from lumen.language.diagnostics import did_you_mean
+from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.routes import Direction, Route
 from lumen.loading.project import Draft
 from lumen.loading.source import Report
@@ -62,9 +62,7 @@ def _fault(key: str) -> tuple[str, str]:
 
 def _event(draft: Draft, report: Report, route: Route) -> None:
     """A route that comes in and becomes an event should be waited for by somebody."""
-    if route.direction is Direction.OUT or len(draft.behaviors) < len(draft.names["behaviors"]):
-        return
-    if any(r.pruned for r in draft.reports.values()):
+    if route.direction is Direction.OUT or not draft.behaviors or has_errors(draft.diagnostics):
         return
     bound = {b.route for c in draft.controllers.values() for b in c.input_bindings}
     if route.name not in bound and not any(

@@ -9,13 +9,15 @@ from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.machines import Machine
 from lumen.loading.project import Draft
 from lumen.loading.source import Report
-from lumen.rules.finding import find
+from lumen.rules.finding import find, value_at
 from lumen.rules.walk import sites
 
 
 def check(draft: Draft) -> None:
     """Report what is said in too few languages, or in one that lumen.yaml does not name."""
     if draft.settings is None or draft.main is None or not draft.settings.languages:
+        return
+    if any(path[:1] == ("languages",) for path in draft.main.pruned):
         return
     speech = _Speech(draft.settings.languages, draft.main.lost)
     for name, machine in draft.behaviors.items():
@@ -53,10 +55,9 @@ class _Speech:
     def texts(self, report: Report, path: Path, texts: Mapping[str, Any]) -> None:
         """What is said in several languages should be said in all."""
         self.each(report, path, texts)
-        if path in report.pruned or any(gone[:-1] == path for gone in report.pruned):
-            return
-        missing = [language for language in self.languages if language not in texts]
-        if missing and "" not in texts:
+        said = {*texts, *_written(report, path)}
+        missing = [language for language in self.languages if language not in said]
+        if missing and said.isdisjoint(("", "any")):
             message = f"this is not said in {_listed(missing)}"
             find(report, "missing-language", path, message, f"write `{missing[0]}:` and the text beside it", key=True)
 
@@ -69,6 +70,13 @@ class _Speech:
         if language not in self.languages and language not in self.lost:
             hint = did_you_mean(language, self.languages, "it speaks")
             find(report, "unknown-language", path, f"the project does not speak `{language}`", hint, key=key)
+
+
+def _written(report: Report, path: Path) -> set[str]:
+    """The languages of a text as the file has them, those of broken texts too."""
+    node = value_at(report, path)
+    gone = {str(lost[-1]) for lost in report.pruned if lost[:-1] == path}
+    return gone.union(node if isinstance(node, dict) else ())
 
 
 def _listed(names: list[str]) -> str:

@@ -1,0 +1,65 @@
+"""One mistake, or several, in a small project: exactly these findings, at the very word, with the right hint.
+
+Each YAML file beside this one is a table of cases. A case changes the project in base/: `edit` maps a file to [old,
+new], `write` to its whole content, `delete` lists the beginnings of paths. `find` lists what lint has to say, as
+"file:line:column code | part of the hint"; it must say nothing else.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumen.language.diagnostics import Diagnostic
+from lumen.loading.project import read_files
+from lumen.loading.source import parse
+from lumen.rules import check_files
+
+HERE = Path(__file__).parent
+BASE = read_files(HERE / "base")
+
+
+def cases() -> list[Any]:
+    found = []
+    for path in sorted(HERE.glob("*.yaml")):
+        document, diagnostics = parse(path.name, path.read_bytes())
+        assert document
+        assert not diagnostics, diagnostics[0]
+        found += [pytest.param(case, id=f"{path.stem}: {name}") for name, case in document.data.items()]
+    return found
+
+
+def changed(case: dict[str, Any]) -> dict[str, bytes]:
+    gone = tuple(case.get("delete", ()))
+    files = {name: content for name, content in BASE.items() if not name.startswith(gone)} if gone else dict(BASE)
+    for name, (old, new) in case.get("edit", {}).items():
+        text = files[name].decode()
+        assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in {name}"
+        files[name] = text.replace(old, new).encode()
+    return files | {name: text.encode() for name, text in case.get("write", {}).items()}
+
+
+def said(diagnostic: Diagnostic) -> str:
+    return f"{diagnostic.place} {diagnostic.code} | {diagnostic.hint}"
+
+
+def test_the_project_the_cases_are_made_from_is_sound() -> None:
+    project, diagnostics = check_files(HERE / "base", BASE)
+    assert project is not None
+    assert not diagnostics
+
+
+def test_there_are_many_cases() -> None:
+    assert len(cases()) >= 100
+
+
+@pytest.mark.parametrize("case", cases())
+def test_a_mistake_is_found_at_its_word(case: dict[str, Any]) -> None:
+    project, diagnostics = check_files(HERE / "base", changed(case))
+    found = [said(d) for d in diagnostics]
+    for line, expected in zip(found, case["find"], strict=False):
+        where, _, hint = expected.partition(" |")
+        assert line.startswith(f"{where} | "), f"found {found}"
+        assert hint.strip() in line.partition(" | ")[2], f"found {found}"
+    assert len(found) == len(case["find"]), f"found {found}"
+    assert (project is None) == any(d.severity == "error" for d in diagnostics)

@@ -1,0 +1,104 @@
+"""The schemas themselves, and what is left of a document after its broken nodes are taken out."""
+
+import json
+from typing import Any
+
+import jsonschema
+import pytest
+
+from lumen.loading.packaged import schema_folder
+from lumen.loading.schema import KINDS, check_schema, load_schema
+from lumen.loading.source import Report, parse
+
+
+def check(text: str, kind: str = "behavior") -> tuple[Any, Report]:
+    document, diagnostics = parse("x.yaml", text.encode())
+    assert document
+    assert not diagnostics
+    report = Report(document)
+    return check_schema(document, kind, report), report
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_schema_is_strict_and_describes_its_keys(kind: str) -> None:
+    schema = load_schema(kind)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    assert schema["$id"]
+    waiting = [schema]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, dict):
+            assert not {"oneOf", "anyOf"} & node.keys(), "alternatives give errors that nobody understands"
+            assert node.get("$ref", "#").startswith("#")
+            if node.get("properties"):
+                assert node.get("additionalProperties") is False
+            waiting += [child for key, child in node.items() if key not in ("examples", "default")]
+        elif isinstance(node, list):
+            waiting += node
+
+
+def test_every_kind_has_its_schema() -> None:
+    assert {f"{kind}.schema.json" for kind in KINDS} == {p.name for p in schema_folder().glob("*.schema.json")}
+
+
+def test_a_sound_document_is_returned_as_it_is() -> None:
+    data, report = check("states: {a: {on: {go: b}}, b: {}}")
+    assert data is report.document.data
+    assert not report.diagnostics
+
+
+def test_broken_nodes_go_and_the_rest_stays() -> None:
+    data, report = check("states: {a: {on: {go: 3}, entry: {say: hi}}, b: []}")
+    assert data == {"states": {"a": {"on": {}, "entry": {"say": "hi"}}}}
+    assert {d.code for d in report.diagnostics} == {"wrong-type"}
+    assert ("states", "b") in report.pruned
+    assert "b" in report.lost
+
+
+def test_items_of_a_list_keep_their_places() -> None:
+    text = "states:\n  a:\n    entry:\n      - {sya: x}\n      - {say: y}\n      - 3\n      - {play: z}\n"
+    data, report = check(text)
+    assert data["states"]["a"]["entry"] == [{"say": "y"}, {"play": "z"}]
+    assert report.document.place(("states", "a", "entry", 0)).line == 5
+    assert report.document.place(("states", "a", "entry", 1, "play")).line == 7
+    assert [d.place.line for d in report.diagnostics] == [6, 4] or [d.place.line for d in report.diagnostics] == [4, 6]
+
+
+def test_a_missing_key_takes_its_parent_along_but_never_the_root() -> None:
+    data, report = check("behavior: tour\nroutes: {face: {direction: in}}", "lumen")
+    assert data == {"behavior": "tour", "routes": {}}
+    assert [d.code for d in report.diagnostics].count("missing-key") == 3
+    assert ("routes", "face") in report.pruned
+
+
+def test_a_misspelt_required_key_is_one_finding() -> None:
+    _, report = check("state: {a: {}}")
+    assert [d.code for d in report.diagnostics] == ["unknown-key"]
+
+
+def test_what_follows_from_a_lost_node_is_not_said() -> None:
+    _, report = check("states: {a: {on: {go: b}}, b: []}")
+    report("unknown-state", ("states", "a", "on", "go"), "there is no state `b`")
+    report("unknown-state", ("states", "a", "on", "go"), "there is no state `#guide.b`")
+    report("unknown-state", ("states", "a", "on", "go"), "there is no state `c`")
+    assert [d.message for d in report.diagnostics if d.code == "unknown-state"] == ["there is no state `c`"]
+
+
+def test_a_root_of_the_wrong_type_leaves_nothing() -> None:
+    data, report = check("[1, 2]")
+    assert data is None
+    assert [d.code for d in report.diagnostics] == ["wrong-type"]
+
+
+def test_the_editors_line_of_every_file_leads_to_its_schema() -> None:
+    root = schema_folder().parent
+    for file in [
+        root / "lumen.yaml",
+        *root.glob("behaviors/**/*.yaml"),
+        *root.glob("fuzzy/*.yaml"),
+        *root.glob("motions/*.yaml"),
+    ]:
+        first = file.read_text().split("\n", 1)[0]
+        assert first.startswith("# yaml-language-server: $schema="), file
+        schema = (file.parent / first.rpartition("=")[2]).resolve()
+        assert json.loads(schema.read_text())["$id"], file
