@@ -160,3 +160,19 @@ def test_caches_are_bounded() -> None:
     assert (compile_template.cache_info().currsize, compile_template.cache_info().maxsize) == (8192, 8192)
     compile_template.cache_clear()
     gc.collect()
+
+
+def test_errors_stay_small_and_quick() -> None:
+    """A message with a hundred thousand keys is not searched for a misspelt one, and an error is one short line."""
+    data = {f"key{n}": n for n in range(100_000)} | {"k" * 50_000: 1}
+    scope = Scope(context={"text": "t" * 100_000}, event={"name": "a", "data": data}, phrases={"p": {}})
+    for source in (
+        "event.data.key",
+        "heard('a', context.text)",
+        "size(\n" + "[1,\n" * 40 + "]" * 40 + ".a)",
+        "!('a' +\n 'b')",
+    ):
+        with pytest.raises(ExpressionError) as raised:
+            compile_expression(source)(scope)
+        assert len(str(raised.value)) < 400
+        assert "\n" not in str(raised.value)

@@ -111,9 +111,9 @@ class Builder:
         return ast.NamedExpr(ast.Name(name, ast.Store()), value), _load(name)
 
     def hidden(self, node: Node) -> ast.expr:
-        """The node, so that Python does not see where it is a literal: it would warn of `1['a']` and `1 is None`."""
+        """The node, so that Python does not see where it is constant: it would warn of `1['a']` and `1 is None`."""
         built = self.node(node)
-        return self.named(built)[0] if isinstance(node, Literal | Items) else built
+        return built if isinstance(node, Name | Field | Index | Call) else self.named(built)[0]
 
     def build(self, node: Node) -> ast.expr:
         match node:

@@ -72,10 +72,11 @@ def _compile(source: str, *, guard: bool) -> Evaluate:
     tree = parse_expression(source)
     must_hold(tree)
     careful: list[Evaluate] = []
+    logical = any(isinstance(node, Logic) for node, _ in walk(tree))
 
     def failed(error: Exception, scope: Scope) -> Any:
         """The value by CEL's full rule where there is `&&` or `||`, else the error explained."""
-        if not any(isinstance(node, Logic) for node, _ in walk(tree)):
+        if not logical:
             raise explain(error, source, tree, scope) from None
         if not careful:
             careful.append(_function(Builder(tree, careful=True).code(guard), _explainer(source, tree)))

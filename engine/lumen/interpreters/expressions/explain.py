@@ -1,6 +1,7 @@
 """What went wrong while an expression was evaluated, in words, and where."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from itertools import islice
 from types import TracebackType
 from typing import Any
 
@@ -41,7 +42,13 @@ def wrong_kind(source: str, node: Node, culprit: Node, kind: str, wanted: tuple[
     """`culprit`, an operand of `node` or the node itself, is of `kind` where something else is needed."""
     needed = " or ".join(IN_WORDS[k] for k in wanted)
     asks = f", and `{_sign(node)}` needs {needed}" if culprit is not node else f", and {needed} is needed"
-    return ExpressionError(f"`{source[culprit.offset : culprit.end]}` is {IN_WORDS[kind]}{asks}", culprit.offset)
+    return ExpressionError(f"`{_shown(source, culprit)}` is {IN_WORDS[kind]}{asks}", culprit.offset)
+
+
+def _shown(source: str, node: Node) -> str:
+    """The node as written, in one line and not too long."""
+    text = " ".join(source[node.offset : node.end].split())
+    return text if len(text) <= 60 else f"{text[:59]}…"
 
 
 def _sign(node: Node) -> str:
@@ -62,17 +69,22 @@ def _failing(traceback: TracebackType | None, tree: Node) -> Node:
 
 
 def _missing(error: KeyError | TypeError, source: str, node: Field | Index, scope: Scope) -> ExpressionError:
-    base = source[node.base.offset : node.base.end]
+    base = _shown(source, node.base)
     at = node.end - len(node.name) if isinstance(node, Field) else node.key.offset
-    name = node.name if isinstance(node, Field) else source[node.key.offset : node.key.end].strip("'\"")
+    name = node.name if isinstance(node, Field) else _shown(source, node.key).strip("'\"")
     value = _value(node.base, scope)
     if base == "event" and value is None:
         return ExpressionError("there is no event here", node.offset)
     if isinstance(error, KeyError):
-        hint = did_you_mean(name, map(str, value), f"`{base}` has") if isinstance(value, Mapping) else ""
+        hint = did_you_mean(name, _few(value), f"`{base}` has") if isinstance(value, Mapping) else ""
         return ExpressionError(f"`{base}` has no `{name}`", at, hint)
     kind = IN_WORDS[kind_of(value)] if value is not UNKNOWN else "not a map"
     return ExpressionError(f"`{base}` is {kind}, so it has no `{name}`", at)
+
+
+def _few(keys: Iterable[Any]) -> list[str]:
+    """The keys worth comparing with a misspelt one: a message may bring thousands, or long ones."""
+    return [key for key in islice(keys, 100) if isinstance(key, str) and len(key) <= 40]
 
 
 def _value(node: Node, scope: Scope) -> Any:

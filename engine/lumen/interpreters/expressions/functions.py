@@ -1,6 +1,6 @@
 """The functions of the language: what each takes, gives and does."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from math import floor
 from typing import Any, NamedTuple
 
@@ -91,15 +91,19 @@ def hour(scope: Scope) -> int:
 def heard(scope: Scope, text: Any, name: Any) -> bool:
     _texts(text, name)
     if name not in scope.phrases:
-        raise FaultError(f"there are no phrases named `{name}`", did_you_mean(name, scope.phrases, "`phrases` has"))
+        raise _unnamed("phrases", name, scope.phrases)
     return phrases.is_heard(text, scope.phrases[name])
 
 
 def lookup(scope: Scope, text: Any, table: Any) -> Any:
     _texts(text, table)
     if table not in scope.answers:
-        raise FaultError(f"there are no answers named `{table}`", did_you_mean(table, scope.answers, "`answers` has"))
+        raise _unnamed("answers", table, scope.answers)
     return phrases.answer(scope, text, scope.answers[table])
+
+
+def _unnamed(what: str, name: str, names: Iterable[str]) -> FaultError:
+    return FaultError(f"there are no {what} named `{name[:40]}`", did_you_mean(name[:40], names, f"`{what}` has"))
 
 
 def active(scope: Scope, state: Any) -> bool:
