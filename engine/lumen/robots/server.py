@@ -61,7 +61,7 @@ class Server:
         self._orders.begin()
 
     def use(self, project: Project) -> None:
-        """Go on with another bundle: its routes and periods from the next sample on, its motions in commands to come."""
+        """Go on with another bundle: its routes and periods from the next sample on, its motions for new commands."""
         self._listen(project)
         self._orders.use(project)
 
