@@ -1,16 +1,18 @@
-"""Plays a story on the recording robot, in virtual time, and keeps what happened."""
+"""Plays a story in virtual time, on the recording robot or another, and keeps what happened."""
 
 from dataclasses import dataclass, field
+from typing import Protocol
 
 from lumen.bus import connect
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.statechart import Step
-from lumen.language.commands import Command, Log, Say, Start
+from lumen.language.commands import Command, Log, Play, Say, Start
+from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.ports import Perform
+from lumen.ports import Hall, Robot
 from lumen.robots.recording import RecordingRobot
-from lumen.runtime.exhibition import Exhibition
+from lumen.runtime.exhibition import Exhibition, Part
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.story import StoryPlayer
 from lumen.runtime.visitor import Walker
@@ -21,7 +23,7 @@ LIMIT = 600.0
 
 @dataclass
 class Run:
-    """What happened: texts with their times [s], motions begun, states entered in order, errors by name, log lines."""
+    """What happened: texts with their times [s], motions finished, states entered, errors by name, log lines."""
 
     failure: str = ""
     time: float = 0.0
@@ -36,10 +38,17 @@ class Run:
         return [name for name in self.entered if name in GUIDE]
 
 
-def play(project: Project, story: Story) -> Run:
-    """The story played to its end, or to its failure."""
+class Performer(Robot, Hall, Protocol):
+    """A robot in a world of ours; `advance` lets [s] pass."""
+
+    def advance(self, dt: float) -> None: ...
+
+
+def play(project: Project, story: Story, performer: Performer | None = None, *, part: Part | None = None) -> Run:
+    """The story played to its end, or to its failure; `part` lives with it."""
     run = Run()
-    robot = RecordingRobot(project.body, story.robot)
+    playing: dict[str, str] = {}
+    robot = performer or RecordingRobot(project.body, story.robot)
     bus = connect("memory://", project)
     walker = Walker(project, robot, bus)
     player = StoryPlayer(story, project, robot, bus, walker)
@@ -53,19 +62,27 @@ def play(project: Project, story: Story) -> Run:
         match command:
             case Start(_, Say(text)):
                 run.said.append((now, text))
+            case Start(id, Play(motion)):
+                playing[id] = motion
             case Log(text):
                 run.logged.append(text)
         player.performing(command)
+
+    def answered(event: Event) -> None:
+        kind, _, id = event.name.partition(".command.")
+        if kind == "done" and id in playing:
+            run.played.append(playing[id])
+        player.answered(event)
 
     exhibition = Exhibition(
         project,
         robot,
         bus,
         SimulatedClock(robot.advance, None),
-        parts=[walker.tick, FaceDetector(project, robot, bus).tick, player.tick],
+        parts=[walker.tick, FaceDetector(project, robot, bus).tick, player.tick, *([part] if part else [])],
         observe=observe,
         performing=performing,
-        answered=player.answered,
+        answered=answered,
     )
     player.attach(exhibition)
     hours, minutes = (story.clock or "10:00").split(":")
@@ -74,5 +91,4 @@ def play(project: Project, story: Story) -> Run:
         run.time = exhibition.tick()
     bus.close()
     run.failure = player.failure or ("" if player.finished else f"not finished after {LIMIT:g} s")
-    run.played = [command.motion.name for _, command in robot.performed if isinstance(command, Perform)]
     return run

@@ -1,0 +1,53 @@
+"""The tour on the simulated robot, at honest physics."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from lumen.language.projects import Project
+from lumen.language.stories import Arrive, Deed, Expect, Pause, Scene, Story, Touch, Visitor
+from lumen.robots.simulation import SimulatedRobot
+from tests.tour.playing import play
+
+
+@pytest.fixture
+def robot(project: Project) -> Iterator[SimulatedRobot]:
+    simulated = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
+    yield simulated
+    simulated.close()
+
+
+def test_the_shipped_story_in_physics(project: Project, robot: SimulatedRobot) -> None:
+    """Every motion comes to its end, the robot never leans far, and the tour is the one of the recording robot."""
+    recorded = play(project, project.stories["visitor"])
+    run = play(project, project.stories["visitor"], robot)
+    assert run.failure == ""
+    assert run.errors == []
+    assert run.played == ["dance", "sing", "photo", "goodbye"]
+    assert run.guide() == recorded.guide()
+    assert [text for _, text in run.said] == [text for _, text in recorded.said]
+    assert not robot.fallen
+    assert robot.greatest_tilt < 20.0
+
+
+def test_who_is_pushed_over_calls_for_help(project: Project, robot: SimulatedRobot) -> None:
+    """A push of 70 N from behind while it greets; lying there it says so, and again after a hand held its head."""
+
+    def push(now: float) -> None:
+        robot.world.data.xfrc_applied[robot.world.torso][0] = 70.0 if 7.0 < now < 7.15 else 0.0
+
+    deeds: list[Deed] = [
+        Pause(3.0),
+        Arrive(Visitor()),
+        Expect(("greet",)),
+        Expect(("fallen", "interrupted"), said="I fell"),
+        Expect(("helpless",), said="hold my head"),
+        Touch("MiddleTactil"),
+        Expect(("waking",), within=4.0),
+        Touch("MiddleTactil", pressed=False),
+        Expect(("helpless",), said="hold my head"),
+    ]
+    run = play(project, Story("pushed", "Pushed over", tuple(Scene(d) for d in deeds)), robot, part=push)
+    assert run.failure == ""
+    assert robot.fallen
