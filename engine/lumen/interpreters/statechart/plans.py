@@ -178,12 +178,16 @@ def _is_leaf(node: Node) -> bool:
 
 def _without_conflicts(topology: Topology, enabled: Sequence[Rule], start: Configuration) -> tuple[Rule, ...]:
     """The transitions that can be taken together (`removeConflictingTransitions`)."""
-    kept: list[Rule] = []
+    kept: dict[Rule, set[Node]] = {}
+    taken: set[Node] = set()
     for rule in enabled:
         left = topology.exit_set([rule], start.nodes)
-        rivals = [other for other in kept if left & topology.exit_set([other], start.nodes)]
+        rivals = [] if taken.isdisjoint(left) else [other for other in kept if kept[other] & left]
         if all(rule.source.lies_below(other.source) for other in rivals):
-            kept = [other for other in kept if other not in rivals] + [rule]
+            for other in rivals:
+                del kept[other]
+            kept[rule] = left
+            taken |= left
     return tuple(kept)
 
 

@@ -76,10 +76,9 @@ class Run:
         for group in groups:
             for rule in group:
                 if rule.guard is None or self.holds(rule):
-                    if rule not in found:
-                        found.append(rule)
+                    found.append(rule)
                     break
-        return tuple(found)
+        return tuple(dict.fromkeys(found))
 
     def holds(self, rule: Rule) -> bool:
         """Whether a guard is true; one that fails is false, and error.execution."""

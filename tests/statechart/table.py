@@ -1,0 +1,74 @@
+"""Cases from YAML: a small machine, what happens to it, and what has to come of that."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from lumen.language.commands import Cancel, Command, Log, Publish, Start
+from lumen.loading.source import parse
+from lumen.statechart import Interpreter, Machine, Step
+
+CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))
+
+
+def read(path: Path) -> Mapping[str, Any]:
+    document, diagnostics = parse(path.name, path.read_bytes())
+    assert document is not None
+    assert not diagnostics
+    return document.data
+
+
+def play(case: Mapping[str, Any]) -> list[tuple[Mapping[str, Any], Mapping[str, Any]]]:
+    """For each step of a case what was expected and what came of it, the keys expected only.
+
+    Steps are `start` (again, from the beginning), `send` with `data`, and `wait` [s].
+    """
+    machine = Machine.from_dict(case["machine"])
+    steps: list[Step] = []
+    found = []
+    interpreter: Interpreter | None = None
+    for row in case["steps"]:
+        steps.clear()
+        if interpreter is None or "start" in row:
+            interpreter = Interpreter(machine, observe=steps.append)
+            interpreter.start()
+        if "send" in row:
+            steps.clear()
+            interpreter.send(row["send"], row.get("data"))
+        elif "wait" in row:
+            steps.clear()
+            interpreter.clock.wait(interpreter.clock.now() + row["wait"])
+        expected = row.get("start") or row.get("expect") or {}
+        seen = outcome(steps, interpreter)
+        found.append((expected, {key: seen[key] for key in expected}))
+    return found
+
+
+def outcome(steps: list[Step], interpreter: Interpreter) -> dict[str, Any]:
+    """Everything that a case may expect of some steps; the configuration in document order."""
+    commands = [command for step in steps for command in step.commands]
+    return {
+        "exited": [name for step in steps for name in step.exited],
+        "entered": [name for step in steps for name in step.entered],
+        "raised": [event.name for step in steps for event in step.raised],
+        "log": [command.text for command in commands if isinstance(command, Log)],
+        "commands": [shown(command) for command in commands if not isinstance(command, Log)],
+        "configuration": interpreter.snapshot()["configuration"],
+        "context": interpreter.context,
+    }
+
+
+def shown(command: Command) -> str:
+    match command:
+        case Start(id, body):
+            values = [getattr(body, name) for name in body.__dataclass_fields__]
+            words = [f"{round(v, 5)}" if isinstance(v, float) else str(v) for v in values]
+            if type(body).__name__ == "Say":
+                words.reverse()
+            return " ".join(["start", id, type(body).__name__, *words])
+        case Cancel(id):
+            return f"cancel {id}"
+        case Publish(route, body):
+            return f"publish {route} {body}"
+        case Log(text):
+            return f"log {text}"

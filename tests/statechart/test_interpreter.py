@@ -1,0 +1,186 @@
+"""The shell around `step`: the clock, snapshots on the disk, and what it refuses."""
+
+import json
+from typing import Any
+
+import pytest
+
+from lumen.clocks.virtual import VirtualClock
+from lumen.errors import LumenError, SnapshotError, UsageError
+from lumen.statechart import Event, Interpreter, Machine, Step, due, initial, step
+
+TOUR = {
+    "id": "tour",
+    "context": {"visits": 0, "visitor": None},
+    "states": {
+        "idle": {"id": "rest", "exit": {"assign": {"visits": "context.visits + 1"}}, "on": {"face": "greet"}},
+        "greet": {
+            "do": [{"say": {"any": ["Hello", "Hi", "Good day"]}}, {"wait": "2s"}, {"play": "wave"}],
+            "onDone": "idle",
+            "after": {"20s": "idle"},
+        },
+    },
+}
+
+
+def running(**options: Any) -> Interpreter:
+    it = Interpreter(Machine.from_dict(TOUR), **options)
+    it.start()
+    it.send("face")
+    return it
+
+
+def test_what_the_interpreter_tells() -> None:
+    it = running()
+    assert it.configuration == frozenset({"greet"})
+    assert it.context == {"visits": 1, "visitor": None}
+    it.send(Event("done.command.d1"))
+    it.clock.wait(2.0)
+    it.send("done.command.d2")
+    assert it.configuration == frozenset({"rest"})
+
+
+def test_advance_stops_at_every_due_time() -> None:
+    steps: list[Step] = []
+    ticking = {"states": {"a": {"after": {"500ms": "b"}}, "b": {"after": {"1s": "a"}}}}
+    it = Interpreter(Machine.from_dict(ticking), observe=steps.append)
+    it.start()
+    it.clock.wait(4.2)
+    assert [step.snapshot.at for step in steps] == [0.0, 0.5, 1.5, 2.0, 3.0, 3.5]
+    assert it.clock.now() == 4.2
+
+
+def test_two_interpreters_share_a_clock_in_the_order_of_time() -> None:
+    seen: list[tuple[str, float]] = []
+    clock = VirtualClock()
+    for name, delay in (("slow", "300ms"), ("fast", "200ms")):
+        machine = Machine.from_dict({"id": name, "states": {"a": {"after": {delay: "a"}}}})
+        Interpreter(machine, clock, observe=lambda s, n=name: seen.append((n, s.snapshot.at))).start()
+    seen.clear()
+    clock.advance(0.65)
+    assert [name for name, _ in seen] == ["fast", "slow", "fast", "slow", "fast"]
+
+
+def test_an_observer_may_answer() -> None:
+    def answer(taken: Step) -> None:
+        for command in taken.commands:
+            if id := getattr(command, "id", ""):
+                it.send(f"done.command.{id}")
+
+    it = Interpreter(Machine.from_dict(TOUR), observe=answer)
+    it.start()
+    it.send("face")
+    it.clock.wait(2.0)
+    assert it.configuration == frozenset({"rest"})
+
+
+def test_time_never_goes_back() -> None:
+    machine = Machine.from_dict({"states": {"a": {"on": {"go": "b"}}, "b": {"after": {"1s": "a"}}}})
+    later = step(machine, initial(machine, at=5.0).snapshot, Event("go", at=1.0))
+    assert (later.snapshot.at, due(later.snapshot)) == (5.0, Event("after.1s.b", None, 6.0, "after.1s.b"))
+
+
+def test_a_step_changes_nothing_that_it_was_given() -> None:
+    machine = Machine.from_dict(TOUR)
+    before = initial(machine).snapshot
+    copy = (before.configuration, dict(before.context), before.timers, dict(before.doing))
+    first, again = (step(machine, before, Event("face", at=1.0)) for _ in range(2))
+    assert (before.configuration, before.context, before.timers, before.doing) == copy
+    assert first == again
+
+
+def test_input_gives_first_values() -> None:
+    machine = Machine.from_dict(TOUR)
+    assert initial(machine, input={"visits": 3}).snapshot.context["visits"] == 3
+    with pytest.raises(UsageError, match=r"visist.*did you mean `visits`"):
+        initial(machine, input={"visist": 3})
+    with pytest.raises(UsageError, match="`visits` is a number"):
+        initial(machine, input={"visits": "three"})
+
+
+def test_the_hour_is_that_of_the_event() -> None:
+    machine = Machine.from_dict({"states": {"a": {"on": {"go": {"guard": "hour() >= 18", "target": "b"}}}, "b": None}})
+    morning, evening = (initial(machine, epoch=h * 3600.0).snapshot for h in (17.0, 17.75))
+    assert not step(machine, morning, Event("go", at=1800.0)).entered
+    assert step(machine, evening, Event("go", at=1800.0)).entered == ("b",)
+
+
+def test_alternatives_are_drawn_from_the_snapshot() -> None:
+    machine = Machine.from_dict({"states": {"a": {"on": {"go": {"actions": {"say": {"any": ["x", "y", "z"]}}}}}}})
+
+    def said(seed: int) -> list[str]:
+        snapshot, texts = initial(machine, seed=seed).snapshot, []
+        for _ in range(20):
+            taken = step(machine, snapshot, Event("go"))
+            snapshot = taken.snapshot
+            texts.append(taken.commands[0].command.text)  # type: ignore[union-attr]
+        return texts
+
+    assert said(1) == said(1) != said(2)
+    assert set(said(1)) == {"x", "y", "z"}
+
+
+@pytest.mark.parametrize(("timers", "wakes"), [("deadline", 4.0), ("remaining", 103.0), ("restart", 104.0)])
+def test_timers_after_a_restore(timers: Any, wakes: float) -> None:
+    machine = Machine.from_dict({"states": {"a": {"on": {"tick": {}}, "after": {"4s": "b"}}, "b": None}})
+    it = Interpreter(machine)
+    it.start()
+    it.clock.wait(1.0)
+    it.send("tick")
+    again = Interpreter.restore(machine, json.loads(json.dumps(it.snapshot())), VirtualClock(100.0), timers)
+    assert (again.configuration == frozenset({"b"})) is (wakes < 100.0)
+    again.clock.wait(max(wakes, 100.0))
+    assert again.configuration == frozenset({"b"})
+
+
+def test_a_restored_interpreter_goes_on_with_its_do() -> None:
+    it = running()
+    again = Interpreter.restore(it.machine, json.loads(json.dumps(it.snapshot())))
+    for each in (it, again):
+        each.send("done.command.d1")
+        each.clock.wait(2.0)
+        each.send("done.command.d2")
+    assert again.snapshot() == it.snapshot()
+    assert again.configuration == frozenset({"rest"})
+
+
+@pytest.mark.parametrize(
+    ("change", "difference"),
+    [
+        ({"id": "other"}, "it is of `tour`"),
+        ({"states": {"idle": None}}, "state `greet` is gone"),
+        ({"states": {**TOUR["states"], "dance": None}}, "state `dance` is new"),  # type: ignore[dict-item]
+        ({"context": {"visits": 0}, "types": {}}, "context key `visitor` is gone"),
+        ({"context": {"visits": 1, "visitor": None}}, "what stands in them is not"),
+    ],
+)
+def test_another_machines_snapshot_is_refused(change: dict[str, Any], difference: str) -> None:
+    snapshot = running().snapshot()
+    states = change.get("states", TOUR["states"])
+    with pytest.raises(SnapshotError, match=difference):
+        Interpreter.restore(Machine.from_dict({**TOUR, **change, "states": states}), snapshot)
+
+
+@pytest.mark.parametrize("damage", [{"version": 2}, {"timers": 3}, {"configuration": ["x"]}, {"doing": {"greet": {}}}])
+def test_a_damaged_snapshot_is_refused(damage: dict[str, Any]) -> None:
+    it = running()
+    with pytest.raises(SnapshotError):
+        Interpreter.restore(it.machine, {**it.snapshot(), **damage})
+    with pytest.raises(SnapshotError):
+        Interpreter.restore(it.machine, {})
+
+
+def test_use_in_the_wrong_order_is_refused() -> None:
+    it = Interpreter(Machine.from_dict(TOUR))
+    with pytest.raises(UsageError, match="start"):
+        it.send("face")
+    it.start()
+    with pytest.raises(UsageError, match="already"):
+        it.start()
+
+
+def test_a_send_that_answers_itself_ends_in_an_error() -> None:
+    it = Interpreter(Machine.from_dict({"states": {"a": {"on": {"go": {"actions": {"send": "go"}}}}}}))
+    it.start()
+    with pytest.raises(LumenError, match="`go` is sent over and over"):
+        it.send("go")

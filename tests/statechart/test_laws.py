@@ -1,0 +1,137 @@
+"""What holds of every machine: the same events give the same steps, and a snapshot on the disk loses nothing."""
+
+import json
+from contextlib import suppress
+from typing import Any
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lumen.errors import LumenError
+from lumen.interpreters.statechart import Snapshot, Step, due, freeze, initial, step, thaw
+from lumen.language.events import Event
+from lumen.language.machines import Kind
+from lumen.statechart import Machine
+
+EVENTS = ["e", "f", "g.h"]
+ACTIONS: list[dict[str, Any]] = [
+    {"assign": {"n": "context.n + 1"}},
+    {"assign": {"n": "event.data.nothing"}},
+    {"raise": "f"},
+    {"send": {"event": "g.h", "delay": "300ms", "id": "one"}},
+    {"cancel": "one"},
+    {"log": "{{ context.n }}"},
+    {"say": {"any": ["x", "y", "z"]}},
+    {"if": "context.n > 2", "then": [{"play": "p"}], "else": [{"log": "few"}]},
+]
+DEEDS: list[dict[str, Any]] = [
+    *ACTIONS,
+    {"wait": "200ms"},
+    {"parallel": [{"say": "x"}, {"wait": "100ms"}, {"if": "true", "then": [{"play": "p"}, {"wait": "100ms"}]}]},
+]
+
+
+@st.composite
+def machines(draw: st.DrawFn) -> Machine:
+    """A random machine: at most three levels, any target, no endless `always`."""
+    tree = draw(
+        st.recursive(st.just({}), lambda t: st.dictionaries(st.sampled_from("abc"), t, min_size=1), max_leaves=8)
+    )
+    names: list[str] = []
+
+    def state(children: dict[str, Any], depth: int) -> dict[str, Any]:
+        names.append(id := f"n{len(names)}")
+        data: dict[str, Any] = {"id": id}
+        if children:
+            data["type"] = draw(st.sampled_from(["compound", "parallel"]))
+            data["states"] = {key: state(child, depth + 1) for key, child in children.items()}
+            if draw(st.booleans()):
+                data["states"]["h"] = {
+                    "type": "history",
+                    "history": draw(st.sampled_from(["shallow", "deep"])),
+                    "id": id + "h",
+                }
+                names.append(id + "h")
+        return data
+
+    root = state(tree or {"a": {}}, 0)
+    root["context"] = {"n": 0}
+
+    def fill(data: dict[str, Any]) -> None:
+        if data.get("type") == "history":
+            return
+        for key in ("entry", "exit"):
+            data[key] = draw(st.lists(st.sampled_from(ACTIONS), max_size=2))
+        data["do"] = draw(st.lists(st.sampled_from(DEEDS), max_size=3))
+        targets = st.sampled_from(names).map(lambda name: f"#{name}")
+        guards = st.sampled_from(["true", "context.n % 2 == 0", "event.data.x"])
+        rows = st.fixed_dictionaries({"target": targets, "reenter": st.booleans(), "guard": guards})
+        data["on"] = draw(st.dictionaries(st.sampled_from([*EVENTS, "*"]), rows, max_size=2))
+        data["after"] = draw(st.dictionaries(st.sampled_from(["100ms", "1s"]), rows, max_size=1))
+        for child in data.get("states", {}).values():
+            fill(child)
+
+    fill(root)
+    return Machine.from_dict(root)
+
+
+HAPPENINGS = st.lists(st.sampled_from([*EVENTS, "g", "tick", "answer", "refuse"]), max_size=12)
+
+
+def happen(snapshot: Snapshot, what: str) -> Event:
+    """The event that a happening is in this snapshot: the next timer, or an answer to the last command awaited."""
+    if what == "tick":
+        return due(snapshot) or Event("e", None, snapshot.at)
+    if what in ("answer", "refuse"):
+        kind = "done" if what == "answer" else "error"
+        return Event(f"{kind}.command.d{snapshot.counters.awaited}", None, snapshot.at)
+    return Event(what, {"x": True}, snapshot.at + 0.05)
+
+
+def run(machine: Machine, happenings: list[str], *, through_disk: bool = False) -> list[Step]:
+    """The steps until the end, or until the machine does not come to rest any more."""
+    steps: list[Step] = []
+    with suppress(LumenError):
+        steps.append(initial(machine))
+        for what in happenings:
+            steps.append(next_step(machine, steps[-1].snapshot, what, through_disk))
+    return steps
+
+
+def next_step(machine: Machine, snapshot: Snapshot, what: str, through_disk: bool) -> Step:
+    if through_disk:
+        snapshot = thaw(machine, json.loads(json.dumps(freeze(machine, snapshot))))
+    return step(machine, snapshot, happen(snapshot, what))
+
+
+@settings(max_examples=60, deadline=None)
+@given(machines(), HAPPENINGS)
+def test_the_same_events_give_the_same_steps(machine: Machine, happenings: list[str]) -> None:
+    steps = run(machine, happenings)
+    assert run(machine, happenings) == steps
+    assert run(machine, happenings, through_disk=True) == steps
+
+
+@settings(max_examples=60, deadline=None)
+@given(machines(), HAPPENINGS)
+def test_every_configuration_is_legal(machine: Machine, happenings: list[str]) -> None:
+    for taken in run(machine, happenings):
+        names = taken.snapshot.configuration
+        for state in machine.states.values():
+            active = [c for c in state.children if machine.states[c].name in names]
+            if state.path and state.name not in names:
+                assert not active
+            elif state.kind is Kind.COMPOUND:
+                assert len(active) == 1
+            elif state.kind is Kind.PARALLEL:
+                assert active == [c for c in state.children if machine.states[c].kind is not Kind.HISTORY]
+
+
+@settings(max_examples=40, deadline=None)
+@given(machines(), HAPPENINGS)
+def test_what_waits_belongs_to_an_active_state(machine: Machine, happenings: list[str]) -> None:
+    for taken in run(machine, happenings):
+        snapshot = taken.snapshot
+        active = {path for path, s in machine.states.items() if not path or s.name in snapshot.configuration}
+        assert snapshot.doing.keys() <= active
+        assert {timer.state for timer in snapshot.timers if timer.kind != "send"} <= active
