@@ -32,6 +32,7 @@ class RabbitMQ:
     """A broker in a folder of its own; `url` is where it listens once `start` has returned."""
 
     def __init__(self) -> None:
+        self._script = _script()
         self.folder = Path(tempfile.mkdtemp(prefix="lumen-rabbitmq-"))
         self.port, self.distribution, self.epmd = _free_ports(3)
         self.url = self.url_of("guest")
@@ -48,7 +49,7 @@ class RabbitMQ:
         (self.folder / "definitions.json").write_text(json.dumps(_definitions()))
         with (self.folder / "log").open("ab") as log:
             self._process = subprocess.Popen(
-                [_script()], env=self._environment(), stdout=log, stderr=log, start_new_session=True
+                [self._script], env=self._environment(), stdout=log, stderr=log, start_new_session=True
             )
         deadline = time.monotonic() + READY
         while not _speaks_amqp(self.port):
