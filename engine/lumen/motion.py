@@ -11,7 +11,7 @@ from lumen.interpreters.trajectory import Trajectory
 from lumen.language import motions
 from lumen.language.diagnostics import has_errors
 from lumen.language.robots import Body
-from lumen.loading.motions import build_motion
+from lumen.loading.motions import build_motion, countable
 from lumen.loading.packaged import MAIN_FILE, find_project, shipped_root
 from lumen.loading.project import Draft, draft, read_files
 from lumen.loading.schema import check_schema
@@ -48,6 +48,8 @@ class Motion(motions.Motion):
     @classmethod
     def _build(cls, document: Document, name: str, around: Draft) -> Self:
         report, body = Report(document), _body(around)
+        if not countable(document.data, report):
+            raise ProjectError(report.diagnostics)
         data = check_schema(document, "motion", report)
         others = {other: motion for other, motion in around.motions.items() if other != name}
         broken = around.names["motions"]

@@ -5,7 +5,7 @@ A track is compiled once into segments, one before each key: polynomials of the 
 keys: `cubic` has Fritsch and Butland's tangents (SIAM J. Sci. Stat. Comput. 5, 1984), level at every extreme.
 """
 
-from bisect import bisect_left
+from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -102,7 +102,7 @@ class Track(NamedTuple):
     def at(self, t: float) -> float:
         if t <= 0.0:
             return self.first
-        i = bisect_left(self.ends, t)
+        i = bisect_right(self.ends, t)  # in a key the next segment begins, exactly at its angle
         return self.segments[i].at(t) if i < len(self.segments) else self.last
 
 

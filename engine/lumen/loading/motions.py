@@ -17,6 +17,9 @@ from lumen.loading.units import ANGLES, seconds
 STANDING = "Stand"
 """The posture that a motion begins in where its file does not say."""
 
+MAX_KEYFRAMES = 20_000
+"""In one list; the schema says so too, but reads every one of them before it does."""
+
 M = TypeVar("M", bound=Motion)
 
 
@@ -58,7 +61,7 @@ def build_motions(files: Mapping[str, tuple[Any, Report]], body: Body, *, into: 
     Motions are built after those that they play; a circle of them is reported where it closes.
     """
     plays = {name: dict(_played(data)) for name, (data, _) in files.items()}
-    order, circles = _order({name: set(played) & files.keys() - {name} for name, played in plays.items()})
+    order, circles = _order({name: [p for p in played if p in files and p != name] for name, played in plays.items()})
     for name, other in circles:
         message = f"`{name}` plays `{other}`, which in the end plays `{name}`"
         files[name][1]("motion-cycle", plays[name][other], message, hint="let one of them play something else")
@@ -69,6 +72,17 @@ def build_motions(files: Mapping[str, tuple[Any, Report]], body: Body, *, into: 
         if motion is not None:
             built[name] = motion
     return {name: built[name] for name in files if name in built}
+
+
+def countable(data: Any, report: Report) -> bool:
+    """Whether there are few enough keyframes to be read at all; where not, it is said."""
+    if not isinstance(data, Mapping) or not isinstance(data.get("keyframes"), list):
+        return True
+    if len(data["keyframes"]) <= MAX_KEYFRAMES:
+        return True
+    hint = f"a list can have {MAX_KEYFRAMES:,}; use blocks with `repeat`, or several motions"
+    report("too-many-keys", ("keyframes",), f"{len(data['keyframes']):,} keyframes are too many", hint=hint, key=True)
+    return False
 
 
 def _finished(part: Motion, data: Mapping[str, Any], poses: PoseReader, name: str, into: type[M]) -> M:
@@ -99,7 +113,7 @@ def _played(data: Any) -> Iterator[tuple[str, Path]]:
                 waiting.extend((child, (*path, "keyframes", i)) for i, child in enumerate(item["keyframes"]))
 
 
-def _order(plays: dict[str, set[str]]) -> tuple[list[str], list[tuple[str, str]]]:
+def _order(plays: dict[str, list[str]]) -> tuple[list[str], list[tuple[str, str]]]:
     """The names, each after those that it plays, and the steps that had to be taken out because they close a circle."""
     circles: list[tuple[str, str]] = []
     while True:
@@ -107,5 +121,5 @@ def _order(plays: dict[str, set[str]]) -> tuple[list[str], list[tuple[str, str]]
             return list(TopologicalSorter(plays).static_order()), circles
         except CycleError as error:
             played, player = error.args[1][:2]  # each name in the list is played by the next
-            plays[player].discard(played)
+            plays[player].remove(played)
             circles.append((player, played))

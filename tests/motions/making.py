@@ -1,0 +1,63 @@
+"""What the tests of motions share: the shipped robot, and motions built from the text of a file."""
+
+from functools import cache
+from pathlib import Path
+
+from hypothesis import strategies as st
+
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.motions import Interpolation, Key, Motion
+from lumen.language.robots import Body
+from lumen.loading.bodies import build_body
+from lumen.loading.motions import build_motion
+from lumen.loading.schema import check_schema
+from lumen.loading.source import Report, parse
+
+ROOT = Path(__file__).parents[2]
+SHIPPED = ("goodbye", "dance", "sing", "photo")
+
+
+@cache
+def nao() -> Body:
+    document, _ = parse("models/nao.yaml", (ROOT / "models/nao.yaml").read_bytes())
+    assert document is not None
+    body = build_body(document.data, Report(document), name="nao")
+    assert body is not None
+    return body
+
+
+def read(
+    text: str, name: str = "test", motions: dict[str, Motion] | None = None
+) -> tuple[Motion | None, list[Diagnostic]]:
+    """The motion in the text of a file, and everything that is wrong with it."""
+    document, diagnostics = parse(f"motions/{name}.yaml", text.encode())
+    assert document is not None
+    report = Report(document)
+    data = check_schema(document, "motion", report)
+    return build_motion(data, report, name=name, body=nao(), motions=motions), [*diagnostics, *report.diagnostics]
+
+
+def made(text: str, **motions: Motion) -> Motion:
+    """The motion in the text of a file that has to be right."""
+    motion, diagnostics = read(text, motions=motions)
+    assert diagnostics == []
+    assert motion is not None
+    return motion
+
+
+TURNING = [name for name in nao().joints if name not in nao().hands]
+
+
+@st.composite
+def motions(draw: st.DrawFn, how: tuple[Interpolation, ...] = tuple(Interpolation)) -> Motion:
+    """Any motion of a few joints inside their limits, without handles, starting in Stand."""
+    tracks, longest = {}, 0.0
+    for joint in draw(st.lists(st.sampled_from(TURNING), min_size=1, max_size=4, unique=True)):
+        limits = nao().joints[joint]
+        steps = draw(st.lists(st.floats(0.05, 3.0), min_size=1, max_size=6))
+        times = [sum(steps[: i + 1]) for i in range(len(steps))]
+        angles = st.floats(limits.minimum, limits.maximum)
+        tracks[joint] = tuple(Key(t, draw(angles), draw(st.sampled_from(how))) for t in times)
+        longest = max(longest, times[-1])
+    stand = nao().postures["Stand"]
+    return Motion("any", longest, tracks, start="Stand", origin={joint: stand[joint] for joint in tracks})
