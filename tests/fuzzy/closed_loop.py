@@ -41,8 +41,12 @@ def run(
     latency: float = 0.0,
     tick: float = 0.033,
     duration: float = 4.0,
+    error: float = 0.0,
 ) -> Run:
-    """Let the controller follow a face (its place in the torso frame [m] by time) for `duration` [s]."""
+    """Let the controller follow a face (its place in the torso frame [m] by time) for `duration` [s].
+
+    `error` [s] is added to the times at which images say they were taken.
+    """
     tracker = Tracker(controller, HEAD)
     head, target = list(start), list(start)
     arriving: deque[tuple[float, tuple[float, float], float]] = deque()
@@ -58,7 +62,7 @@ def run(
                 arriving.append((now + latency, pixel, now))
             while arriving and arriving[0][0] <= now + 1e-9:
                 _, (u, v), captured_at = arriving.popleft()
-                if aim := tracker.see({"x": round(u), "y": round(v)}, captured_at):
+                if aim := tracker.see({"x": round(u), "y": round(v)}, captured_at + error):
                     target = [aim["HeadYaw"], aim["HeadPitch"]]
         for i, speed in enumerate(speeds):
             head[i] += max(-speed * STEP, min(speed * STEP, target[i] - head[i]))

@@ -99,10 +99,17 @@ def test_without_magnification_the_head_rests_beside_the_face(head: Controller) 
     assert abs(u - 160) > 40
 
 
-def test_a_wrong_capture_time_of_50_ms_does_not_shake_the_head(head: Controller) -> None:
-    late = replace(head, tracking=replace(head.tracking, stale=2.0))
-    outcome = run(late, lambda now: ADULT, off_by(ADULT, 15, 8), latency=0.15, tick=0.05)
-    assert outcome.overshoot(0, centring(ADULT, TOP)[0]) <= 0.10
+@pytest.mark.parametrize("latency", [0.1, 0.2])
+@pytest.mark.parametrize("tick", [0.033, 0.1])
+@pytest.mark.parametrize("error", [-0.05, 0.05])
+def test_a_capture_time_that_is_50_ms_wrong_does_not_shake_the_head(
+    head: Controller, latency: float, tick: float, error: float
+) -> None:
+    goal = centring(ADULT, TOP)
+    outcome = run(head, lambda now: ADULT, off_by(ADULT, 15, 8), latency=latency, tick=tick, error=error, duration=6.0)
+    for axis in (0, 1):
+        assert outcome.overshoot(axis, goal[axis]) <= 0.10
+        assert abs(outcome.poses[-1][1 + axis] - goal[axis]) <= radians(1)
 
 
 def test_a_walking_visitor_stays_in_the_image(head: Controller) -> None:

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from math import inf, isfinite, pi, sin
 from typing import Any
 
+from lumen.errors import LumenError
 from lumen.interpreters.glance import Glance
 from lumen.interpreters.limits import coupled_range
 from lumen.language.controllers import Controller
@@ -44,8 +45,8 @@ class Tracker:
         self._held: Angles = {}
 
     def pose(self, time: float, angles: Mapping[str, float]) -> None:
-        """Remember where the joints stand [rad]: `angles` holds at least those of `joints`, measured at `time`."""
-        if self._poses and time <= self._poses[-1][0]:
+        """Remember where the joints stand [rad], measured at `time`; without all of `joints` it is no pose."""
+        if (self._poses and time <= self._poses[-1][0]) or not angles.keys() >= set(self.joints):
             return
         self._poses.append((time, {joint: angles[joint] for joint in self.joints}))
         while self._poses[0][0] < time - 2.0 * self.controller.tracking.stale:
@@ -55,13 +56,16 @@ class Tracker:
         """Where the joints should go [rad], from the body of a message and when its image was taken.
 
         `route` is the message's, for a controller whose inputs come from several. None where the sight is stale, older
-        than the one before, lacks a field, or comes before the first pose.
+        than the one before, lacks a field, comes before the first pose, or fires no rule of an output without default.
         """
         fresh = self._poses and self._poses[-1][0] - captured_at <= self.controller.tracking.stale
         if not fresh or captured_at < self._seen or not self._take(fields, route):
             return None
         pose = self.pose_at(captured_at)
-        self._turn = self._glance.turn(self._inputs, pose)
+        try:
+            self._turn = self._glance.turn(self._inputs, pose)
+        except LumenError:
+            return None
         target = self.clamped({joint: angle + self._turn[joint] for joint, angle in pose.items()})
         self._seen, self._lost_since, self._held = captured_at, None, target
         return target

@@ -28,7 +28,7 @@ class _Variables:
 
     def variable(self, name: str, spec: Mapping[str, Any]) -> Variable | None:
         self.named(name)
-        if "range" not in spec or "terms" not in spec:
+        if "range" not in spec or (self.side == "outputs" and "terms" not in spec):
             return None
         low, high = (float(end) for end in spec["range"])
         if not self.spans(name, low, high):
@@ -38,7 +38,7 @@ class _Variables:
             name,
             low,
             high,
-            build_terms(spec["terms"], self.report, (*path, "terms"), len(self.data["inputs"])),
+            build_terms(spec.get("terms") or {}, self.report, (*path, "terms"), len(self.data["inputs"])),
             unit=spec.get("unit", ""),
             direction=spec.get("direction", ""),
             default=spec.get("default"),

@@ -1,11 +1,11 @@
 """Activation methods: which rules of a block take part, and with what degree.
 
-Each takes the rules' degrees in order and returns them with 0 for a rule that does not take part; 0 is neutral in
-every aggregation.
+Each takes the rules' degrees in order and returns them with NaN for a rule that does not take part. (Not with 0: a
+consequent such as `not Near` makes something of 0.)
 """
 
 from collections.abc import Callable, Mapping
-from math import inf
+from math import inf, nan
 from operator import eq, ge, gt, le, lt, ne
 from typing import Any
 
@@ -28,7 +28,7 @@ def first(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
     chosen = []
     for degree in degrees:
         fires = (degree > 0.0) & (degree >= activation.threshold) & (taken < activation.rules)
-        chosen.append(m.where(fires, degree, 0.0))
+        chosen.append(m.where(fires, degree, nan))
         taken = taken + m.where(fires, 1.0, 0.0)
     return chosen
 
@@ -41,25 +41,32 @@ def last(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
 def lowest(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
     """The `rules` that fire least; of equals those written first."""
     ranks = m.rank([m.where(degree > 0.0, degree, inf) for degree in degrees])
-    return [m.where(rank < activation.rules, degree, 0.0) for rank, degree in zip(ranks, degrees, strict=True)]
+    return _ranked(m, activation, ranks, degrees)
 
 
 def highest(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
     """The `rules` that fire most; of equals those written first."""
     ranks = m.rank([-degree for degree in degrees])
-    return [m.where(rank < activation.rules, degree, 0.0) for rank, degree in zip(ranks, degrees, strict=True)]
+    return _ranked(m, activation, ranks, degrees)
+
+
+def _ranked(m: Arithmetic, activation: Activation, ranks: Degrees, degrees: Degrees) -> Degrees:
+    return [
+        m.where((rank < activation.rules) & (degree > 0.0), degree, nan)
+        for rank, degree in zip(ranks, degrees, strict=True)
+    ]
 
 
 def proportional(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """All of them, scaled so that their degrees add up to 1."""
+    """All that fire, scaled so that their degrees add up to 1."""
     whole = m.maximum(total(degrees), 1e-300)
-    return [degree / whole for degree in degrees]
+    return [m.where(degree > 0.0, degree / whole, nan) for degree in degrees]
 
 
 def threshold(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
     """Those whose degree compares with `threshold` as `comparison` says."""
     compare = COMPARE[activation.comparison]
-    return [m.where(compare(degree, activation.threshold), degree, 0.0) for degree in degrees]
+    return [m.where(compare(degree, activation.threshold), degree, nan) for degree in degrees]
 
 
 METHODS: Mapping[str, Callable[[Arithmetic, Activation, Degrees], Degrees]] = {

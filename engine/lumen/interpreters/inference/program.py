@@ -48,6 +48,7 @@ class Program:
         self._controller, self._m = controller, m
         self._operations: list[Operation] = []
         self._known: dict[Any, int] = {}
+        self._parts: dict[int, int] = {}
         self.conclusions: dict[str, list[Conclusion]] = {name: [] for name in controller.outputs}
         self._inputs = {name: i for i, name in enumerate(controller.inputs)}
         self.rules = [slot for block in controller.blocks for slot in self._block(block)]
@@ -81,22 +82,36 @@ class Program:
             return slots
         m, method, activation = self._m, METHODS[operators.activation.method], operators.activation
         whole = self._add(lambda tape: method(m, activation, [tape[slot] for slot in slots]))
-        return [self._add(lambda tape, i=i: tape[whole][i]) for i in range(len(slots))]  # type: ignore[misc]
+        return [self._part(whole, i) for i in range(len(slots))]
+
+    def _part(self, whole: int, i: int) -> int:
+        """The degree of one rule after activation: 0 where it does not take part (there the method says NaN)."""
+        m = self._m
+        part = self._add(lambda tape: tape[whole][i])
+        slot = self._add(lambda tape: m.where(tape[part] == tape[part], tape[part], 0.0))
+        self._parts[slot] = part
+        return slot
 
     def _degree(self, rule: Rule, operators: Operators) -> int:
         slot, weight = self._antecedent(rule.antecedent, operators), rule.weight
         return slot if weight == 1.0 else self._add(lambda tape: weight * tape[slot])
 
     def _conclude(self, rule: Rule, slot: int, operators: Operators) -> int:
+        """A hedge in a consequent changes the degree with which the rule concludes from there on, as in FuzzyLite."""
+        degree = slot
         for proposition in rule.consequents:
-            hedges = proposition.hedges
-            degree = self._hedge(slot, hedges) if hedges else slot
+            if proposition.hedges:
+                degree = self._hedge(degree, proposition.hedges, slot)
             conclusion = Conclusion(proposition.term, degree, operators.implication)
             self.conclusions[proposition.variable].append(conclusion)
         return slot
 
-    def _hedge(self, slot: int, hedges: tuple[str, ...]) -> int:
-        return self._add(lambda tape: hedged(self._m, hedges, tape[slot]))
+    def _hedge(self, slot: int, hedges: tuple[str, ...], rule: int) -> int:
+        """The hedged degree; of a rule that does not take part it stays 0."""
+        m, part = self._m, self._parts.get(rule)
+        if part is None:
+            return self._add(lambda tape: hedged(m, hedges, tape[slot]))
+        return self._add(lambda tape: m.where(tape[part] == tape[part], hedged(m, hedges, tape[slot]), 0.0))
 
     def _antecedent(self, node: Antecedent, operators: Operators) -> int:
         match node:
