@@ -3,19 +3,18 @@
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from lumen.bus import connect
+from lumen.cli.cast import Cast
+from lumen.cli.show import Show
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.statechart import Step
-from lumen.language.commands import Command, Log, Play, Say, Start
+from lumen.language.commands import Command, Play, Say, Start
+from lumen.language.commands import Log as LogLine
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Hall, Robot
 from lumen.robots.recording import RecordingRobot
-from lumen.runtime.exhibition import Exhibition, Part
-from lumen.runtime.perception import FaceDetector
-from lumen.runtime.story import StoryPlayer
-from lumen.runtime.visitor import Walker
+from lumen.runtime.exhibition import Observer, Part
 from tests.tour.names import GUIDE
 
 LIMIT = 600.0
@@ -44,51 +43,43 @@ class Performer(Robot, Hall, Protocol):
     def advance(self, dt: float) -> None: ...
 
 
+class Log(Observer):
+    """Keeps in a run what it sees."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.playing: dict[str, str] = {}
+
+    def stepped(self, step: Step) -> None:
+        self.run.entered += step.entered
+        self.run.errors += [event.name for event in step.raised if event.name.startswith("error.")]
+
+    def performing(self, command: Command, now: float) -> None:
+        match command:
+            case Start(_, Say(text)):
+                self.run.said.append((now, text))
+            case Start(id, Play(motion)):
+                self.playing[id] = motion
+            case LogLine(text):
+                self.run.logged.append(text)
+
+    def answered(self, event: Event) -> None:
+        kind, _, id = event.name.partition(".command.")
+        if kind == "done" and id in self.playing:
+            self.run.played.append(self.playing[id])
+
+
 def play(project: Project, story: Story, performer: Performer | None = None, *, part: Part | None = None) -> Run:
     """The story played to its end, or to its failure; `part` lives with it."""
     run = Run()
-    playing: dict[str, str] = {}
     robot = performer or RecordingRobot(project.body, story.robot)
-    bus = connect("memory://", project)
-    walker = Walker(project, robot, bus)
-    player = StoryPlayer(story, project, robot, bus, walker)
-
-    def observe(step: Step) -> None:
-        run.entered += step.entered
-        run.errors += [event.name for event in step.raised if event.name.startswith("error.")]
-        player.observe(step)
-
-    def performing(command: Command, now: float) -> None:
-        match command:
-            case Start(_, Say(text)):
-                run.said.append((now, text))
-            case Start(id, Play(motion)):
-                playing[id] = motion
-            case Log(text):
-                run.logged.append(text)
-        player.performing(command)
-
-    def answered(event: Event) -> None:
-        kind, _, id = event.name.partition(".command.")
-        if kind == "done" and id in playing:
-            run.played.append(playing[id])
-        player.answered(event)
-
-    exhibition = Exhibition(
-        project,
-        robot,
-        bus,
-        SimulatedClock(robot.advance, None),
-        parts=[walker.tick, FaceDetector(project, robot, bus).tick, player.tick, *([part] if part else [])],
-        observe=observe,
-        performing=performing,
-        answered=answered,
-    )
-    player.attach(exhibition)
-    hours, minutes = (story.clock or "10:00").split(":")
-    exhibition.start(language=story.language, epoch=int(hours) * 3600.0 + int(minutes) * 60.0)
-    while not player.finished and run.time < LIMIT:
-        run.time = exhibition.tick()
-    bus.close()
-    run.failure = player.failure or ("" if player.finished else f"not finished after {LIMIT:g} s")
+    show = Show(project, Cast(robot, SimulatedClock(robot.advance), robot), story=story)
+    show.exhibition.observers.append(Log(run))
+    show.exhibition.parts += [part] if part else []
+    show.start()
+    assert show.player
+    while not show.player.finished and run.time < LIMIT:
+        run.time = show.tick()
+    show.close()
+    run.failure = show.player.failure or ("" if show.player.finished else f"not finished after {LIMIT:g} s")
     return run

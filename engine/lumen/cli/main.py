@@ -5,10 +5,13 @@ import importlib
 import logging
 import os
 import sys
+import time
 from collections.abc import Sequence
 
 import lumen
 from lumen.errors import LumenError, ProjectError
+
+STARTED = time.monotonic()
 
 VERBS = {
     "new": "start a project of your own",

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from lumen.cli.show import Show
 from lumen.cli.transcript import Transcript
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.language.projects import Project
-from lumen.runtime.exhibition import Exhibition
 from lumen.runtime.watcher import Watcher
 
 PATIENCE = 60.0
@@ -15,9 +15,9 @@ PATIENCE = 60.0
 class Reloading:
     """Stages every good bundle and applies it at the first tick at which the running state allows it."""
 
-    def __init__(self, project: Project, exhibition: Exhibition, transcript: Transcript) -> None:
-        self._exhibition, self._transcript = exhibition, transcript
-        self._watcher = Watcher(Path(project.root))
+    def __init__(self, show: Show, transcript: Transcript) -> None:
+        self._show, self._transcript = show, transcript
+        self._watcher = Watcher(Path(show.exhibition.project.root))
         self._staged: Project | None = None
         self._since = 0.0
         self._waiting = ""
@@ -39,7 +39,7 @@ class Reloading:
             self._apply(self._staged, now)
 
     def _apply(self, project: Project, now: float) -> None:
-        reason = self._exhibition.reload(project)
+        reason = self._show.reload(project)
         if not reason:
             self._transcript.line("reload", "the saved files are in force")
         elif now - self._since < PATIENCE:

@@ -6,8 +6,8 @@ import signal
 from pathlib import Path
 
 import lumen
-from lumen.cli.cast import ROBOTS, SPEEDS
-from lumen.cli.show import Show
+from lumen.cli.cast import ROBOTS, SPEEDS, cast
+from lumen.cli.performance import Performance
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
@@ -30,19 +30,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     project = lumen.load(options.project)
-    show = Show(
+    story = _story(project, options.story)
+    period, language = _period(options.period), _language(project, options.language)
+    video = film_path(options.video, options.robot)
+    performance = Performance(
         project,
-        robot=options.robot,
-        speed=options.speed,
-        bus_url=options.bus or os.environ.get("LUMEN_BUS") or project.bus,
-        story=_story(project, options.story),
-        period=_period(options.period),
-        language=_language(project, options.language),
-        video=film_path(options.video, options.robot),
-        watch=options.reload == "auto",
+        cast(options.robot, project, options.speed, story),
+        options.bus or os.environ.get("LUMEN_BUS") or project.bus,
+        story,
     )
-    signal.signal(signal.SIGINT, lambda *_: show.interrupt())
-    return show.run()
+    signal.signal(signal.SIGINT, lambda *_: performance.interrupt())
+    return performance.run(options.speed, period, language, video, watch=options.reload == "auto")
 
 
 def _story(project: Project, name: str | None) -> Story | None:
@@ -65,9 +63,8 @@ def _period(text: str | None) -> float | None:
 
 def _language(project: Project, language: str | None) -> str:
     if language is not None and language not in project.languages:
-        raise UsageError(
-            f"the project does not speak `{language}`: {did_you_mean(language, project.languages, 'it speaks')}"
-        )
+        hint = did_you_mean(language, project.languages, "it speaks")
+        raise UsageError(f"the project does not speak `{language}`: {hint}")
     return language or ""
 
 

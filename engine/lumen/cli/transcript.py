@@ -1,10 +1,13 @@
 """A run as it reads on a terminal: when, who, what, and why."""
 
+import shutil
 import sys
+import textwrap
 from collections.abc import Callable
 from typing import TextIO
 
 from lumen.cli.terminal import coloured, paint
+from lumen.cli.why import innermost, why
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import (
     Command,
@@ -23,16 +26,20 @@ from lumen.language.commands import (
     Walk,
 )
 from lumen.language.events import Event
+from lumen.language.machines import Machine
 from lumen.language.stories import Arrive, Deed, Happen, Leave, Send, Speak, Touch
+from lumen.runtime.exhibition import Observer
+
+INDENT = 18
 
 WHO = {"visitor": "yellow", "robot": "cyan", "state": "green", "reload": "magenta", "trouble": "red"}
 
 
-class Transcript:
+class Transcript(Observer):
     """Prints what happens, a line each, with simulated time; counts it for the summary."""
 
-    def __init__(self, now: Callable[[], float], stream: TextIO | None = None) -> None:
-        self._now = now
+    def __init__(self, now: Callable[[], float], machine: Callable[[], Machine], stream: TextIO | None = None) -> None:
+        self._now, self._machine = now, machine
         self._stream = stream or sys.stdout
         self._colour = coloured(self._stream)
         self._running: dict[str, str] = {}
@@ -43,26 +50,22 @@ class Transcript:
 
     def line(self, who: str, text: str) -> None:
         """One line: the time, who it is about, and what."""
-        minutes, seconds = divmod(self._now(), 60)
-        time = paint(f"{int(minutes):2d}:{seconds:04.1f}", "dim", on=self._colour)
-        print(
-            f"{time}  {paint(f'{who:<8}', WHO.get(who, 'dim'), on=self._colour)} {text}", file=self._stream, flush=True
-        )
+        minutes, tenths = divmod(int(self._now() * 10 + 1e-6), 600)
+        time = paint(f"{minutes:2d}:{tenths / 10:04.1f}", "dim", on=self._colour)
+        name = paint(f"{who:<8}", WHO.get(who, "dim"), on=self._colour)
+        print(f"{time}  {name} {_wrapped(text)}", file=self._stream, flush=True)
 
-    def observe(self, step: Step) -> None:
-        """A step: the states it entered, and the event that made it."""
+    def stepped(self, step: Step) -> None:
         for error in step.raised:
             if error.name.startswith("error."):
                 self.errors += 1
                 self.line("trouble", f"{error.name}: {error.data.get('reason', '')}")
-        entered = [name for name in step.entered if name]
+        entered = innermost(self._machine(), step.entered)
         if entered:
             self.states += entered
-            names = " ".join(paint(name, "bold", on=self._colour) for name in entered)
-            self.line("state", f"{names}  {paint(_why(step), 'dim', on=self._colour)}")
+            self.line("state", f"{', '.join(entered)}  ({why(step)})")
 
     def performing(self, command: Command, now: float) -> None:
-        """A command is handed to the robot or the bus."""
         match command:
             case Start(id, Say(text)):
                 self.said += 1
@@ -77,7 +80,6 @@ class Transcript:
                 self.line("log", text)
 
     def answered(self, event: Event) -> None:
-        """The robot answered, or noticed something."""
         kind, _, id = event.name.partition(".command.")
         running = self._running.pop(id, "")
         if kind == "error":
@@ -108,16 +110,11 @@ class Transcript:
                 self.line("story", f"a module sends `{route}`")
 
 
-def _why(step: Step) -> str:
-    event = step.event
-    if event is None:
-        return "at the start"
-    text = event.data.get("result") if isinstance(event.data, dict) else None
-    if event.name.startswith("after."):
-        return "because time was up"
-    if event.name.startswith(("done.", "error.")):
-        return f"because {event.name}"
-    return f"because `{event.name}`" + (f" “{text}”" if text else "")
+def _wrapped(text: str) -> str:
+    """The text in lines that fit beside time and name."""
+    width = max(shutil.get_terminal_size((120, 24)).columns - INDENT, 30)
+    lines = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
+    return ("\n" + " " * INDENT).join(lines)
 
 
 def _words(command: object) -> str:

@@ -3,17 +3,17 @@
 import queue
 import sys
 import threading
+from collections.abc import Callable
 
-from lumen.cli.transcript import Transcript
-from lumen.language.stories import Speak
+from lumen.language.stories import Deed, Leave, Speak
 from lumen.runtime.visitor import Walker
 
 
 class TypedSpeech:
     """Reads lines on a thread of its own; at the end of input the visitor walks away."""
 
-    def __init__(self, walker: Walker, transcript: Transcript) -> None:
-        self._walker, self._transcript = walker, transcript
+    def __init__(self, walker: Walker, tell: Callable[[Deed], None]) -> None:
+        self._walker, self._tell = walker, tell
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._gone: float | None = None
         threading.Thread(target=self._read, name="lumen-typing", daemon=True).start()
@@ -23,10 +23,11 @@ class TypedSpeech:
         while not self._lines.empty():
             line = self._lines.get()
             if line is None:
+                self._tell(Leave())
                 self._walker.leave()
                 self._gone = now
             elif line:
-                self._transcript.deed(Speak(line))
+                self._tell(Speak(line))
                 self._walker.speak(line)
 
     def gone_for(self, now: float) -> float:

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Sequence
 
+from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot
 from lumen.runtime.inbox import Inbox
 from lumen.runtime.performer import Performer
-from lumen.runtime.runtime import Observer, Runtime
+from lumen.runtime.runtime import Runtime
 from lumen.runtime.tracking import Tracking
 
 TICK = 0.02
@@ -18,33 +19,34 @@ Part = Callable[[float], None]
 """Something that lives with the exhibition: called at each tick with its time [s]."""
 
 
+class Observer:
+    """Somebody who watches: told of everything as it happens, and changing nothing of it."""
+
+    def stepped(self, step: Step) -> None:
+        """The behaviour took a step."""
+
+    def performing(self, command: Command, now: float) -> None:
+        """A command is about to be performed."""
+
+    def answered(self, event: Event) -> None:
+        """The robot answered a command, or noticed something; the behaviour has not heard of it yet."""
+
+
 class Exhibition:
     """A project on a robot, a bus and a clock.
 
-    At each tick: the clock waits, the parts live, what happened becomes events, the behaviour steps, its commands are
-    performed. `answered` sees every event of the robot before the behaviour does. Where ticks stop for 5 s of the
-    clock the behaviour is told (`brain.lost`).
+    At each tick: the clock waits, the `parts` live, what happened becomes events, the behaviour steps, its commands are
+    performed; `observers` are told. Where ticks stop for 5 s of the clock the behaviour is told (`brain.lost`).
     """
 
-    def __init__(
-        self,
-        project: Project,
-        robot: Robot,
-        bus: Bus,
-        clock: Clock,
-        *,
-        parts: Sequence[Part] = (),
-        observe: Observer = lambda _: None,
-        performing: Callable[[Command, float], None] = lambda *_: None,
-        answered: Callable[[Event], None] = lambda _: None,
-    ) -> None:
+    def __init__(self, project: Project, robot: Robot, bus: Bus, clock: Clock) -> None:
         self.robot, self.bus, self.clock = robot, bus, clock
-        self.parts = list(parts)
-        self.runtime = Runtime(project, observe)
+        self.parts: list[Part] = []
+        self.observers: list[Observer] = []
+        self.runtime = Runtime(project, self._stepped)
         self.inbox = Inbox(bus)
         self.tracking = Tracking(project, robot, bus)
         self._performer = Performer(robot, bus, self.tracking.switch)
-        self._performing, self._answered = performing, answered
         self._events: list[Event] = []
         self._last = clock.now()
 
@@ -83,15 +85,28 @@ class Exhibition:
         self.tracking.reload(project)
         return ""
 
+    def _stepped(self, step: Step) -> None:
+        for observer in self.observers:
+            observer.stepped(step)
+
     def _gather(self, now: float) -> list[Event]:
         answers = list(self.robot.poll())
         for event in answers:
-            self._answered(event)
+            for observer in self.observers:
+                observer.answered(event)
         happened, self._events = self._events, []
         ended, self._performer.events = self._performer.events, []
-        return [*ended, *answers, *(e._replace(at=now) for e in happened), *self.inbox.drain(now)]
+        heard = [event for event in answers if _ours(event)]
+        return [*ended, *heard, *(e._replace(at=now) for e in happened), *self.inbox.drain(now)]
 
     def _perform(self, commands: Sequence[Command], now: float) -> None:
         for command in commands:
-            self._performing(command, now)
+            for observer in self.observers:
+                observer.performing(command, now)
             self._performer.perform(self.project, command, now)
+
+
+def _ours(event: Event) -> bool:
+    """Whether it is for the behaviour: its own commands are c1, d2, …; others' answers are theirs alone."""
+    _, separator, id = event.name.partition(".command.")
+    return not separator or (id[:1] in ("c", "d") and id[1:].isdecimal())

@@ -20,7 +20,7 @@ class FaceDetector:
     def __init__(self, project: Project, hall: Hall, bus: Bus) -> None:
         self._hall, self._bus = hall, bus
         self._route: Route | None = project.routes.get(ROUTE)
-        self._robot = project.robot
+        self._robot, self.camera = project.robot, project.body.camera
         self._next = 0.0
         self._developing: deque[tuple[float, dict[str, object]]] = deque()
         self.last: tuple[float, float] | None = None

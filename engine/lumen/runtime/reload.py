@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.statechart import Snapshot, Timer
-from lumen.interpreters.statechart.types import fits, type_checks
+from lumen.interpreters.statechart.types import type_checks
 from lumen.language.actions import If, Parallel, Step
 from lumen.language.machines import Kind, Machine, State
 
@@ -80,10 +80,12 @@ def _shapes(steps: tuple[Step, ...]) -> tuple[object, ...]:
 
 def _context(new: Machine, context: Mapping[str, Any]) -> dict[str, Any]:
     checks = type_checks(new)
-    return {
-        key: context[key] if key in context and fits(context[key], checks[key]) else first
-        for key, first in new.context.items()
+    kept = {
+        key: context[key]
+        for key, check in checks.items()
+        if key in context and (check is None or check.accepts(context[key]))
     }
+    return {**new.context, **kept}
 
 
 def _lives(new: Machine, timer: Timer) -> bool:

@@ -8,8 +8,6 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.runtime.reload import Refusal, migrate
 
-Observer = Callable[[Step], None]
-
 
 class Runtime:
     """A running behaviour: its bundle, its snapshot, and what happens to them at a tick.
@@ -17,7 +15,7 @@ class Runtime:
     `observe` is shown every step in the order taken. `epoch` is the local time of day at time 0 [s since midnight].
     """
 
-    def __init__(self, project: Project, observe: Observer = lambda _: None) -> None:
+    def __init__(self, project: Project, observe: Callable[[Step], None] = lambda _: None) -> None:
         self.project = project
         self._observe = observe
         self._snapshot: Snapshot | None = None

@@ -7,10 +7,9 @@ from typing import assert_never
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.events import Event
-from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Expect, Happen, Leave, Pause, Send, Speak, Story, Touch
-from lumen.ports import Bus, Hall
-from lumen.runtime.exhibition import Exhibition
+from lumen.ports import Hall
+from lumen.runtime.exhibition import Exhibition, Observer
 from lumen.runtime.visitor import Walker
 
 
@@ -44,8 +43,8 @@ class Witness:
         self.said, self.played, self.published = [], [], []
 
 
-class StoryPlayer:
-    """One story on an exhibition; call `tick` with its time, and the three observers with what happens.
+class StoryPlayer(Observer):
+    """One story on an exhibition, which it watches; call `tick` with its time.
 
     It is `finished` when its last step is done or one has failed; `failure` says in a line what was expected where.
     """
@@ -53,38 +52,30 @@ class StoryPlayer:
     def __init__(
         self,
         story: Story,
-        project: Project,
+        exhibition: Exhibition,
         hall: Hall,
-        bus: Bus,
         walker: Walker,
         tell: Callable[[Deed], None] = lambda _: None,
     ) -> None:
         self.story = story
         self.failure = ""
         self.scene = 0
-        self._project, self._hall, self._bus, self._walker = project, hall, bus, walker
+        self._exhibition, self._hall, self._walker = exhibition, hall, walker
         self._tell = tell
         self._witness = Witness()
         self._since = 0.0
-        self._exhibition: Exhibition | None = None
 
     @property
     def finished(self) -> bool:
         return bool(self.failure) or self.scene >= len(self.story.scenes)
 
-    def attach(self, exhibition: Exhibition) -> None:
-        """Where events from nowhere go."""
-        self._exhibition = exhibition
-
-    def observe(self, step: Step) -> None:
-        """A step was taken."""
+    def stepped(self, step: Step) -> None:
         self._witness.states = step.snapshot.configuration
         self._witness.context = dict(step.snapshot.context)
         if bad := self._witness.states.intersection(self.story.never):
             self._fail(f"never state {_names(bad)}, but it was entered")
 
-    def performing(self, command: Command) -> None:
-        """A command is about to be performed."""
+    def performing(self, command: Command, now: float) -> None:
         match command:
             case Start(_, Say(text)):
                 self._witness.said.append(text)
@@ -94,7 +85,6 @@ class StoryPlayer:
                 self._witness.published.append(route)
 
     def answered(self, event: Event) -> None:
-        """The robot said something; a motion that finished was played."""
         if event.name.startswith("done.command."):
             motion = self._witness.playing.pop(event.name.removeprefix("done.command."), None)
             if motion:
@@ -124,10 +114,10 @@ class StoryPlayer:
             case Touch(sensor, pressed):
                 self._hall.touch(sensor, pressed)
             case Happen(name, data):
-                assert self._exhibition
                 self._exhibition.happen(Event(name, data, now))
             case Send(name, body):
-                self._bus.publish(self._project.routes[name].key_for(self._project.robot), body)
+                project = self._exhibition.project
+                self._exhibition.bus.publish(project.routes[name].key_for(project.robot), body)
             case _:
                 assert_never(deed)
         return True

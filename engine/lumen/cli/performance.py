@@ -1,0 +1,116 @@
+"""A show as it runs on a terminal: introduced, told line by line, summed up."""
+
+import math
+import time
+from pathlib import Path
+
+from lumen.cli.cast import Cast
+from lumen.cli.main import STARTED
+from lumen.cli.reloading import Reloading
+from lumen.cli.show import Show, film
+from lumen.cli.transcript import Transcript
+from lumen.cli.typed import TypedSpeech
+from lumen.language.commands import Rest
+from lumen.language.projects import Project
+from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
+
+FAREWELL = 5.0
+"""How long it goes on after whoever typed has left [s]."""
+
+
+class Performance:
+    """Runs once; `run` returns the exit code."""
+
+    def __init__(self, project: Project, chosen: Cast, bus_url: str, story: Story | None) -> None:
+        self._show = Show(project, chosen, bus_url, story, self._deed)
+        self._transcript = Transcript(chosen.clock.now, lambda: self._show.exhibition.project.machine)
+        self._show.exhibition.observers.append(self._transcript)
+        self._story = story
+        self._typed: TypedSpeech | None = None
+        self._interrupts = 0
+        self._face: float | None = None
+
+    def interrupt(self) -> None:
+        """Ctrl-C: once rests the robot, twice ends."""
+        self._interrupts += 1
+        if self._interrupts == 1:
+            self._show.robot.start("operator", Rest())
+            self._transcript.line("operator", "Ctrl-C: the robot rests; again to end")
+
+    def run(self, speed: str, period: float | None, language: str, video: Path | None, *, watch: bool) -> int:
+        """Perform until the story ends, the period [s] is over, the visitor has left or the operator ends it."""
+        show, now = self._show, 0.0
+        try:
+            if video:
+                film(show, video)
+            if watch:
+                reloading = Reloading(show, self._transcript)
+                show.exhibition.parts.append(reloading.tick)
+                show.closing.insert(0, reloading.close)
+            self._introduce(speed)
+            show.start(language)
+            began = time.monotonic()
+            while not self._over(now, period):
+                now = show.tick()
+            took = time.monotonic() - began
+        finally:
+            show.close()
+        return self._summary(now, took, video)
+
+    def _introduce(self, speed: str) -> None:
+        project = self._show.exhibition.project
+        pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")
+        ready = time.monotonic() - STARTED
+        print(f"{project.name}: {project.robot} performs `{project.behavior}` {pace}, ready after {ready:.1f} s.")
+        if self._story:
+            print(f"The story is “{self._story.title}”.\n")
+        elif self._show.walker:
+            print("You are the visitor: type what you say. Ctrl-D walks away; Ctrl-C rests the robot, twice ends.\n")
+            self._show.walker.arrive(Visitor())
+            self._deed(Arrive(Visitor()))
+            self._typed = TypedSpeech(self._show.walker, self._deed)
+            self._show.exhibition.parts.append(self._typed.tick)
+
+    def _deed(self, deed: Deed) -> None:
+        self._transcript.deed(deed)
+        faces = self._show.faces
+        if isinstance(deed, Leave) and faces and faces.last and faces.camera:
+            self._face = math.dist(faces.last, (faces.camera.width / 2, faces.camera.height / 2))
+
+    def _over(self, now: float, period: float | None) -> bool:
+        if self._interrupts > 1 or (period is not None and now >= period):
+            return True
+        if self._show.player:
+            return self._show.player.finished
+        return self._typed is not None and self._typed.gone_for(now) > FAREWELL
+
+    def _summary(self, now: float, took: float, video: Path | None) -> int:
+        player, log = self._show.player, self._transcript
+        failure = player.failure if player else ""
+        ended = (
+            "The story failed"
+            if failure
+            else "Ended before the story did"
+            if player and not player.finished
+            else "All well"
+        )
+        print(
+            f"\n{ended}: {clock_time(now)} of simulated time in {took:.0f} s ({now / max(took, 0.01):.1f} × real time)."
+        )
+        if failure:
+            print(f"  {failure}")
+        print(f"  {len(set(log.states))} states, {log.said} texts, motions: {', '.join(log.played) or 'none'}")
+        if self._face is not None:
+            print(f"  the visitor's face ended {self._face:.0f} px from the centre of the camera's image")
+        counts = self._show.server.counts
+        print("  published: " + ", ".join(f"{count.published} {sense}" for sense, count in counts.items()))
+        if video:
+            print(f"  the film is {video}")
+        print("Next: change a sentence in behaviors/tour.yaml while it runs (docs/change-the-tour.md),")
+        print("      `lumen run` to be the visitor yourself, `lumen lint` after every change, `lumen graph` to see it.")
+        return 1 if failure else 0
+
+
+def clock_time(now: float) -> str:
+    """`3:07` for 187 [s]."""
+    return f"{int(now // 60)}:{int(now % 60):02d}"
