@@ -10,16 +10,16 @@ from lumen.language.events import Event
 CAPACITY = 48.6 * 3600
 """A full battery [J]: 48.6 Wh, from NAO V5's data sheet."""
 
-IDLE_POWER = 15.0
-"""What computer and sensors take [W]; with the motors at work it lasts 60 to 90 minutes."""
+IDLE_POWER = 30.0
+"""What computer and sensors take [W]; so that a charge lasts a good hour and a half of standing and talking."""
 
-LOSS = 4.0
+LOSS = 6.0
 """What a motor takes [W] to give its greatest torque without moving."""
 
 LOW, HOT, COOLED = 20, 75.0, 70.0
 """Charge [%] and temperatures [degrees Celsius] at which the robot speaks up, and may do so again."""
 
-AMBIENT, RISE, TIME_CONSTANT = 38.0, 60.0, 600.0
+AMBIENT, RISE, TIME_CONSTANT = 38.0, 300.0, 600.0
 """Where motors begin, how far they heat up at their greatest torque, in what time [s]. Chosen, not measured."""
 
 

@@ -10,6 +10,10 @@ from lumen.robots.simulation.limits import Angles, Envelope
 from lumen.robots.simulation.world import World
 
 
+LIMP = 0.5
+"""Below this stiffness a joint may be anywhere but at its goal."""
+
+
 class Motors:
     """Takes goals, and drives every joint there inside the body's limits and speeds.
 
@@ -29,16 +33,17 @@ class Motors:
         self.command: Angles = self.goal.copy()
 
     def aim(self, targets: Mapping[str, float]) -> None:
-        """Want these joints there. Raises RobotError, and changes nothing, for an unknown joint or what is no number.
+        """Want these joints there, or at their limit where it lies before.
 
+        Raises RobotError, and changes nothing, for an unknown joint or what is no number.
         A joint that shares a motor moves its twin too; where both are named, the one that has the motor decides.
         """
         self.check(targets)
         for name, angle in targets.items():
-            self.goal[self.index[name]] = angle
+            self.goal[self.index[name]] = self.inside(name, angle)
         for follower, leader in self._leader.items():
             if follower in targets and leader not in targets:
-                self.goal[self.index[leader]] = targets[follower]
+                self.goal[self.index[leader]] = self.inside(leader, targets[follower])
             self.goal[self.index[follower]] = self.goal[self.index[leader]]
 
     def check(self, targets: Mapping[str, float]) -> None:
@@ -49,13 +54,18 @@ class Motors:
             if not isfinite(angle):
                 raise RobotError(f"`{name}` can't be moved to {angle}")
 
+    def inside(self, name: str, angle: float) -> float:
+        """The nearest angle inside that joint's limits."""
+        i = self.index[name]
+        return float(min(max(angle, self.envelope.low[i]), self.envelope.high[i]))
+
     def wanted(self, names: Iterable[str]) -> dict[str, float]:
         """The goals of these joints."""
         return {name: float(self.goal[self.index[name]]) for name in names}
 
     def stiffen(self, stiffness: float) -> None:
         """Let all motors give at most that part (0..1) of their torque; what was limp starts from where it is."""
-        if not self.stiffness.any():
+        if self.stiffness.max() < LIMP:
             self.goal = np.clip(self._world.angles, self.envelope.low, self.envelope.high)
             self.command = self._world.angles.copy()
         self.stiffness[:] = stiffness

@@ -29,7 +29,7 @@ class Quality:
 
 
 CAMERA = Quality()
-FILM = Quality(shadows=2048)
+FILM = Quality(shadows=4096)
 
 
 @dataclass(frozen=True, slots=True)

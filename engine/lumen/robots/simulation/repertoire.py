@@ -114,11 +114,7 @@ class Repertoire:
 
     def _look(self, yaw: float, pitch: float, now: float) -> Activity:
         self._motors.check({"HeadYaw": yaw, "HeadPitch": pitch})
-        joints = self._world.body.joints
-        target = {
-            name: min(max(angle, joints[name].minimum), joints[name].maximum)
-            for name, angle in (("HeadYaw", yaw), ("HeadPitch", pitch))
-        }
+        target = {n: self._motors.inside(n, a) for n, a in (("HeadYaw", yaw), ("HeadPitch", pitch))}
         wanted = self._motors.wanted(target)
         farthest = max(abs(target[name] - wanted[name]) for name in target)
         return Transition(self._motors, target, now, max(0.3, farthest / _LOOK_SPEED))

@@ -21,7 +21,8 @@ class Steering:
             raise RobotError(f"a speed lies above 0 and up to 1, not at {aim.speed}")
         speeds = self._motors.envelope.speed
         for name, angle in aim.angles.items():
-            self._aims[name] = angle, float(speeds[self._motors.index[name]]) * aim.speed
+            speed = float(speeds[self._motors.index[name]]) * aim.speed
+            self._aims[name] = self._motors.inside(name, angle), speed
 
     def advance(self, dt: float, free: Callable[[str], bool]) -> None:
         """Live `dt` [s]; an aim ends where it is reached, or where its joint is not free any more."""
