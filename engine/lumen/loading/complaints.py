@@ -66,7 +66,7 @@ def complaints(error: Error) -> Iterator[Complaint]:
 def node(path: Path) -> str:
     """What to call the node at that path."""
     if not path:
-        return "the file"
+        return "this"
     if isinstance(path[-1], str):
         return f"`{path[-1]}`"
     owner = next((f" of `{step}`" for step in reversed(path) if isinstance(step, str)), "")
@@ -120,7 +120,7 @@ def _unknown_keys(error: Error, path: Path) -> Iterator[Complaint]:
         if key == "<<":
             hint = "YAML 1.2 has no merge keys: write the keys themselves"
         meant = hint[len(_MEANT) : -2] if hint.startswith(_MEANT) else ""
-        message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key of this kind of file"
+        message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key that can stand here"
         here = (*path, key)
         yield Complaint("unknown-key", here, message, hint, path, here, True, suggestion=meant)
 

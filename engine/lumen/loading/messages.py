@@ -1,103 +1,145 @@
 """Message schemas, `schemas/messages/NAME.schema.json`."""
 
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import Any
 
-from lumen.language.diagnostics import Diagnostic, Path
-from lumen.loading.complaints import complaints
+from lumen.language.diagnostics import Diagnostic, Path, Place
+from lumen.loading.schema import schema_faults
 from lumen.loading.source import Document, Report, merge_conflict, parse
 
 ENDING = ".schema.json"
-SHORT = 200
-"""Characters that a hint may have."""
+
+_IN_PLACE = ("allOf", "anyOf", "oneOf", "not", "if", "then", "else", "$ref")
+"""Keywords whose schemas look at the same value as the one they stand in."""
 
 
-def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, list[Diagnostic]]:
-    """The JSON Schema in `content`, or None, and what is wrong with it; never raises for what the file holds."""
+@lru_cache(maxsize=1_024)
+def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, tuple[Diagnostic, ...]]:
+    """The JSON Schema in `content`, or None, and what is wrong with it; never raises for what the file holds.
+
+    It depends on nothing else, so that what did not change is not read again.
+    """
     try:
         data = json.loads(content)
     except (ValueError, RecursionError) as error:
-        return None, [_syntax(file, content, error)]
-    report = Report(_places(file, content, data))
-    if not isinstance(data, dict):
-        report("wrong-type", (), "a message schema should be a map of keys and values", hint='as in {"type": "object"}')
+        return None, (_syntax(file, content, error),)
+    document, found = parse(file, content.replace(b"\t", b" "))  # JSON may be indented with tabs
+    report = Report(document or Document(file, data))
+    report.diagnostics += found
+    if isinstance(data, dict):
+        examine(data, report)
     else:
-        _check(data, report)
-    return (data if isinstance(data, dict) and not report.diagnostics else None), report.diagnostics
+        report("wrong-type", (), "a message schema should be a map of keys and values", hint='as in {"type": "object"}')
+    return (None if report.diagnostics else data), tuple(report.diagnostics)
 
 
-def _check(data: Mapping[str, Any], report: Report) -> None:
-    from jsonschema import Draft202012Validator
-    from jsonschema.exceptions import best_match
-
-    for path, target in _references(data):
-        if not target.startswith("#"):
-            message, hint = f"`{target}` lies outside this file", "write the definition into this file, under `$defs`"
-            report("foreign-reference", path, message, hint=hint)
-        elif not _resolves(data, target):
-            report("foreign-reference", path, f"`{target}` is not in this file", hint="name a definition under `$defs`")
-    errors = Draft202012Validator(Draft202012Validator.META_SCHEMA).iter_errors(data)
-    try:
-        error: Any = best_match(errors)
-    except RecursionError:
-        report("too-large", (), "the schema is nested too deeply to be read", hint="use fewer levels")
-        return
-    if error is not None:
-        found = next(complaints(error))
-        hint = found.hint if len(found.hint) < SHORT else "it has to be JSON Schema, draft 2020-12"
-        report("bad-schema", found.path, f"this is no JSON Schema: {found.message}", hint=hint, key=found.key)
+def examine(schema: Any, report: Report, where: Path = ()) -> bool:
+    """Whether the JSON Schema at `where` in the report's document is sound; what is wrong with it is reported."""
+    before = len(report.diagnostics)
+    for found in schema_faults(schema):
+        report(found.code, (*where, *found.path), found.message, hint=found.hint, key=found.key)
+    if len(report.diagnostics) == before:
+        _refer(schema, report, where)
+    return len(report.diagnostics) == before
 
 
-def _references(data: Any) -> list[tuple[Path, str]]:
-    found: list[tuple[Path, str]] = []
+def _refer(data: Any, report: Report, where: Path) -> None:
+    """What the schema of schemas can't tell: patterns, and where references lead."""
+    for inner, key, text in _texts(data):
+        path = (*where, *inner)
+        if key == "pattern" or inner[-2:-1] == ("patternProperties",):
+            _pattern(path, text, report)
+        elif key == "$ref" and not text.startswith("#"):
+            hint = "write the definition into this file, under `$defs`"
+            report("foreign-reference", path, f"`{text}` lies outside this file", hint=hint)
+        elif key == "$ref" and _target(data, text) is None:
+            report("foreign-reference", path, f"`{text}` is not in this schema", hint="name a definition under `$defs`")
+        elif key == "$ref" and _circles(data, text):
+            hint = "let a reference stand in `properties` or `items`"
+            report("endless-reference", path, f"`{text}` leads back to itself, for the same value", hint=hint)
+
+
+def _texts(data: Any) -> Iterator[tuple[Path, str, str]]:
+    """Every text of a schema under its key, and the keys of `patternProperties` as texts."""
     waiting: list[tuple[Path, Any]] = [((), data)]
     while waiting:
         path, item = waiting.pop()
         if isinstance(item, dict):
-            found += [((*path, k), item[k]) for k in ("$ref", "$dynamicRef") if isinstance(item.get(k), str)]
-            waiting += [((*path, key), value) for key, value in item.items()]
+            for key, value in item.items():
+                if isinstance(value, str):
+                    yield (*path, key), key, value
+                elif path[-1:] == ("patternProperties",):
+                    yield (*path, key), "", key
+            waiting += [
+                ((*path, key), v) for key, v in item.items() if key not in ("default", "const", "examples", "enum")
+            ]
         elif isinstance(item, list):
             waiting += [((*path, i), value) for i, value in enumerate(item)]
-    return found
 
 
-def _resolves(data: Any, target: str) -> bool:
-    """Whether a JSON pointer leads somewhere; an anchor is taken on trust."""
-    if not target.startswith("#/"):
-        return True
-    for step in target[2:].split("/"):
+def _pattern(path: Path, text: str, report: Report) -> None:
+    try:
+        re.compile(text)
+    except (re.error, RecursionError, OverflowError) as error:
+        report("wrong-value", path, f"`{text}` is no regular expression: {error}", hint="look for a missing bracket")
+
+
+def _target(data: Any, reference: str) -> Any:
+    """The schema that a JSON pointer or an anchor of this file means, None where there is none."""
+    if reference != "#" and not reference.startswith("#/"):
+        named = (item for item in _maps(data) if item.get("$anchor") == reference[1:])
+        return next(named, None)
+    for step in reference[2:].split("/") if len(reference) > 1 else ():
         key = step.replace("~1", "/").replace("~0", "~")
         if isinstance(data, dict) and key in data:
             data = data[key]
         elif isinstance(data, list) and key.isdecimal() and int(key) < len(data):
             data = data[int(key)]
         else:
-            return False
-    return True
+            return None
+    return data if isinstance(data, dict | bool) else None
 
 
-def _places(file: str, content: bytes, data: Any) -> Document:
-    """The document with its places, where YAML's parser can read it too: JSON may be indented with tabs."""
-    document, _ = parse(file, content.replace(b"\t", b" "))
-    return document or Document(file, data)
+def _maps(data: Any) -> Iterator[dict[str, Any]]:
+    waiting = [data]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, dict):
+            yield item
+        waiting += item.values() if isinstance(item, dict) else item if isinstance(item, list) else ()
+
+
+def _circles(data: Any, reference: str) -> bool:
+    """Whether one gets from a reference back to it without going deeper into the value."""
+    seen: set[str] = set()
+    waiting = [_target(data, reference)]
+    while waiting:
+        item = waiting.pop()
+        for key in _IN_PLACE if isinstance(item, dict) else ():
+            inner = item.get(key)
+            if isinstance(inner, str):
+                if inner == reference:
+                    return True
+                if inner not in seen:
+                    seen.add(inner)
+                    waiting.append(_target(data, inner))
+            else:
+                waiting += inner if isinstance(inner, list) else [inner]
+    return False
 
 
 def _syntax(file: str, content: bytes, error: Exception) -> Diagnostic:
-    from lumen.language.diagnostics import Place
-
     if conflict := merge_conflict(file, content.decode("utf-8", "replace")):
         return conflict
-    hint = "look for a missing comma, quote or bracket here or in the line above"
+    if not content.strip():
+        return Diagnostic("empty-file", "the file is empty", Place(file), "write its content, or delete it")
     if isinstance(error, json.JSONDecodeError):
         place = Place(file, error.lineno, error.colno, error.lineno, error.colno + 1)
-        empty = not content.strip()
-        code, message = (
-            ("empty-file", "the file is empty") if empty else ("json-syntax", f"this is not JSON: {error.msg}")
-        )
-        return Diagnostic(code, message, place, "write its content, or delete it" if empty else hint)
+        hint = "look for a missing comma, quote or bracket here or in the line above"
+        return Diagnostic("json-syntax", f"this is not JSON: {error.msg}", place, hint)
     if isinstance(error, UnicodeDecodeError):
         return Diagnostic("not-utf8", "the file is not UTF-8 text", Place(file), "save it as UTF-8")
-    return Diagnostic(
-        "too-large", "the file can't be read: it nests too deeply or holds too long a number", Place(file)
-    )
+    return Diagnostic("too-large", "the file nests too deeply or holds too long a number", Place(file), "simplify it")

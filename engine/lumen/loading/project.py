@@ -42,8 +42,9 @@ class Draft:
     """What could be built from a project's files, and what is wrong with them.
 
     `names` has for each folder the names of all files in it, whether they could be built or not; `reports` the report
-    of each document by its file; `missing` the folders that were reported as missing. `settings` is None where
-    lumen.yaml could not be read at all.
+    of each document by its file; `missing` the folders that were reported as missing; `unsound` the JSON Schemas in
+    behaviours that were reported as broken: behaviour, `types` or `events`, name. `settings` is None where lumen.yaml
+    could not be read at all.
     """
 
     files: Mapping[str, bytes]
@@ -58,6 +59,7 @@ class Draft:
     reports: dict[str, Report] = field(default_factory=dict)
     loose: list[Diagnostic] = field(default_factory=list)
     missing: set[str] = field(default_factory=set)
+    unsound: set[tuple[str, str, str]] = field(default_factory=set)
 
     @property
     def main(self) -> Report | None:

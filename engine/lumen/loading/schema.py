@@ -1,7 +1,7 @@
 """Documents against the JSON Schema of their kind: every error at its node, and the data without its broken nodes."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +14,8 @@ from lumen.loading.source import Document, Report
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator
 
-KINDS = ("lumen", "behavior", "story", "controller", "motion", "body")
-"""The kinds of YAML file; each has a `schemas/KIND.schema.json`."""
+KINDS = ("lumen", "behavior", "story", "controller", "motion", "body", "message")
+"""The kinds of file; each has a `schemas/KIND.schema.json`."""
 
 ROUNDS = 20
 
@@ -48,6 +48,25 @@ def check_schema(document: Document, kind: str, report: Report) -> Any:
 def load_schema(kind: str) -> Any:
     """The JSON Schema of a kind of file, as data."""
     return json.loads((schema_folder() / f"{kind}.schema.json").read_bytes())
+
+
+def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:
+    """What is wrong with data by a schema that is sound itself."""
+    from jsonschema import Draft202012Validator
+
+    return _followed(Draft202012Validator(schema), data)
+
+
+def schema_faults(schema: Any) -> list[Complaint]:
+    """What is wrong with a JSON Schema itself."""
+    return _followed(_validator("message"), schema)
+
+
+def _followed(validator: "Draft202012Validator", data: Any) -> list[Complaint]:
+    try:
+        return list(_complaints(validator, data))
+    except RecursionError:
+        return [Complaint("too-large", (), "this is nested too deeply to be read", "use fewer levels", (), ())]
 
 
 @cache

@@ -119,9 +119,9 @@ CODES: Mapping[str, Code] = {
     "wrong-parameters": Code(ERROR, "a term has too few or too many numbers"),
     "zero-duration": Code(ERROR, "a motion takes no time"),
     # lumen.yaml
-    "bad-schema": Code(ERROR, "a message schema is not JSON Schema"),
     "bad-stage": Code(ERROR, "the stage does not hold the place where the robot starts"),
     "duplicate-route": Code(ERROR, "two routes carry the same key to different events"),
+    "endless-reference": Code(ERROR, "a reference in a message schema leads back to itself"),
     "foreign-reference": Code(ERROR, "a message schema refers to something outside itself"),
     "route-key": Code(ERROR, "a routing key has a form that no message could have"),
     "unused-route": Code(WARNING, "the messages of a route become an event that nothing waits for"),

@@ -21,17 +21,20 @@ def check(draft: Draft) -> None:
     """Report everything that is wrong with the expressions of every behaviour."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
-        _Expressions(draft, machine, report).check()
+        _Expressions(draft, name, machine, report).check()
 
 
 class _Expressions:
-    def __init__(self, draft: Draft, machine: Machine, report: Report) -> None:
+    def __init__(self, draft: Draft, name: str, machine: Machine, report: Report) -> None:
         self.machine, self.report = machine, report
         self.known = draft.settings is not None
         self.events = declared(draft, machine)
         for event in raised(report.document.data):
             self.events[event] = None
         self.context = {key: machine.types.get(key, schema_of(value)) for key, value in machine.context.items()}
+        for behavior, part, key in draft.unsound:
+            if behavior == name:
+                (self.context if part == "types" else self.events)[key] = {}
         self.states = {n for state in machine.states.values() for n in (state.path, state.alias) if n}
 
     def check(self) -> None:

@@ -18,10 +18,10 @@ def check(draft: Draft) -> None:
             _shadowed(machine, report)
 
 
-def reachable(machine: Machine) -> set[str]:
-    """The paths of all states that some sequence of events could enter, whatever guards say."""
+def reachable(machine: Machine, begin: str = "") -> set[str]:
+    """The paths of all states that some sequence of events could enter from `begin`, whatever guards say."""
     found: set[str] = set()
-    waiting = [""]
+    waiting = [begin]
     while waiting:
         path: str | None = waiting.pop()
         while path is not None and path not in found:
@@ -46,7 +46,8 @@ def _next(state: State) -> Iterator[str]:
 def _unreachable(machine: Machine, report: Report) -> None:
     found = reachable(machine)
     for path, state in machine.states.items():
-        if path not in found and (state.parent is None or state.parent in found):
+        if path not in found:
+            found |= reachable(machine, path)  # what only this one leads to is not said as well
             hint = "let a transition go there, or delete it"
             find(report, "unreachable-state", state.where, f"no transition leads to `{path}`", hint, key=True)
 

@@ -1,9 +1,13 @@
 """Stories: the names they use of their behaviour, the robot and the exhibition."""
 
+from collections.abc import Mapping
+from typing import Any
+
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect, Happen, Send, Story, Touch
 from lumen.loading.project import Draft
+from lumen.loading.schema import faults
 from lumen.loading.source import Report
 from lumen.rules.events import declared, descriptors, hears, raised
 from lumen.rules.finding import References, find, first
@@ -23,6 +27,7 @@ class _Script:
         main = draft.settings.behavior if draft.settings else ""
         self.behavior = story.behavior or main
         self.machine = draft.behaviors.get(self.behavior)
+        self.events = declared(draft, self.machine) if self.machine else {}
 
     def check(self) -> None:
         if self.story.behavior:
@@ -35,10 +40,11 @@ class _Script:
             match scene.deed:
                 case Touch(sensor, pressed):
                     self.sensor((*scene.where, "touch" if pressed else "release"), sensor)
-                case Happen(name):
+                case Happen(name, data):
                     self.event(first(self.report, (*scene.where, "event", "name"), (*scene.where, "event")), name)
-                case Send(route):
-                    known_route(self.draft, self.report, (*scene.where, "message", "route"), route)
+                    self.fits((*scene.where, "event", "data"), {} if data is None else data, self.events.get(name))
+                case Send(route, body):
+                    self.message((*scene.where, "message"), route, body)
                 case Expect() as expected:
                     self.expect((*scene.where, "expect"), expected)
 
@@ -80,11 +86,22 @@ class _Script:
         if machine is None or self._lost(event) or any(hears(d, event) for d in descriptors(machine)):
             return
         data = self.draft.report("behaviors", self.behavior).document.data
-        known = {*declared(self.draft, machine), *raised(data)}
+        known = {*self.events, *raised(data)}
         if event not in known:
             waited = {d for d in descriptors(machine) if "*" not in d}
             message = f"nothing in `{self.behavior}` knows the event `{event}`"
             find(self.report, "unknown-event", path, message, did_you_mean(event, known | waited))
+
+    def message(self, where: Path, route: str, body: Any) -> None:
+        if known_route(self.draft, self.report, (*where, "route"), route) and self.draft.settings:
+            self.fits((*where, "body"), body, self.draft.messages.get(self.draft.settings.routes[route].schema))
+
+    def fits(self, path: Path, data: Any, schema: Any) -> None:
+        """Data that the story makes up has to be such as the world could send."""
+        if isinstance(schema, Mapping):
+            for complaint in faults(data, schema):
+                place = (*path, *complaint.path)
+                find(self.report, complaint.code, place, complaint.message, complaint.hint, key=complaint.key)
 
     def _lost(self, name: str) -> bool:
         """Whether the name stood in a part of the behaviour that is broken."""
