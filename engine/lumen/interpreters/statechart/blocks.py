@@ -70,10 +70,10 @@ def compile_action(action: Action) -> Act:
             return lambda run: run.cancel_send(id)
         case PublishBody(route, data):
             body = compile_value(data)
-            return lambda run: run.commands.append(Publish(route, body(run.view())))
+            return lambda run: run.emit(Publish(route, body(run.view())))
         case LogText(template):
             text = compile_template(template.text)
-            return lambda run: run.commands.append(Log(text(run.view())))
+            return lambda run: run.emit(Log(text(run.view())))
         case If(guard, then, otherwise):
             return _if(guard, compile_block(then), compile_block(otherwise))
         case Wait() | Parallel():

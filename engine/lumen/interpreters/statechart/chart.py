@@ -1,6 +1,6 @@
 """The tree of states and transitions, compiled: what Appendix D's algorithm walks over."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from lumen.interpreters.expressions import Scope, compile_guard
 from lumen.interpreters.statechart.blocks import Block, compile_block, compile_value
@@ -16,7 +16,7 @@ class Node:
 
     __slots__ = (
         "afters", "ancestors", "children", "do", "entry", "exit", "histories", "index", "initial", "kind", "name",
-        "output", "parent", "path", "rules", "state",
+        "output", "parent", "path", "rules", "state", "views",
     )  # fmt: skip
 
     def __init__(self, state: State | None, index: int, parent: "Node | None") -> None:
@@ -35,10 +35,18 @@ class Node:
         self.entry: Block = compile_block(state.entry) if state else ()
         self.exit: Block = compile_block(state.exit) if state else ()
         self.do: tuple[Deed, ...] = compile_do(state.do) if state else ()
+        self.views: dict[str, Mapping[str, str]] = {}
         self.output = compile_value(state.output) if state and state.output is not None else None
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or 'root'}>"
+
+    def view(self, language: str) -> Mapping[str, str]:
+        """What `state` is in its expressions."""
+        found = self.views.get(language)
+        if found is None:
+            found = self.views[language] = {"path": self.path, "language": language}
+        return found
 
     def lies_below(self, other: "Node") -> bool:
         """Whether it is a proper descendant of the other (`isDescendant`)."""
@@ -55,7 +63,7 @@ class Node:
 class Rule:
     """A transition, its guard and actions compiled; compared by identity."""
 
-    __slots__ = ("block", "guard", "source", "targets", "transition", "where")
+    __slots__ = ("alone", "block", "guard", "source", "targets", "transition", "where")
 
     def __init__(self, transition: Transition, source: Node, targets: tuple[Node, ...]) -> None:
         self.transition = transition
@@ -65,6 +73,7 @@ class Rule:
         self.guard: Guard | None = compile_guard(guard.source) if guard else None
         self.where = guard.where if guard else transition.where
         self.block: Block = compile_block(transition.actions)
+        self.alone = (self,)
 
     def matches(self, name: str) -> bool:
         """Whether an event of that name selects it (SCXML 3.12.1); `after` is never selected by a name."""

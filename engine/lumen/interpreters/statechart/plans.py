@@ -45,7 +45,7 @@ class Configuration:
         self.ordered = sorted(nodes, key=lambda node: node.index)
         self.names = frozenset(node.name for node in nodes if node.path)
         self.known = known(nodes)
-        self.plans: dict[tuple[tuple[Rule, ...], object], Plan] = {}
+        self.plans: dict[tuple[object, ...], Plan] = {}
         self._leaves = [node for node in self.ordered if not any(child in nodes for child in node.children)]
         self._by_name: dict[str, tuple[tuple[Rule, ...], ...]] = {}
         self.eventless = self._select(lambda rule: not rule.transition.event)
@@ -93,7 +93,7 @@ class Planner:
 
     def plan(self, start: Configuration, enabled: tuple[Rule, ...], history: History) -> Plan:
         """The microstep that these enabled transitions make from there."""
-        key = (enabled, tuple(history.items()) if self.chart.has_history else None)
+        key = (enabled, *history.items()) if self.chart.has_history else enabled
         found = start.plans.get(key)
         if found is None:
             _bound(start.plans)

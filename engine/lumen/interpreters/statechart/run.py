@@ -1,6 +1,7 @@
 """One macrostep while it is made: the only thing that changes, and it is gone when the step is there."""
 
 from collections import deque
+from collections.abc import Mapping
 from typing import Any
 
 from lumen.errors import LumenError
@@ -9,7 +10,7 @@ from lumen.interpreters.statechart.blocks import ActionError, Block
 from lumen.interpreters.statechart.chart import Chart, Node, Rule
 from lumen.interpreters.statechart.doing import DeedError, awaited, begin_block, resume
 from lumen.interpreters.statechart.plans import Configuration, Plan, Planner
-from lumen.interpreters.statechart.types import fits, type_name
+from lumen.interpreters.statechart.types import type_name
 from lumen.interpreters.statechart.values import Counters, Snapshot, Step, Timer, Within
 from lumen.language.commands import BodyCommand, Cancel, Command, Start
 from lumen.language.diagnostics import Path
@@ -23,7 +24,23 @@ Groups = tuple[tuple[Rule, ...], ...]
 
 
 class Run:
-    """A snapshot being moved on by one event."""
+    """A snapshot being moved on by one event.
+
+    What most events leave empty is empty in the class, and made only where it is needed.
+    """
+
+    scope: Scope | None = None
+    happened: Mapping[str, Any] | None = None
+    commands: tuple[Command, ...] = ()
+    queue: deque[Event] | tuple[()] = ()
+    waiting: tuple[Node, ...] = ()
+    exited: tuple[str, ...] = ()
+    entered: tuple[str, ...] = ()
+    transitions: tuple[Transition, ...] = ()
+    raised: tuple[Event, ...] = ()
+    failed: frozenset[Path] = frozenset()
+    begun: tuple[str, ...] = ()
+    turns = 0
 
     def __init__(self, chart: Chart, planner: Planner, before: Snapshot, event: Event | None, at: float) -> None:
         self.chart, self.planner = chart, planner
@@ -36,17 +53,6 @@ class Run:
         self.configuration: Configuration = planner.configuration(names)
         self.active = self.configuration.known
         self.here = chart.root
-        self.scope: Scope | None = None
-        self.commands: list[Command] = []
-        self.queue: deque[Event] = deque()
-        self.waiting: list[Node] = []
-        self.exited: tuple[str, ...] = ()
-        self.entered: tuple[str, ...] = ()
-        self.transitions: tuple[Transition, ...] = ()
-        self.raised: list[Event] = []
-        self.failed: set[Path] = set()
-        self.begun: list[str] = []
-        self.turns = 0
 
     def settle(self) -> Step:
         """Take eventless transitions and internal events until there are none, then begin what was entered to do."""
@@ -54,8 +60,10 @@ class Run:
             if self.configuration.eventless and self.take(self.configuration.eventless):
                 continue
             if self.queue:
-                self.turn()
-                self.event, self.scope = self.queue.popleft(), None
+                self.turns += 1
+                if self.turns > LIMIT:
+                    self.give_up()
+                self.event, self.happened, self.scope = self.queue.popleft(), None, None
                 self.take(self.configuration.candidates(self.event.name))
             elif self.waiting:
                 self.begin_doing()
@@ -72,6 +80,11 @@ class Run:
 
     def enabled(self, groups: Groups) -> tuple[Rule, ...]:
         """The first candidate of each atomic state whose guard holds."""
+        if len(groups) == 1:
+            for rule in groups[0]:
+                if rule.guard is None or self.holds(rule):
+                    return rule.alone
+            return ()
         found: list[Rule] = []
         for group in groups:
             for rule in group:
@@ -83,7 +96,8 @@ class Run:
     def holds(self, rule: Rule) -> bool:
         """Whether a guard is true; one that fails is false, and error.execution."""
         assert rule.guard is not None  # asked only of rules that have one
-        self.stand(rule.source)
+        if rule.source is not self.here:
+            self.stand(rule.source)
         try:
             return rule.guard(self.scope or self.view())
         except ExpressionError as error:
@@ -92,23 +106,23 @@ class Run:
 
     def microstep(self, plan: Plan) -> None:
         """Leave, act, enter (`microstep`)."""
-        self.turn()
-        self.transitions += plan.transitions
-        self.exited += plan.exited
-        self.entered += plan.entered
-        self.history = plan.remembered
-        for node, active, _ in plan.exits:
-            self.standing(active)
+        self.turns += 1
+        if self.turns > LIMIT:
+            self.give_up()
+        rules, transitions, exits, between, entries, exited, entered, self.history, target = plan
+        self.transitions += transitions
+        self.exited += exited
+        self.entered += entered
+        for node, self.active, _ in exits:
             self.leave(node)
-        self.standing(plan.between)
-        for rule in plan.rules:
+        self.active = between
+        for rule in rules:
             if rule.block:
                 self.perform(rule.block, rule.source)
-        for node, active, done in plan.entries:
-            self.standing(active)
+        for node, self.active, done in entries:
             self.enter(node, done)
-        self.configuration = plan.target
-        self.standing(plan.target.known)
+        self.configuration = target
+        self.active = target.known
 
     def enter(self, node: Node, done: tuple[Node, ...]) -> None:
         for event, delay in node.afters:
@@ -116,7 +130,7 @@ class Run:
         if node.entry:
             self.perform(node.entry, node)
         if node.do:
-            self.waiting.append(node)
+            self.waiting += (node,)
         for ended, name in enumerate(done):
             self.post(Event(f"done.state.{name.name}", None if ended else self.output(node), self.at))
 
@@ -124,7 +138,7 @@ class Run:
         if node.exit:
             self.perform(node.exit, node)
         if node in self.waiting:
-            self.waiting.remove(node)
+            self.waiting = tuple(other for other in self.waiting if other is not node)
         if node.path in self.doing:
             self.abandon(node.path)
         if node.afters:
@@ -144,7 +158,8 @@ class Run:
 
     def perform(self, block: Block, node: Node) -> None:
         """Do the actions of a block; the first that fails ends it."""
-        self.stand(node)
+        if node is not self.here:
+            self.stand(node)
         where: Path = ()
         try:
             for act, where in block:  # noqa: B007 - `where` is where it failed
@@ -156,7 +171,7 @@ class Run:
 
     def begin_doing(self) -> None:
         """Begin the `do` of every state entered and not left, in the order of entry."""
-        waiting, self.waiting = sorted(self.waiting, key=lambda node: node.index), []
+        waiting, self.waiting = sorted(self.waiting, key=lambda node: node.index), ()
         for node in waiting:
             self.stand(node)
             self.progress(node, None)
@@ -168,7 +183,7 @@ class Run:
         self.progress(node, id)
 
     def progress(self, node: Node, id: str | None) -> None:
-        self.begun = []
+        self.begun = ()
         try:
             position = begin_block(self, node.do) if id is None else resume(self, node.do, self.doing[node.path], id)
         except DeedError as error:
@@ -198,7 +213,9 @@ class Run:
         """Cancel what is awaited under these ids: a timer is taken back, a command told so."""
         pauses = {t.id for t in self.timers if t.kind == "wait" and t.id in ids}
         self.timers = tuple(t for t in self.timers if t.kind != "wait" or t.id not in pauses)
-        self.commands += [Cancel(id) for id in ids if id not in pauses]
+        for id in ids:
+            if id not in pauses:
+                self.emit(Cancel(id))
 
     # What actions ask for
 
@@ -208,12 +225,16 @@ class Run:
         if awaited:
             id = f"d{waited + 1}"
             self.counters = Counters(commands, waited + 1, timers)
-            self.begun.append(id)
+            self.begun += (id,)
         else:
             id = f"c{commands + 1}"
             self.counters = Counters(commands + 1, waited, timers)
-        self.commands.append(Start(id, command))
+        self.emit(Start(id, command))
         return id
+
+    def emit(self, command: Command) -> None:
+        """Something for the edge to perform."""
+        self.commands = (*self.commands, command)
 
     def set_timer(self, id: str, delay: float, event: str, data: Any) -> None:
         """A `send`: due after `delay` [s], at the earliest in the next macrostep."""
@@ -225,7 +246,7 @@ class Run:
         id = self.number("w")
         timer = Timer(id, self.at + seconds, seconds, f"wait.{id}", None, self.here.path, "wait")
         self.timers = (*self.timers, timer)
-        self.begun.append(id)
+        self.begun += (id,)
         return id
 
     def number(self, letter: str) -> str:
@@ -237,14 +258,16 @@ class Run:
 
     def post(self, event: Event) -> None:
         """An internal event."""
+        if not self.queue:
+            self.queue = deque()
         self.queue.append(event)
-        self.raised.append(event)
+        self.raised += (event,)
 
     def store(self, key: str, value: Any) -> None:
         """Give a context key another value; raises ActionError where it is of another type."""
-        types = self.chart.checks.get(key, ())
-        if types and not fits(value, types):
-            raise ActionError(f"`{key}` is a {' or '.join(types)} and can't become a {type_name(value)}")
+        check = self.chart.checks.get(key)
+        if check and type(value) not in check.quick and not check.accepts(value):
+            raise ActionError(f"`{key}` is {check} and can't become a {type_name(value)}")
         self.context = {**self.context, key: value}
         self.scope = None
 
@@ -262,26 +285,30 @@ class Run:
         if node is not self.here:
             self.here, self.scope = node, None
 
-    def standing(self, active: frozenset[str]) -> None:
-        """Let these states be active for `In()`."""
-        if active is not self.active:
-            self.active, self.scope = active, None
+    def is_active(self, state: str) -> bool:
+        """`In()`: asks of this moment, so that a scope serves while states come and go."""
+        return state in self.active
 
     def view(self) -> Scope:
         """What an expression sees now."""
         scope = self.scope
         if scope is None:
             event, machine = self.event, self.chart.machine
-            scope = self.scope = Scope(
-                self.context,
-                {"name": event.name, "data": event.data} if event else None,
-                {"path": self.here.path, "language": self.language},
-                self.active.__contains__,
-                self.at,
-                self.language,
-                machine.phrases,
-                machine.answers,
-                self.epoch,
+            if event is not None and self.happened is None:
+                self.happened = {"name": event.name, "data": event.data}
+            scope = self.scope = tuple.__new__(  # a third of the price of Scope(…)
+                Scope,
+                (
+                    self.context,
+                    self.happened,
+                    self.here.view(self.language),
+                    self.is_active,
+                    self.at,
+                    self.language,
+                    machine.phrases,
+                    machine.answers,
+                    self.epoch,
+                ),
             )
         return scope
 
@@ -291,39 +318,33 @@ class Run:
         """Raise error.execution; not again for the same place while that is what is being handled."""
         handling = self.event is not None and self.event.name == "error.execution"
         if not (handling and where in self.failed):
-            self.failed.add(where)
+            self.failed |= {where}
             place = ".".join(map(str, where))
             self.post(Event("error.execution", {"reason": reason, "where": place}, self.at))
 
-    def turn(self) -> None:
-        """Count a microstep; raises LumenError where there is no end of them."""
-        self.turns += 1
-        if self.turns > LIMIT:
-            states = ", ".join(f"`{name}`" for name in sorted({*self.entered[-20:], *self.configuration.names}))
-            raise LumenError(
-                f"`{self.chart.machine.id}` never comes to rest: after {LIMIT:,} microsteps it still goes through"
-                f" {states}; look at their `always` and `raise`"
-            )
+    def give_up(self) -> None:
+        """Raises LumenError: there is no end of microsteps."""
+        states = ", ".join(f"`{name}`" for name in sorted({*self.entered[-20:], *self.configuration.names}))
+        raise LumenError(
+            f"`{self.chart.machine.id}` never comes to rest: after {LIMIT:,} microsteps it still goes through"
+            f" {states}; look at their `always` and `raise`"
+        )
 
     def step(self) -> Step:
-        snapshot = Snapshot(
-            self.configuration.names,
-            self.context,
-            self.at,
-            self.language,
-            self.timers,
-            self.doing,
-            self.history,
-            self.counters,
-            self.generator,
-            self.epoch,
+        snapshot = tuple.__new__(
+            Snapshot,
+            (
+                self.configuration.names,
+                self.context,
+                self.at,
+                self.language,
+                self.timers,
+                self.doing,
+                self.history,
+                self.counters,
+                self.generator,
+                self.epoch,
+            ),
         )
-        return Step(
-            self.trigger,
-            self.exited,
-            self.entered,
-            tuple(self.commands),
-            snapshot,
-            self.transitions,
-            tuple(self.raised),
-        )
+        taken = (self.trigger, self.exited, self.entered, self.commands, snapshot, self.transitions, self.raised)
+        return tuple.__new__(Step, taken)

@@ -51,17 +51,18 @@ def step(machine: Machine, snapshot: Snapshot, event: Event) -> Step:
     more change nothing. Time never goes back: an event from the past happens at `snapshot.at`. Raises LumenError
     where the machine never comes to rest, SnapshotError where the snapshot has states that the machine has not.
     """
-    program = compiled(machine)
+    chart, planner = compiled(machine)
+    name, _, at, sendid = event
     try:
-        run = Run(program.chart, program.planner, snapshot, event, max(event.at, snapshot.at))
+        run = Run(chart, planner, snapshot, event, at if at > snapshot.at else snapshot.at)
     except KeyError as error:
         raise SnapshotError(f"`{machine.id}` has no state `{error.args[0]}`, which is active in the snapshot") from None
-    if event.sendid:
+    if sendid:
         _elapse(run, event)
-    elif ".command." in event.name and _is_answer(event.name):
+    elif ".command." in name and _is_answer(name):
         _answer(run, event)
     else:
-        run.take(run.configuration.candidates(event.name))
+        run.take(run.configuration.candidates(name))
     return run.settle()
 
 
@@ -106,7 +107,7 @@ def _checked(chart: Chart, input: Mapping[str, Any]) -> Mapping[str, Any]:
                 f"`{chart.machine.id}` has no `{key}` in its context to be given" + f": {hint}" * bool(hint)
             )
         if not fits(value, chart.checks[key]):
-            raise UsageError(f"`{key}` is a {' or '.join(chart.checks[key])} and can't be a {type_name(value)}")
+            raise UsageError(f"`{key}` is {chart.checks[key]} and can't be a {type_name(value)}")
     return input
 
 
@@ -145,7 +146,7 @@ def _answer(run: Run, event: Event) -> None:
         run.answered(owner, id)
     elif owner is not None:
         node = run.chart.nodes[owner]
-        run.begun = []
+        run.begun = ()
         run.collapse(node, id, reason)
     elif kind == "error" and id.startswith("c"):
         run.post(Event("error.communication", {"command": id, "reason": reason}, run.at))

@@ -16,18 +16,46 @@ _TESTS: Mapping[str, Callable[[Any], bool]] = {
 }
 
 
-def type_checks(machine: Machine) -> dict[str, tuple[str, ...]]:
-    """For each context key the JSON types that it may hold; none where anything goes.
+_QUICK: Mapping[str, tuple[type, ...]] = {
+    "null": (type(None),),
+    "boolean": (bool,),
+    "integer": (int,),
+    "number": (int, float),
+    "string": (str,),
+    "array": (list, tuple),
+    "object": (dict,),
+}
+
+
+class Check:
+    """The JSON types that a context key may hold; `quick` are Python types that are certain to be among them."""
+
+    __slots__ = ("names", "quick")
+
+    def __init__(self, names: tuple[str, ...]) -> None:
+        self.names = names
+        self.quick = frozenset(kind for name in names for kind in _QUICK[name])
+
+    def accepts(self, value: Any) -> bool:
+        return any(_TESTS[name](value) for name in self.names)
+
+    def __str__(self) -> str:
+        return f"a {' or '.join(self.names)}"
+
+
+def type_checks(machine: Machine) -> dict[str, Check | None]:
+    """For each context key its check, None where anything goes.
 
     A first value of null without an entry in `types:` says nothing of what comes later. An integer may become any
     number, as in CEL.
     """
-    return {key: _allowed(value, machine.types.get(key)) for key, value in machine.context.items()}
+    allowed = {key: _allowed(value, machine.types.get(key)) for key, value in machine.context.items()}
+    return {key: Check(names) if names else None for key, names in allowed.items()}
 
 
-def fits(value: Any, types: tuple[str, ...]) -> bool:
-    """Whether a value is of one of these JSON types, or of any where there are none."""
-    return not types or any(_TESTS[name](value) for name in types)
+def fits(value: Any, check: Check | None) -> bool:
+    """Whether a context key with that check may hold the value."""
+    return check is None or type(value) in check.quick or check.accepts(value)
 
 
 def type_name(value: Any) -> str:
