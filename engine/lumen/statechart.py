@@ -29,10 +29,7 @@ class Machine(machines.Machine):
             content = Path(path).read_bytes()
         except OSError as error:
             raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
-        document, diagnostics = parse(str(path), content)
-        if document is None:
-            raise ProjectError(diagnostics)
-        return cls._build(document, diagnostics, Path(path).stem)
+        return cls._build(*parse(str(path), content), Path(path).stem)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "machine") -> Self:
@@ -40,7 +37,9 @@ class Machine(machines.Machine):
         return cls._build(*plain_document(name, data), name)
 
     @classmethod
-    def _build(cls, document: Document, diagnostics: list[Diagnostic], name: str) -> Self:
+    def _build(cls, document: Document | None, diagnostics: list[Diagnostic], name: str) -> Self:
+        if document is None:
+            raise ProjectError(diagnostics)
         report = Report(document)
         machine = build_machine(check_schema(document, "behavior", report), report, name=name, into=cls)
         found = [*diagnostics, *report.diagnostics]

@@ -132,6 +132,14 @@ def test_nesting_without_end_is_a_diagnostic() -> None:
     assert "too-large" in {d.code for d in caught.value.diagnostics}
 
 
+def test_a_dict_that_holds_itself_is_a_diagnostic() -> None:
+    data: dict[str, Any] = {"states": {"a": None}}
+    data["states"].update({"b": data, "c": data})
+    with pytest.raises(ProjectError) as caught:
+        Machine.from_dict(data)
+    assert "too-large" in {d.code for d in caught.value.diagnostics}
+
+
 def test_ten_thousand_states_run() -> None:
     count = 10_000
     states = {f"s{i}": {"on": {"go": f"s{(i + 1) % count}"}} for i in range(count)}

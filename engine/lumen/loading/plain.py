@@ -4,16 +4,18 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, Path, Place
-from lumen.loading.source import MAX_DEPTH, Document, Span
+from lumen.loading.source import MAX_DEPTH, MAX_NODES, Document, Span
 
 
-def plain_document(name: str, data: Any) -> tuple[Document, list[Diagnostic]]:
+def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnostic]]:
     """A document of this data, and what in it no YAML file could hold; that stands as null in the document.
 
+    None where the data is too large, as a dict that holds itself is.
     Where a file would have a line, the place of a node is its dotted path: `tour (states.idle.on.face)`.
     """
     reader = _Reader(name)
-    return Document(name, reader.read(data, ()), reader.spans), reader.diagnostics
+    plain = reader.read(data, ())
+    return None if reader.full else Document(name, plain, reader.spans), reader.diagnostics
 
 
 class _Reader:
@@ -21,12 +23,13 @@ class _Reader:
         self.name = name
         self.spans: dict[Path, Span] = {}
         self.diagnostics: list[Diagnostic] = []
+        self.full = False
 
     def read(self, value: Any, path: Path) -> Any:
         place = self.place(path)
         self.spans[path] = Span(place, place)
-        if len(path) > MAX_DEPTH:
-            self.say("too-large", path, f"nested deeper than {MAX_DEPTH} levels", "use fewer levels")
+        if len(path) > MAX_DEPTH or len(self.spans) > MAX_NODES:
+            self.overflow(path)
             return None
         match value:
             case Mapping():
@@ -38,6 +41,14 @@ class _Reader:
         hint = "use texts, numbers, true, false, null, lists and dicts"
         self.say("wrong-type", path, f"a {type(value).__name__} can't stand in a file", hint)
         return None
+
+    def overflow(self, path: Path) -> None:
+        if not self.full:
+            self.full = True
+            what = f"deeper than {MAX_DEPTH} levels" if len(path) > MAX_DEPTH else f"more than {MAX_NODES:,} values"
+            self.say(
+                "too-large", path, f"this is too large to be read: {what}", "use fewer levels, and no dict in itself"
+            )
 
     def is_key(self, key: object, path: Path) -> bool:
         if not isinstance(key, str):

@@ -1,4 +1,4 @@
-"""Actions as closures over a run: compiled once, so that a step does not look at their kind again."""
+"""Actions as closures over a workbench: compiled once, so that a step does not look at their kind again."""
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
@@ -39,11 +39,11 @@ from lumen.language.diagnostics import Path
 from lumen.language.events import Event
 
 if TYPE_CHECKING:
-    from lumen.interpreters.statechart.run import Run
+    from lumen.interpreters.statechart.workbench import Workbench
 
-Act: TypeAlias = "Callable[[Run], None]"
+Act: TypeAlias = "Callable[[Workbench], None]"
 Block: TypeAlias = "tuple[tuple[Act, Path], ...]"
-Make: TypeAlias = "Callable[[Run], BodyCommand]"
+Make: TypeAlias = "Callable[[Workbench], BodyCommand]"
 
 
 class ActionError(Exception):
@@ -62,26 +62,26 @@ def compile_action(action: Action) -> Act:
             return _assign(values)
         case Raise(event, data):
             body = compile_value(data)
-            return lambda run: run.post(Event(event, body(run.view()), run.at))
+            return lambda bench: bench.post(Event(event, body(bench.view()), bench.at))
         case Send(event, data, delay, id):
             body = compile_value(data)
-            return lambda run: run.set_timer(id, delay, event, body(run.view()))
+            return lambda bench: bench.set_timer(id, delay, event, body(bench.view()))
         case CancelSend(id):
-            return lambda run: run.cancel_send(id)
+            return lambda bench: bench.cancel_send(id)
         case PublishBody(route, data):
             body = compile_value(data)
-            return lambda run: run.emit(Publish(route, body(run.view())))
+            return lambda bench: bench.emit(Publish(route, body(bench.view())))
         case LogText(template):
             text = compile_template(template.text)
-            return lambda run: run.emit(Log(text(run.view())))
+            return lambda bench: bench.emit(Log(text(bench.view())))
         case If(guard, then, otherwise):
             return _if(guard, compile_block(then), compile_block(otherwise))
         case Wait() | Parallel():
             raise TypeError(f"{action} stands outside `do`")
     make = compile_command(action)
 
-    def begin(run: "Run") -> None:
-        run.start(make(run))
+    def begin(bench: "Workbench") -> None:
+        bench.start(make(bench))
 
     return begin
 
@@ -93,14 +93,14 @@ def compile_command(action: Action) -> Make:
             return _say(texts)
         case Language(language):
 
-            def speak(run: "Run") -> BodyCommand:
-                run.language = language
-                run.scope = None
+            def speak(bench: "Workbench") -> BodyCommand:
+                bench.language = language
+                bench.scope = None
                 return action
 
             return speak
         case Play() | Posture() | Walk() | Look() | Track() | Stop() | Rest() | Wake():
-            return lambda run: action
+            return lambda bench: action
         case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText() | If() | Wait() | Parallel():
             raise TypeError(f"{action} is no command")
         case _:
@@ -125,13 +125,13 @@ def compile_value(value: Value) -> Callable[[Scope], Any]:
 def _assign(values: Mapping[str, Value]) -> Act:
     pairs = [(key, compile_value(value)) for key, value in values.items()]
 
-    def assign(run: "Run") -> None:
-        before = run.context
+    def assign(bench: "Workbench") -> None:
+        before = bench.context
         try:
             for key, value in pairs:
-                run.store(key, value(run.scope or run.view()))
+                bench.store(key, value(bench.scope or bench.view()))
         except BaseException:
-            run.context, run.scope = before, None
+            bench.context, bench.scope = before, None
             raise
 
     return assign
@@ -140,9 +140,9 @@ def _assign(values: Mapping[str, Value]) -> Act:
 def _if(guard: Expression, then: Block, otherwise: Block) -> Act:
     holds = compile_guard(guard.source)
 
-    def choose(run: "Run") -> None:
-        for act, _ in then if holds(run.view()) else otherwise:
-            act(run)
+    def choose(bench: "Workbench") -> None:
+        for act, _ in then if holds(bench.view()) else otherwise:
+            act(bench)
 
     return choose
 
@@ -154,10 +154,10 @@ def _say(texts: Mapping[str, tuple[Any, ...]]) -> Make:
     }
     fallback = "" if "" in spoken else next(iter(spoken))
 
-    def say(run: "Run") -> BodyCommand:
-        language = run.language if run.language in spoken else fallback
+    def say(bench: "Workbench") -> BodyCommand:
+        language = bench.language if bench.language in spoken else fallback
         alternatives = spoken[language]
-        text = alternatives[run.draw(len(alternatives))](run.view())
-        return Say(text, language or run.language)
+        text = alternatives[bench.draw(len(alternatives))](bench.view())
+        return Say(text, language or bench.language)
 
     return say

@@ -23,7 +23,7 @@ from lumen.language.actions import (
 from lumen.language.diagnostics import Path
 
 if TYPE_CHECKING:
-    from lumen.interpreters.statechart.run import Run
+    from lumen.interpreters.statechart.workbench import Workbench
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,21 +85,21 @@ def compile_do(steps: tuple[Step, ...]) -> tuple[Deed, ...]:
     return tuple(_compile(step.action, step.where) for step in steps)
 
 
-def begin_block(run: "Run", deeds: tuple[Deed, ...], name: Any = "do", index: int = 0) -> Within | None:
+def begin_block(bench: "Workbench", deeds: tuple[Deed, ...], name: Any = "do", index: int = 0) -> Within | None:
     """Do everything from `index` on that takes no time; where it stands then, None at its end."""
     for place in range(index, len(deeds)):
-        inner = _begin(run, deeds[place])
+        inner = _begin(bench, deeds[place])
         if inner is not None:
             return Within(name, place, inner)
     return None
 
 
-def resume(run: "Run", deeds: tuple[Deed, ...], position: Within, id: str) -> Within | None:
+def resume(bench: "Workbench", deeds: tuple[Deed, ...], position: Within, id: str) -> Within | None:
     """Go on from `position` now that what it awaited under `id` is over."""
-    inner = _resume(run, deeds[position.place], position.inner, id)
+    inner = _resume(bench, deeds[position.place], position.inner, id)
     if inner is not None:
         return position._replace(inner=inner)
-    return begin_block(run, deeds, position.block, position.place + 1)
+    return begin_block(bench, deeds, position.block, position.place + 1)
 
 
 def awaited(position: Position | None) -> Iterator[str]:
@@ -114,37 +114,37 @@ def awaited(position: Position | None) -> Iterator[str]:
                 yield from awaited(branch)
 
 
-def _begin(run: "Run", deed: Deed) -> Position | None:
+def _begin(bench: "Workbench", deed: Deed) -> Position | None:
     match deed:
         case Instant(act, where):
             with _Failing(where):
-                act(run)
+                act(bench)
             return None
         case Awaited(make, where):
             with _Failing(where):
-                return Awaiting(run.start(make(run), awaited=True))
+                return Awaiting(bench.start(make(bench), awaited=True))
         case Pause(seconds):
-            return Awaiting(run.set_wait(seconds))
+            return Awaiting(bench.set_wait(seconds))
         case Choice(guard, then, otherwise, where):
             with _Failing(where):
-                holds = guard(run.view())
-            return begin_block(run, then if holds else otherwise, "then" if holds else "else")
+                holds = guard(bench.view())
+            return begin_block(bench, then if holds else otherwise, "then" if holds else "else")
         case Together(branches):
-            return _fork([_begin(run, branch) for branch in branches])
+            return _fork([_begin(bench, branch) for branch in branches])
     raise AssertionError(deed)
 
 
-def _resume(run: "Run", deed: Deed, position: Position, id: str) -> Position | None:
+def _resume(bench: "Workbench", deed: Deed, position: Position, id: str) -> Position | None:
     match deed, position:
         case Choice(), Within(block, _, _):
-            return resume(run, deed.block(block), position, id)
+            return resume(bench, deed.block(block), position, id)
         case Together(branches), Fork(positions):
-            return _fork([_move(run, branch, place, id) for branch, place in zip(branches, positions, strict=True)])
+            return _fork([_move(bench, branch, place, id) for branch, place in zip(branches, positions, strict=True)])
     return None
 
 
-def _move(run: "Run", deed: Deed, position: Position | None, id: str) -> Position | None:
-    return _resume(run, deed, position, id) if position is not None and id in awaited(position) else position
+def _move(bench: "Workbench", deed: Deed, position: Position | None, id: str) -> Position | None:
+    return _resume(bench, deed, position, id) if position is not None and id in awaited(position) else position
 
 
 def _fork(branches: list[Position | None]) -> Fork | None:
