@@ -1,7 +1,9 @@
-"""Which OpenGL draws without a screen; chosen when this is imported, which has to be before mujoco is."""
+"""Which OpenGL draws without a screen; chosen when this is imported, best before mujoco is."""
 
 import ctypes
+import importlib
 import os
+import sys
 
 REMEDY = "install libegl1 and libgl1 (apt-get install -y --no-install-recommends libegl1 libgl1)"
 
@@ -25,7 +27,16 @@ def choose() -> str:
     return "disable"
 
 
-BACKEND = os.environ.setdefault("MUJOCO_GL", choose())
+def _settle() -> str:
+    """The choice, the user's where there is one; mujoco chooses again where it was imported before."""
+    late = "MUJOCO_GL" not in os.environ and sys.modules.get("mujoco.rendering.classic.gl_context")
+    backend = os.environ.setdefault("MUJOCO_GL", choose())
+    if late:
+        importlib.reload(late)
+    return backend
+
+
+BACKEND = _settle()
 
 
 def missing() -> str | None:

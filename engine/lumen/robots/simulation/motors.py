@@ -9,7 +9,6 @@ from lumen.errors import RobotError
 from lumen.robots.simulation.limits import Angles, Envelope
 from lumen.robots.simulation.world import World
 
-
 LIMP = 0.5
 """Below this stiffness a joint may be anywhere but at its goal."""
 
@@ -27,6 +26,7 @@ class Motors:
         self.index = {name: i for i, name in enumerate(self.names)}
         self.envelope = Envelope(body)
         self._leader = dict(body.shared)
+        self._limits = {joint.name: (joint.minimum, joint.maximum) for joint in body.joints.values()}
         self._effort = world.model.actuator_forcerange[world.actuators].copy()
         self.stiffness = np.ones(len(self.names))
         self.goal: Angles = world.angles.copy()
@@ -56,8 +56,8 @@ class Motors:
 
     def inside(self, name: str, angle: float) -> float:
         """The nearest angle inside that joint's limits."""
-        i = self.index[name]
-        return float(min(max(angle, self.envelope.low[i]), self.envelope.high[i]))
+        low, high = self._limits[name]
+        return min(max(angle, low), high)
 
     def wanted(self, names: Iterable[str]) -> dict[str, float]:
         """The goals of these joints."""
