@@ -1,11 +1,14 @@
 """Motions made of motions: mirrored, faster, one after another. All of it is pure and leaves its arguments alone."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from lumen.language.diagnostics import Path
 from lumen.language.motions import Cue, Key, Motion
+
+_SOON = 1e-9
+"""[s] that two keys of a joint have to lie apart."""
 
 _SIDE = re.compile(r"([LR])(?=[A-Z])")
 _LED_SIDE = re.compile(r"(left|right)(?=_)")
@@ -53,6 +56,20 @@ def joined(parts: Iterable[tuple[float, Motion]], duration: float) -> Motion:
             tracks.setdefault(joint, []).extend(replace(key, time=begin + key.time) for key in keys)
         cues.extend(replace(cue, time=begin + cue.time) for cue in part.cues)
     return Motion("", duration, {joint: tuple(keys) for joint, keys in tracks.items()}, tuple(cues))
+
+
+def returning(part: Motion, angles: Mapping[str, float], pause: float, where: Path) -> Motion:
+    """The motion with a way of `pause` [s] back to `angles` behind it, where it does not stand there already."""
+    away = [j for j, keys in part.tracks.items() if j in angles and abs(keys[-1].angle - angles[j]) > 1e-3]
+    if not away:
+        return part
+    last = {joint: part.tracks[joint][-1] for joint in away}
+    hold = {joint: (replace(key, time=0.0),) for joint, key in last.items() if key.time < part.duration - _SOON}
+    back = {joint: (Key(pause, angles[joint], where=where),) for joint in away}
+    return joined(
+        [(0.0, part), (part.duration, Motion("", 0.0, hold)), (part.duration, Motion("", pause, back))],
+        part.duration + pause,
+    )
 
 
 def _turned(key: Key, sign: float) -> Key:

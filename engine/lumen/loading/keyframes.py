@@ -1,7 +1,7 @@
 """The list under `keyframes:`, from plain data to one flat motion, its blocks unrolled."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from lumen.interpreters.choreography import at_speed, joined, mirrored, placed
@@ -162,21 +162,6 @@ class KeyframeReader:
     def _too_many(self, here: Path) -> None:
         hint = "use fewer keyframes, joints or rounds"
         self.report("too-many-keys", here, f"the motion would have more than {MAX_KEYS:,} keys", hint=hint)
-
-
-def returning(part: Motion, angles: Mapping[str, float], pause: float, where: Path) -> Motion:
-    """The motion with a way of `pause` [s] back to `angles` behind it, where it does not stand there already."""
-    away = [j for j, keys in part.tracks.items() if j in angles and abs(keys[-1].angle - angles[j]) > 1e-3]
-    if not away:
-        return part
-    hold = {
-        j: (replace(part.tracks[j][-1], time=0.0),) for j in away if part.tracks[j][-1].time < part.duration - _SOON
-    }
-    back = {j: (Key(pause, angles[j], where=where),) for j in away}
-    return joined(
-        [(0.0, part), (part.duration, Motion("", 0.0, hold)), (part.duration, Motion("", pause, back))],
-        part.duration + pause,
-    )
 
 
 def _size(part: Motion) -> int:

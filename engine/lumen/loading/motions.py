@@ -5,11 +5,11 @@ from dataclasses import fields
 from graphlib import CycleError, TopologicalSorter
 from typing import Any, TypeVar
 
-from lumen.interpreters.choreography import at_speed, mirrored
+from lumen.interpreters.choreography import at_speed, mirrored, returning
 from lumen.language.diagnostics import Path, has_errors
 from lumen.language.motions import Interpolation, Motion
 from lumen.language.robots import Body
-from lumen.loading.keyframes import KeyframeReader, returning
+from lumen.loading.keyframes import KeyframeReader
 from lumen.loading.poses import PoseReader
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES, seconds
