@@ -99,8 +99,7 @@ def draft(files: Mapping[str, bytes]) -> Draft:
     found.behaviors = _each(sources["behaviors"], lambda *a, name: build_machine(*a, name=name, into=Machine))
     found.stories = _each(sources["behaviors/stories"], build_story)
     found.controllers = _each(sources["fuzzy"], build_controller)
-    if body := found.body or next(iter(found.bodies.values()), None):
-        found.motions = _motions(sources["motions"], body)
+    found.motions = _motions(found, sources["motions"])
     _messages(found)
     return found
 
@@ -171,9 +170,16 @@ def _each(sources: Mapping[str, tuple[Any, Report]], build: Callable[..., T | No
     return built
 
 
-def _motions(sources: Mapping[str, tuple[Any, Report]], body: Body) -> dict[str, Motion]:
+def _motions(found: Draft, sources: Mapping[str, tuple[Any, Report]]) -> dict[str, Motion]:
+    """The motions, which can be read only where the robot's body is known."""
+    only = next(iter(found.bodies)) if found.settings is None and len(found.bodies) == 1 else ""
+    model = found.settings.model if found.settings else only
     reports = [report for _, report in sources.values()]
-    return (_built(reports[0], lambda: build_motions(sources, body)) or {}) if reports else {}
+    if model not in found.bodies or not reports:
+        return {}
+    for report in reports:
+        report.lost |= found.report("models", model).lost
+    return _built(reports[0], lambda: build_motions(sources, found.bodies[model])) or {}
 
 
 def _built(report: Report, build: Callable[[], T | None]) -> T | None:

@@ -113,6 +113,8 @@ CODES: Mapping[str, Code] = {
     "too-many-keys": Code(ERROR, "a motion is longer than can be played"),
     "two-shapes": Code(ERROR, "a term has two shapes"),
     "two-times": Code(ERROR, "a keyframe has a time and a beat"),
+    "unbound-input": Code(ERROR, "an input of a bound controller has no message field to come from"),
+    "unbound-output": Code(ERROR, "an output of a bound controller moves no joint"),
     "unknown-term": Code(ERROR, "a rule names a term that the variable does not have"),
     "unknown-variable": Code(ERROR, "a rule or a binding names a variable that does not exist"),
     "unsorted-rows": Code(ERROR, "the rows of a table do not rise"),
