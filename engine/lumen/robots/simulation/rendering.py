@@ -22,14 +22,14 @@ def available() -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """What a picture costs: shadow map and antialiasing samples, 0 for none. Reflections go with the shadows."""
+    """What a picture costs: size of the shadow map and antialiasing samples, 0 for none."""
 
     shadows: int = 0
     samples: int = 0
 
 
 CAMERA = Quality()
-FILM = Quality(shadows=4096)
+FILM = Quality(shadows=2048)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,9 +91,7 @@ class _Canvas:
         self._data = mujoco.MjData(self._model)
         self._renderer = mujoco.Renderer(self._model, height, width, max_geom=2000)
         atexit.register(self.close)  # after mujoco's own, and so before it: then OpenGL would be gone
-        flags = self._renderer.scene.flags
-        for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
-            flags[flag] = bool(quality.shadows)
+        self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = bool(quality.shadows)
 
     def draw(self, scene: Scene, camera: str) -> Pixels:
         model, data = self._model, self._data
