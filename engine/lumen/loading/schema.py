@@ -78,7 +78,7 @@ def _validator(kind: str) -> "Draft202012Validator":
 
 def _complaints(validator: "Draft202012Validator", data: Any) -> Iterator[Complaint]:
     for error in validator.iter_errors(data):
-        yield from complaints(error)
+        yield from complaints(error, validator.schema)
 
 
 def _judge(found: list[Complaint], report: Report, said: set[Path]) -> set[Path]:

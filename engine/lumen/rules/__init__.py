@@ -41,5 +41,5 @@ def check_files(root: Path, files: Mapping[str, bytes]) -> tuple[Project | None,
     for family in FAMILIES:
         family.check(found)
     diagnostics = tuple(found.diagnostics)
-    project = None if has_errors(diagnostics) else assemble(found, str(root))
+    project = None if has_errors(diagnostics) else assemble(found, str(root.absolute()))
     return project, diagnostics

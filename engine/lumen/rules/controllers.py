@@ -6,7 +6,7 @@ from typing import Any
 from lumen.language.controllers import Controller, InputBinding, OutputBinding
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.robots import Body
-from lumen.loading.project import Draft
+from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.finding import find
 from lumen.rules.references import known_route

@@ -7,8 +7,8 @@ from lumen.interpreters.expressions import Finding, check_expression, check_temp
 from lumen.language.actions import Template
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import Machine, Transition
+from lumen.loading.draft import Draft
 from lumen.loading.expressions import place_within
-from lumen.loading.project import Draft
 from lumen.loading.source import Report
 from lumen.rules.codes import CODES
 from lumen.rules.events import declared, hears, raised

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Path, did_you_mean
-from lumen.loading.project import Draft
+from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.codes import CODES
 

@@ -3,7 +3,7 @@
 from lumen.language.actions import PublishBody
 from lumen.language.commands import Play, Posture, Track
 from lumen.language.diagnostics import Path, did_you_mean
-from lumen.loading.project import Draft
+from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.finding import References, find, first
 from lumen.rules.walk import Site, sites

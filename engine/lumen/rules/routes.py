@@ -4,7 +4,7 @@ import re
 
 from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.routes import Direction, Route
-from lumen.loading.project import Draft
+from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.events import descriptors, hears
 from lumen.rules.finding import References, find

@@ -1,7 +1,7 @@
 """JSON Schemas inside behaviours: those of context keys and of events."""
 
+from lumen.loading.draft import Draft
 from lumen.loading.messages import examine
-from lumen.loading.project import Draft
 
 
 def check(draft: Draft) -> None:

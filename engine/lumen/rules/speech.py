@@ -7,7 +7,7 @@ from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.machines import Machine
-from lumen.loading.project import Draft
+from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import sites

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from lumen.language.machines import Kind, Machine, State, Transition
-from lumen.loading.project import Draft
+from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.events import hears
 from lumen.rules.finding import find

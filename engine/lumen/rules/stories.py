@@ -6,7 +6,7 @@ from typing import Any
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect, Happen, Send, Story, Touch
-from lumen.loading.project import Draft
+from lumen.loading.draft import Draft
 from lumen.loading.schema import faults
 from lumen.loading.source import Report
 from lumen.rules.events import declared, descriptors, hears, raised

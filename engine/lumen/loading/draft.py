@@ -1,0 +1,65 @@
+"""What has become of a project's files so far."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumen.language.controllers import Controller
+from lumen.language.diagnostics import Diagnostic, Place, Severity
+from lumen.language.machines import Machine
+from lumen.language.motions import Motion
+from lumen.language.robots import Body
+from lumen.language.stories import Story
+from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.settings import Settings
+from lumen.loading.source import Report
+
+
+@dataclass
+class Draft:
+    """What could be built from a project's files, and what is wrong with them.
+
+    `names` has for each folder the names of all files in it, whether they could be built or not; `reports` the report
+    of each document by its file; `missing` the folders that were reported as missing; `unsound` the JSON Schemas in
+    behaviours that were reported as broken: behaviour, `types` or `events`, name. `settings` is None where lumen.yaml
+    could not be read at all.
+    """
+
+    files: Mapping[str, bytes]
+    settings: Settings | None = None
+    bodies: dict[str, Body] = field(default_factory=dict)
+    behaviors: dict[str, Machine] = field(default_factory=dict)
+    controllers: dict[str, Controller] = field(default_factory=dict)
+    motions: dict[str, Motion] = field(default_factory=dict)
+    stories: dict[str, Story] = field(default_factory=dict)
+    messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
+    names: dict[str, frozenset[str]] = field(default_factory=dict)
+    reports: dict[str, Report] = field(default_factory=dict)
+    loose: list[Diagnostic] = field(default_factory=list)
+    missing: set[str] = field(default_factory=set)
+    unsound: set[tuple[str, str, str]] = field(default_factory=set)
+
+    @property
+    def main(self) -> Report | None:
+        """The report of lumen.yaml."""
+        return self.reports.get(MAIN_FILE)
+
+    @property
+    def body(self) -> Body | None:
+        """The body of the project's robot."""
+        return self.bodies.get(self.settings.model) if self.settings else None
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """Everything found so far, each thing once, by file and line."""
+        found = [d for r in self.reports.values() for d in r.diagnostics if not r.follows(d.code, d.message)]
+        found += self.loose
+        return sorted(dict.fromkeys(found), key=lambda d: (d.place, d.code, d.message))
+
+    def report(self, folder: str, name: str) -> Report:
+        """The report of `FOLDER/NAME.yaml`."""
+        return self.reports[f"{folder}/{name}.yaml"]
+
+    def say(self, code: str, file: str, message: str, hint: str, severity: Severity = Severity.ERROR) -> None:
+        """Report something of a file as a whole."""
+        self.loose.append(Diagnostic(code, message, Place(file), hint, severity))

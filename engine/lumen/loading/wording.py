@@ -1,0 +1,124 @@
+"""What a schema's validator has to say of a value, in a student's words."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.loading.source import resolve
+from lumen.loading.units import seconds
+
+Error = Any
+"""A `jsonschema.ValidationError`; its stubs allow for an unset state that a validator never yields."""
+
+TYPES: Mapping[str, str] = {
+    "object": "a map of keys and values",
+    "array": "a list",
+    "string": "a text",
+    "number": "a number",
+    "integer": "a whole number",
+    "boolean": "true or false",
+    "null": "empty",
+}
+_TRUTHS = {"yes": "true", "y": "true", "on": "true", "no": "false", "n": "false", "off": "false"}
+
+
+def node(path: Path) -> str:
+    """What to call the node at that path."""
+    if not path:
+        return "this"
+    if isinstance(path[-1], str):
+        return f"`{path[-1]}`"
+    owner = next((f" of `{step}`" for step in reversed(path) if isinstance(step, str)), "")
+    return f"item {path[-1] + 1}{owner}"
+
+
+def kind(value: Any) -> str:
+    """What sort of value that is."""
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    match value:
+        case None:
+            return "empty"
+        case dict():
+            return TYPES["object"]
+        case list():
+            return TYPES["array"]
+        case str():
+            return TYPES["string"]
+    return f"the number {value:g}" if isinstance(value, float) else "a number"
+
+
+def wording(error: Error, path: Path) -> tuple[str, str]:
+    """Message and hint of a value that is of the wrong type, or not one of those allowed."""
+    value, bound, name = error.instance, error.validator_value, node(path)
+    hint = describe(error.schema)
+    match error.validator:
+        case "type":
+            wanted = [bound] if isinstance(bound, str) else bound
+            if value is None:
+                return f"{name} is empty, it should be {_either(wanted)}", hint
+            return f"{name} should be {_either(wanted)}, not {kind(value)}", _instead(
+                value, wanted, error.schema
+            ) or hint
+        case "enum" | "const":
+            allowed = [str(v) for v in (bound if error.validator == "enum" else [bound])]
+            return f"{name} can't be `{_short(value)}`", did_you_mean(_short(value), allowed, "it is one of")
+        case "pattern":
+            return f"{name} can't be `{_short(value)}`", hint
+        case "minimum":
+            return f"{name} is {value:g}, it should be at least {bound:g}", hint
+        case "maximum":
+            return f"{name} is {value:g}, it should be at most {bound:g}", hint
+        case "exclusiveMinimum":
+            return f"{name} is {value:g}, it should be more than {bound:g}", hint
+        case "exclusiveMaximum":
+            return f"{name} is {value:g}, it should be less than {bound:g}", hint
+        case "multipleOf":
+            return f"{name} is {value:g}, it should be a multiple of {bound:g}", hint
+        case "minLength" | "minProperties" if not value:
+            return f"{name} is empty", hint or "write something, or delete it"
+        case "minItems":
+            return f"{name} has {_count(len(value))}, it should have at least {bound}", hint
+        case "items" | "maxItems":
+            return f"{name} has too many items", hint
+        case "uniqueItems":
+            return f"{name} has an item twice", "delete one"
+    return f"{name} is not as it should be", hint
+
+
+def describe(schema: Any) -> str:
+    """What a schema says of its values, with an example where it is short."""
+    if not isinstance(schema, dict):
+        return ""
+    text = str(schema.get("description", "")).strip().rstrip(".")
+    examples = [e for e in schema.get("examples", ()) if not isinstance(e, dict | list)]
+    shown = ", ".join(f"`{e}`" for e in examples[:3])
+    return f"{text}, as in {shown}" if text and shown else text or (f"as in {shown}" if shown else "")
+
+
+def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> str:
+    """What to write in place of a value of the wrong type that is nearly right."""
+    if "boolean" in wanted and isinstance(value, str) and (truth := _TRUTHS.get(value.lower())):
+        return f"write `{truth}`: in YAML 1.2 `{value}` is a text"
+    if {"number", "integer"} & set(wanted) and isinstance(value, str) and type(resolve(value)) in (int, float):
+        return f"leave out the quotes: {value}"
+    if "string" in wanted and isinstance(value, bool | int | float):
+        if any(seconds(example) is not None for example in schema.get("examples", ())):
+            return "write the unit too, as in `500ms`, `20s` or `2min`"
+        written = str(value).lower() if isinstance(value, bool) else f"{value}"
+        return f'put it in quotes: "{written}"'
+    return ""
+
+
+def _either(types: list[str]) -> str:
+    words = [TYPES[t] for t in types if t != "null"] or [TYPES["null"]]
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + f" or {words[-1]}"
+
+
+def _count(number: int) -> str:
+    return "1 item" if number == 1 else f"{number} items"
+
+
+def _short(value: Any) -> str:
+    text = "null" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+    return text if len(text) <= 40 else text[:39] + "…"
