@@ -21,7 +21,7 @@ from lumen.loading.settings import build_settings
 from lumen.loading.source import Report, parse
 from lumen.loading.stories import build_story
 
-__all__ = ["FOLDERS", "MAIN_FILE", "assemble", "draft", "read_files"]
+__all__ = ["FOLDERS", "MAIN_FILE", "Draft", "assemble", "draft", "read_files"]
 
 T = TypeVar("T")
 
