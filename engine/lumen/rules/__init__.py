@@ -8,9 +8,20 @@ from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.projects import Project
 from lumen.loading.packaged import find_project
 from lumen.loading.project import assemble, draft, read_files
-from lumen.rules import controllers, events, expressions, references, routes, schemas, speech, statecharts, stories
+from lumen.rules import (
+    controllers,
+    events,
+    expressions,
+    motions,
+    references,
+    routes,
+    schemas,
+    speech,
+    statecharts,
+    stories,
+)
 
-FAMILIES = (schemas, references, expressions, events, routes, speech, controllers, statecharts, stories)
+FAMILIES = (schemas, references, expressions, events, routes, speech, controllers, motions, statecharts, stories)
 """The rules, in the order they look: what is unused or never reached is looked for where nothing else is wrong."""
 
 

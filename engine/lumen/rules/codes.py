@@ -110,6 +110,7 @@ CODES: Mapping[str, Code] = {
     "term-without-set": Code(ERROR, "a term has no set, and the defuzzifier needs one"),
     "term-without-value": Code(ERROR, "a term has no value, and the defuzzifier needs one"),
     "time-not-increasing": Code(ERROR, "a keyframe comes before the one above it"),
+    "too-fast": Code(ERROR, "a joint would have to move faster than it can"),
     "too-many-keys": Code(ERROR, "a motion is longer than can be played"),
     "two-shapes": Code(ERROR, "a term has two shapes"),
     "two-times": Code(ERROR, "a keyframe has a time and a beat"),

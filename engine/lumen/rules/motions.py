@@ -1,0 +1,49 @@
+"""Motions: what they ask of the robot's joints on the way from key to key."""
+
+from math import ceil
+
+from lumen.interpreters.limits import Excess, beyond_limits, overspeed
+from lumen.language.robots import Body
+from lumen.loading.draft import Draft
+from lumen.loading.source import Report
+from lumen.loading.units import ANGLES
+from lumen.rules.finding import find, value_at
+
+
+def check(draft: Draft) -> None:
+    """Report where a joint would be too fast, or beyond its limits between two keys or beside another joint."""
+    if draft.body is None:
+        return
+    for name, motion in draft.motions.items():
+        report = draft.report("motions", name)
+        if report.diagnostics:
+            continue
+        unit = value_at(report, ("units", "angle")) or "rad"
+        for excess in overspeed(motion, draft.body):
+            _too_fast(report, excess, unit, draft.body)
+        for excess in beyond_limits(motion, draft.body):
+            _too_far(report, excess, unit, draft.body)
+
+
+def _too_fast(report: Report, excess: Excess, unit: str, body: Body) -> None:
+    value, limit = _shown(excess, unit, body)
+    what = "" if excess.joint in body.hands else f" {unit}/s"
+    message = f"`{excess.joint}` would have to move at {value:g}{what} to get here in time, and {limit:g} is its most"
+    percent = ceil(100 * (excess.value / excess.limit - 1))
+    find(report, "too-fast", excess.key.where, message, f"give it {percent} % more time")
+
+
+def _too_far(report: Report, excess: Excess, unit: str, body: Body) -> None:
+    value, limit = _shown(excess, unit, body)
+    message = f"`{excess.joint}` would come to {value:g} {unit} here, and {limit:g} is as far as it can go"
+    coupled = [c.on for c in body.coupled if c.joint == excess.joint]
+    hint = f"how far it can go depends on `{coupled[0]}`" if coupled else "bring the handles nearer to the key"
+    find(report, "angle-out-of-range", excess.key.where, message, hint)
+
+
+def _shown(excess: Excess, unit: str, body: Body) -> tuple[float, float]:
+    """Value and limit in the file's unit, as many digits as tell them apart."""
+    factor = 1.0 if excess.joint in body.hands else ANGLES[unit]
+    value, limit = excess.value / factor, excess.limit / factor
+    digits = next((d for d in range(1, 6) if round(value, d) != round(limit, d)), 6)
+    return round(value, digits), round(limit, digits)
