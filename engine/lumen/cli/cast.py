@@ -16,21 +16,25 @@ SPEEDS = ("1", "4", "max")
 
 @dataclass(frozen=True)
 class Cast:
-    """A robot with its clock; `hall` is the simulated world around it, None for a robot in no world of ours."""
+    """A robot with its clock; `hall` is the simulated world around it, None for a robot in no world of ours.
+
+    `blind` says why its camera has no images and what to do about it; empty where it has.
+    """
 
     robot: Robot
     clock: Clock
     hall: Hall | None
+    blind: str = ""
 
 
 def cast(kind: str, project: Project, speed: str, story: Story | None = None) -> Cast:
     """The robot of that name, on its feet."""
     pace = None if speed == "max" else float(speed)
     if kind == "simulation":
-        from lumen.robots.simulation import SimulatedRobot
+        from lumen.robots.simulation import SimulatedRobot, available
 
         simulated = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
-        return Cast(simulated, SimulatedClock(simulated.advance, pace), simulated)
+        return Cast(simulated, SimulatedClock(simulated.advance, pace), simulated, available() or "")
     if kind == "recording":
         from lumen.robots.recording import RecordingRobot
 

@@ -25,7 +25,7 @@ class Performance:
         self._show = Show(project, chosen, bus_url, story, self._deed)
         self._transcript = Transcript(chosen.clock.now, lambda: self._show.exhibition.project.machine)
         self._show.exhibition.observers.append(self._transcript)
-        self._story = story
+        self._story, self._blind = story, chosen.blind
         self._typed: TypedSpeech | None = None
         self._interrupts = 0
         self._face: float | None = None
@@ -62,6 +62,8 @@ class Performance:
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")
         ready = time.monotonic() - STARTED
         print(f"{project.name}: {project.robot} performs `{project.behavior}` {pace}, ready after {ready:.1f} s.")
+        if self._blind:
+            print(f"It runs without camera images: {self._blind}.")
         if self._story:
             print(f"The story is “{self._story.title}”.\n")
         elif self._show.walker:

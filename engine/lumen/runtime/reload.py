@@ -40,10 +40,10 @@ def migrate(old: Machine, new: Machine, snapshot: Snapshot) -> Snapshot | Refusa
 
 def _illegal(new: Machine, active: list[str]) -> str:
     """Why these paths are no configuration of the new machine; empty where they are one."""
+    if gone := [path for path in active if path not in new.states]:
+        return f"state `{gone[-1]}` is active and no longer there"
     for path in active:
-        state = new.states.get(path)
-        if state is None:
-            return f"state `{path}` is active and no longer there"
+        state = new.states[path]
         children = [child for child in state.children if new.states[child].kind is not Kind.HISTORY]
         running = [child for child in children if child in active]
         needed = len(children) if state.kind is Kind.PARALLEL else min(1, len(children))

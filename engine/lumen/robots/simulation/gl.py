@@ -42,5 +42,5 @@ BACKEND = _settle()
 def missing() -> str | None:
     """Why nothing can be drawn and what to do about it; None where it can."""
     if BACKEND.lower() in ("disable", "off", "false", "0"):
-        return f"there is no OpenGL library to draw camera images with: {REMEDY}"
+        return f"there is no OpenGL library: {REMEDY}"
     return None

@@ -1,0 +1,137 @@
+"""Makes every picture of the documentation from the shipped project, at honest physics.
+
+    python docs/pictures/make.py [tour] [head] [motions]
+
+`tour` is the README's picture, mid-dance in the shipped story. `head` is the paper's Fig. 13 and 14: the top camera's
+image when the visitor's face is first seen, and once the head has turned to it; a cross marks the image's centre, a
+ring the face. `motions` is a strip of each motion.
+"""
+
+import argparse
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from PIL import Image, ImageDraw
+
+import lumen
+from lumen.cli.cast import Cast
+from lumen.cli.show import Show
+from lumen.clocks.simulated import SimulatedClock
+from lumen.language.commands import Posture
+from lumen.language.projects import Project
+from lumen.ports import Image as Frame
+from lumen.ports import Perform, Sense
+from lumen.robots.simulation import SimulatedRobot, available
+from lumen.robots.simulation.rendering import Quality, Scene, Studio
+
+HERE = Path(__file__).parent
+MID_DANCE = 7.0
+STRIP = 8
+
+
+def robot_of(project: Project) -> SimulatedRobot:
+    return SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
+
+
+def picture(robot: SimulatedRobot, camera: str, width: int, height: int) -> Image.Image:
+    """What a camera of the hall sees now."""
+    studio = Studio(robot.world.model, Quality(shadows=4096, samples=4))
+    pixels = studio.draw(Scene.of(robot.world.model, robot.world.data), camera, width, height)
+    studio.close()
+    return Image.fromarray(pixels)
+
+
+def play(project: Project, robot: SimulatedRobot, look: Callable[[Show, float], bool]) -> None:
+    """The shipped story, until `look` has seen enough."""
+    chosen = Cast(robot, SimulatedClock(robot.advance), robot)
+    show = Show(project, chosen, story=project.stories[project.story])
+    show.start()
+    while not look(show, show.tick()):
+        if show.player and show.player.finished:
+            sys.exit("the story ended before the picture could be taken")
+    show.close()
+
+
+def tour(project: Project) -> None:
+    robot = robot_of(project)
+    since: list[float] = []
+
+    def look(show: Show, now: float) -> bool:
+        if "dance" in show.exhibition.runtime.snapshot.configuration:
+            since.append(now)
+        return bool(since) and now > since[0] + 3.0 + MID_DANCE
+
+    play(project, robot, look)
+    both = Image.new("RGB", (1280, 480))
+    both.paste(picture(robot, "observer", 720, 480), (0, 0))
+    both.paste(picture(robot, "close", 560, 480), (720, 0))
+    both.save(HERE / "tour.png", optimize=True)
+
+
+def head(project: Project) -> None:
+    robot = robot_of(project)
+    camera = project.body.camera
+    centre = (camera.width / 2, camera.height / 2)
+    taken: list[str] = []
+
+    def look(show: Show, now: float) -> bool:
+        face = robot.face()
+        if face and not taken and "idle" in show.exhibition.runtime.snapshot.configuration:
+            mark(robot, face, centre).save(HERE / "head_before.png", optimize=True)
+            taken.append(f"before: the face is {math.dist(face, centre):.0f} px from the centre")
+        if face and taken and math.dist(face, centre) < 10:
+            mark(robot, face, centre).save(HERE / "head_after.png", optimize=True)
+            taken.append(f"after:  {math.dist(face, centre):.0f} px")
+        return len(taken) == 2
+
+    play(project, robot, look)
+    print("\n".join(taken))
+
+
+def mark(robot: SimulatedRobot, face: tuple[float, float], centre: tuple[float, float]) -> Image.Image:
+    """The top camera's image, its centre and the face marked."""
+    frame = robot.read(Sense.IMAGE)
+    assert isinstance(frame, Frame)
+    image = Image.fromarray(frame.pixels())
+    draw = ImageDraw.Draw(image)
+    (x, y), (u, v) = centre, face
+    draw.line([(x - 8, y), (x + 8, y)], fill="white")
+    draw.line([(x, y - 8), (x, y + 8)], fill="white")
+    draw.ellipse([(u - 14, v - 14), (u + 14, v + 14)], outline="orange", width=2)
+    return image
+
+
+def motions(project: Project) -> None:
+    width, height = 200, 260
+    for name, motion in project.motions.items():
+        robot = robot_of(project)
+        strip = Image.new("RGB", (width * STRIP, height))
+        robot.start("c1", Posture(motion.start or "Stand", 1.0))
+        robot.advance(2.0)
+        robot.start("c2", Perform(motion))
+        for i in range(STRIP):
+            robot.advance(motion.duration / (STRIP + 1))
+            strip.paste(picture(robot, "close", width, height), (width * i, 0))
+        strip.save(HERE / f"motion_{name}.png", optimize=True)
+        robot.close()
+
+
+PICTURES = {"tour": tour, "head": head, "motions": motions}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("pictures", nargs="*", choices=[*PICTURES, []], help="which; default: all")
+    names = parser.parse_args().pictures or list(PICTURES)
+    if reason := available():
+        sys.exit(reason)
+    project = lumen.load(HERE.parent.parent)
+    for name in names:
+        PICTURES[name](project)
+        print(f"{name}: done")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,63 @@
+"""The smaller verbs: new, graph, play."""
+
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.cli.main import main
+
+
+def test_a_new_project_is_whole_and_clean(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "mine"
+    assert main(["new", str(folder)]) == 0
+    assert "lumen lint" in capsys.readouterr().out
+    assert lumen.check(folder) == []
+    assert main(["run", str(folder), "--robot", "recording", "--speed", "max", "--story", "silence"]) == 0
+
+
+def test_nothing_is_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "theirs.txt").write_text("precious", "utf-8")
+    assert main(["new", str(tmp_path)]) == 2
+    assert "not empty" in capsys.readouterr().err
+    assert [p.name for p in tmp_path.iterdir()] == ["theirs.txt"]
+
+
+def test_a_graph_of_the_tour(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["graph"]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("stateDiagram-v2")
+    file = tmp_path / "tour.mmd"
+    assert main(["graph", "tour", "-o", str(file)]) == 0
+    assert file.read_text("utf-8") == printed
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["graph", "tuor"], "did you mean `tour`?"),
+        (["graph", "-o", "/no/such/folder/x.mmd"], "can't write"),
+        (["play", "danse"], "did you mean `dance`?"),
+        (["play", "nowhere.yaml"], "no file nowhere.yaml"),
+        (["new", "/proc/new"], "can't write"),
+    ],
+)
+def test_mistakes_are_one_line(arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(arguments) == 2
+    error = capsys.readouterr().err
+    assert words in error
+    assert error.count("\n") == 1
+
+
+def test_a_motion_on_the_simulated_robot(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["play", "goodbye"]) == 0
+    assert "finished, on its feet" in capsys.readouterr().out
+
+
+def test_a_film_of_a_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "goodbye.mp4"
+    short = tmp_path / "nod.yaml"
+    short.write_text("keyframes:\n  - {at: 300ms, joints: {HeadPitch: 0.2}}\n", "utf-8")
+    assert main(["play", str(short), "--video", str(file)]) == 0
+    assert file.stat().st_size > 1000
+    assert file.read_bytes()[4:8] == b"ftyp"

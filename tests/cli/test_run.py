@@ -1,0 +1,145 @@
+"""`lumen run`: the story, its transcript, its exit codes, and one line for whatever can't be."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from lumen.cli.main import main
+from tests.rabbitmq import RabbitMQ
+from tests.waiting import until
+
+
+def test_a_story_is_told_line_by_line_and_summed_up(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor"]) == 0
+    told = capsys.readouterr().out
+    for line in (
+        "state    greet  (face)",
+        "robot    “Good morning!”",
+        "visitor  “My name is Budi”",
+        "robot    plays dance",
+        "visitor  walks away",
+        "motions: dance, sing, photo, goodbye",
+        "px from the centre of the camera's image",
+        "Next:",
+    ):
+        assert line in told
+    assert "trouble" not in told
+
+
+def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    story = copy / "behaviors" / "stories" / "short.yaml"
+    story.write_text(
+        "title: Too much to ask\nsteps:\n  - visitor: arrives\n  - expect: {state: dance, within: 3s}\n", "utf-8"
+    )
+    assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "short"]) == 1
+    told = capsys.readouterr().out
+    assert "The story failed" in told
+    assert "step 2 of `short`: expected within 3 s state `dance`, but active are" in told
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--story", "vistor"], "did you mean `visitor`?"),
+        (["--for", "3"], "--for takes a duration"),
+        (["--language", "fr"], "it speaks `en`, `id`"),
+        (["--bus", "amqp://guest:guest@127.0.0.1:1/"], "no broker listens at 127.0.0.1:1"),
+        (["--bus", "carrier-pigeon://"], "write memory://"),
+        (["--video", "film.avi"], "name an .mp4 file"),
+        (["--robot", "recording", "--video", "film.mp4"], "--video films the simulation"),
+        (["--robot", "none", "--speed", "4"], "leave out --speed"),
+    ],
+)
+def test_what_can_not_be_is_one_line_and_exit_code_2(
+    copy: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
+) -> None:
+    robot = [] if "--robot" in arguments or "--video" in arguments else ["--robot", "recording"]
+    assert main(["run", str(copy), *robot, *arguments]) == 2
+    error = capsys.readouterr().err
+    assert words in error
+    assert error.count("\n") == 1
+
+
+def test_a_folder_that_is_not_there(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "no-such-folder"]) == 2
+    assert "no-such-folder does not exist" in capsys.readouterr().err
+
+
+def test_a_broken_project_is_named_with_its_place(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tour = copy / "behaviors" / "tour.yaml"
+    tour.write_text(tour.read_text("utf-8").replace("{play: dance}", "{play: danse}"), "utf-8")
+    assert main(["run", str(copy)]) == 1
+    error = capsys.readouterr().err
+    assert "behaviors/tour.yaml:" in error
+    assert "did you mean `dance`?" in error
+
+
+def test_so_much_time_and_no_more(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--for", "5s"]
+    assert main(run) == 0
+    assert "Ended before the story did: 0:05 of simulated time" in capsys.readouterr().out
+
+
+def test_the_tour_in_indonesian(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--for", "12s"]
+    assert main([*run, "--language", "id"]) == 0
+    assert "Selamat pagi!" in capsys.readouterr().out
+
+
+@pytest.mark.xdist_group("rabbitmq")
+def test_the_same_tour_through_rabbitmq(copy: Path, capsys: pytest.CaptureFixture[str], broker: RabbitMQ) -> None:
+    run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--bus", broker.url]
+    assert main(run) == 0
+    assert "motions: dance, sing, photo, goodbye" in capsys.readouterr().out
+
+
+def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:
+    """A person on a pipe: each line waits for what it answers."""
+    run = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", "max"]
+    with subprocess.Popen(run, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdin
+        assert process.stdout
+        told = ""
+        for wanted, line in (("ask_name", "I am Rani"), ("How are you, Rani?|Nice to meet you, Rani", "fine")):
+            while not any(word in told for word in wanted.split("|")):
+                read = process.stdout.readline()
+                assert read, told
+                told += read
+            process.stdin.write(line + "\n")
+            process.stdin.flush()
+        process.stdin.close()
+        told += process.stdout.read()
+        assert process.wait(30) == 0
+    assert "visitor  “I am Rani”" in told
+    assert "visitor  walks away" in told
+
+
+def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) -> None:
+    log = tmp_path / "told.txt"
+    run = [
+        sys.executable,
+        "-m",
+        "lumen",
+        "run",
+        str(copy),
+        "--robot",
+        "recording",
+        "--speed",
+        "4",
+        "--story",
+        "visitor",
+    ]
+    with (
+        log.open("w") as told,
+        subprocess.Popen(run, stdout=told, env={**os.environ, "PYTHONUNBUFFERED": "1"}) as process,
+    ):
+        until(lambda: "greet" in log.read_text())
+        process.send_signal(signal.SIGINT)
+        until(lambda: "again to end" in log.read_text())
+        process.send_signal(signal.SIGINT)
+        assert process.wait(30) == 0
+    assert "Ended before the story did" in log.read_text()
