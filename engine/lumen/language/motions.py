@@ -34,7 +34,7 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """At `time` [s] something besides joints: `kind` is `say`, `sound`, `leds` or `hold`, `value` what the file says."""
+    """At `time` [s] something besides joints: `kind` is `say`, `sound`, `leds` or `hold`, `value` as in the file."""
 
     time: float
     kind: str
