@@ -44,13 +44,18 @@ class Running:
             assert time.monotonic() < deadline, self.told.getvalue()
 
     def until_told(self, text: str) -> None:
-        self.until(lambda: text in self.told.getvalue())
+        self.until(lambda: text in self.transcript)
 
     def edit(self, old: str, new: str, file: str = "behaviors/tour.yaml") -> None:
         path = self.folder / file
         text = path.read_text("utf-8")
         assert old in text
         path.write_text(text.replace(old, new), "utf-8")
+
+    @property
+    def transcript(self) -> str:
+        """What was told, its lines not wrapped."""
+        return self.told.getvalue().replace("\n" + " " * 18, " ")
 
     @property
     def states(self) -> frozenset[str]:
@@ -106,8 +111,8 @@ def test_a_broken_file_is_reported_with_its_place_and_changes_nothing(
     before = running.show.exhibition.project
     running.edit(old, new)
     running.until_told("refused: the exhibition goes on as it was")
-    assert told in running.told.getvalue().replace("\n" + " " * 18, " ")
-    assert "behaviors/tour.yaml:" in running.told.getvalue()
+    assert told in running.transcript
+    assert "behaviors/tour.yaml:" in running.transcript
     assert running.show.exhibition.project is before
     running.edit(new, old)
     running.edit("en: Never mind.", "en: No problem.")
