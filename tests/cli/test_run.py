@@ -135,11 +135,12 @@ def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) 
     ]
     with (
         log.open("w") as told,
-        subprocess.Popen(run, stdout=told, env={**os.environ, "PYTHONUNBUFFERED": "1"}) as process,
+        subprocess.Popen(run, stdout=told, env={**os.environ, "COLUMNS": "200"}) as process,
     ):
         until(lambda: "greet" in log.read_text())
         process.send_signal(signal.SIGINT)
         until(lambda: "again to end" in log.read_text())
+        until(lambda: "stopped  (stop)" in log.read_text())
         process.send_signal(signal.SIGINT)
         assert process.wait(30) == 0
     assert "Ended before the story did" in log.read_text()

@@ -11,6 +11,7 @@ from lumen.cli.show import Show, film
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedSpeech
 from lumen.language.commands import Rest
+from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
 
@@ -35,6 +36,7 @@ class Performance:
         self._interrupts += 1
         if self._interrupts == 1:
             self._show.robot.start("operator", Rest())
+            self._show.exhibition.happen(Event("stop", {}))
             self._transcript.line("operator", "Ctrl-C: the robot rests; again to end")
 
     def run(self, speed: str, period: float | None, language: str, video: Path | None, *, watch: bool) -> int:
@@ -101,7 +103,7 @@ class Performance:
         )
         if failure:
             print(f"  {failure}")
-        print(f"  {len(set(log.states))} states, {log.said} texts, motions: {', '.join(log.played) or 'none'}")
+        print(f"  {len(log.states)} states, {log.said} texts, motions: {', '.join(log.played) or 'none'}")
         if self._face is not None:
             print(f"  the visitor's face ended {self._face:.0f} px from the centre of the camera's image")
         counts = self._show.server.counts

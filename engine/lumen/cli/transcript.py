@@ -43,7 +43,7 @@ class Transcript(Observer):
         self._stream = stream or sys.stdout
         self._colour = coloured(self._stream)
         self._running: dict[str, str] = {}
-        self.states: list[str] = []
+        self.states: set[str] = set()
         self.said = 0
         self.played: list[str] = []
         self.errors = 0
@@ -62,7 +62,7 @@ class Transcript(Observer):
                 self.line("trouble", f"{error.name}: {error.data.get('reason', '')}")
         entered = innermost(self._machine(), step.entered)
         if entered:
-            self.states += entered
+            self.states.update(entered)
             self.line("state", f"{', '.join(entered)}  ({why(step)})")
 
     def performing(self, command: Command, now: float) -> None:
