@@ -120,19 +120,9 @@ def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:
 
 def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) -> None:
     log = tmp_path / "told.txt"
-    run = [
-        sys.executable,
-        "-m",
-        "lumen",
-        "run",
-        str(copy),
-        "--robot",
-        "recording",
-        "--speed",
-        "4",
-        "--story",
-        "visitor",
-    ]
+    story = copy / "behaviors" / "stories" / "long.yaml"
+    story.write_text("title: Somebody stays\nsteps: [{visitor: arrives}, {wait: 10min}]\n", "utf-8")
+    run = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", "4", "--story", "long"]
     with (
         log.open("w") as told,
         subprocess.Popen(run, stdout=told, env={**os.environ, "COLUMNS": "200"}) as process,
@@ -140,7 +130,7 @@ def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) 
         until(lambda: "greet" in log.read_text())
         process.send_signal(signal.SIGINT)
         until(lambda: "again to end" in log.read_text())
-        until(lambda: "stopped  (stop)" in log.read_text())
+        until(lambda: "stopped, interrupted  (stop, then safety.alarm)" in log.read_text())
         process.send_signal(signal.SIGINT)
         assert process.wait(30) == 0
     assert "Ended before the story did" in log.read_text()

@@ -15,15 +15,18 @@ def innermost(machine: Machine, names: Iterable[str]) -> list[str]:
 
 
 def why(step: Step) -> str:
-    """The last transition that led somewhere: what it waited for, and the guard that held."""
-    taken = next((t for t in reversed(step.transitions) if t.targets), None)
-    if taken is None:
-        return "at the start" if step.event is None else f"{step.event.name}"
-    guard = f", as {taken.guard.source}" if taken.guard else ""
-    return _cause(taken, step) + guard
+    """The transitions that led somewhere, one after the other: what each waited for, and the guard that held."""
+    causes = list(dict.fromkeys(_cause(t, step) for t in step.transitions if t.targets))
+    if not causes:
+        return "at the start" if step.event is None else step.event.name
+    return ", then ".join(causes[:3]) + (", …" if len(causes) > 3 else "")
 
 
 def _cause(taken: Transition, step: Step) -> str:
+    return _trigger(taken, step) + (f", as {taken.guard.source}" if taken.guard else "")
+
+
+def _trigger(taken: Transition, step: Step) -> str:
     if taken.delay is not None:
         return f"after {taken.delay:g} s"
     if taken.event.startswith("done."):
