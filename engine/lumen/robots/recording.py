@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, isfinite
 
-from lumen.errors import RobotError
+from lumen.errors import RobotError, UsageError
 from lumen.interpreters.projection import seen
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
@@ -116,6 +117,9 @@ class RecordingRobot:
         return seen(place, self.body.camera, self._angles["HeadYaw"], self._angles["HeadPitch"])
 
     def touch(self, sensor: str, pressed: bool) -> None:
+        """Press or release a tactile sensor. Raises UsageError for one that the robot does not have."""
+        if sensor not in self.body.tactile:
+            raise UsageError(f"no sensor `{sensor}`: {did_you_mean(sensor, self.body.tactile, 'there are')}")
         if pressed != (sensor in self._pressed):
             self._pressed ^= {sensor}
             self._noticed.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time))
@@ -134,8 +138,11 @@ class RecordingRobot:
         return _Lasting(float("inf") if behaves == "hangs" else now + _duration(command, behaves))
 
     def _turn(self, angles: Mapping[str, float]) -> None:
+        joints = self.body.joints
+        if any(name not in joints or not isfinite(angle) for name, angle in angles.items()):
+            return
         for name, angle in angles.items():
-            joint = self.body.joints[name]
+            joint = joints[name]
             self._angles[name] = min(max(angle, joint.minimum), joint.maximum)
 
 

@@ -1,0 +1,199 @@
+"""One set of promises for every robot; an adapter is a row in `ROBOTS`."""
+
+from collections.abc import Callable, Iterator
+from math import inf, nan
+from pathlib import Path
+from typing import Protocol
+
+import pytest
+
+import lumen
+from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.language.stories import Visitor
+from lumen.ports import Aim, Battery, Hall, Joints, Perform, Robot, Sense, Sonar, Tactile
+from lumen.robots.recording import RecordingRobot
+from lumen.robots.simulation import SimulatedRobot
+from tests.tour.names import ROOT
+
+
+class Body(Robot, Hall, Protocol):
+    """A robot that lives when it is told to."""
+
+    def advance(self, dt: float) -> None: ...
+
+
+def simulated(project: Project) -> Body:
+    return SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
+
+
+def recording(project: Project) -> Body:
+    return RecordingRobot(project.body)
+
+
+ROBOTS: dict[str, Callable[[Project], Body]] = {"simulation": simulated, "recording": recording}
+
+
+@pytest.fixture(scope="module")
+def project() -> Project:
+    return lumen.load(ROOT)
+
+
+@pytest.fixture(params=list(ROBOTS))
+def robot(request: pytest.FixtureRequest, project: Project) -> Iterator[Body]:
+    one = ROBOTS[request.param](project)
+    yield one
+    one.close()
+
+
+def live(robot: Body, seconds: float) -> list[Event]:
+    """What it answered and noticed in so much time."""
+    events: list[Event] = []
+    for _ in range(round(seconds / 0.02)):
+        robot.advance(0.02)
+        events += robot.poll()
+    return events
+
+
+def names(events: list[Event]) -> list[str]:
+    return [event.name for event in events]
+
+
+def test_a_command_is_answered_once_and_in_time(robot: Body) -> None:
+    robot.start("a", Say("Hello there"))
+    robot.start("b", Look(0.3, 0.1))
+    events = live(robot, 4.0)
+    assert sorted(names(events)) == ["done.command.a", "done.command.b"]
+    assert all(0 < event.at <= 4.02 for event in events)
+    assert live(robot, 0.5) == []
+
+
+def test_speech_takes_its_time(robot: Body) -> None:
+    robot.start("a", Say("x" * 20))
+    [done] = live(robot, 3.0)
+    assert done.at == pytest.approx(1.6, abs=0.1)
+
+
+def test_what_it_can_not_do_is_an_answer_and_not_an_exception(robot: Body) -> None:
+    robot.start("a", Posture("Handstand"))
+    [answer] = live(robot, 0.2)
+    assert answer.name == "error.command.a"
+    assert "Handstand" in answer.data["reason"]
+
+
+def test_a_cancelled_command_says_so_within_a_second(robot: Body) -> None:
+    robot.start("a", Posture("StandInit", 0.2))
+    live(robot, 0.2)
+    robot.cancel("a")
+    robot.cancel("a")
+    robot.cancel("nobody")
+    [answer] = live(robot, 1.0)
+    assert answer.name == "cancelled.command.a"
+
+
+def test_one_motion_after_the_other(robot: Body, project: Project) -> None:
+    robot.start("a", Perform(project.motions["goodbye"]))
+    robot.start("b", Perform(project.motions["goodbye"]))
+    assert names(live(robot, 2 * project.motions["goodbye"].duration + 2.0)) == ["done.command.a", "done.command.b"]
+
+
+def test_rest_comes_before_everything(robot: Body, project: Project) -> None:
+    robot.start("dance", Perform(project.motions["dance"]))
+    robot.start("say", Say("x" * 200))
+    live(robot, 0.5)
+    robot.start("later", Posture("Stand"))
+    robot.start("rest", Rest())
+    answers = names(live(robot, 8.0))
+    assert set(answers[:3]) == {"cancelled.command.dance", "cancelled.command.say", "cancelled.command.later"}
+    assert answers[3] == "done.command.rest"
+
+
+def test_stop_ends_what_it_names_and_nothing_else(robot: Body, project: Project) -> None:
+    robot.start("dance", Perform(project.motions["dance"]))
+    robot.start("say", Say("x" * 30))
+    live(robot, 0.5)
+    robot.start("stop", Stop("play"))
+    assert names(live(robot, 4.0)) == ["cancelled.command.dance", "done.command.stop", "done.command.say"]
+
+
+def test_after_rest_it_wakes(robot: Body) -> None:
+    robot.start("rest", Rest())
+    live(robot, 6.0)
+    robot.start("wake", Wake())
+    assert names(live(robot, 6.0)) == ["done.command.wake"]
+
+
+def test_an_aim_moves_the_head_and_is_not_answered(robot: Body) -> None:
+    robot.start("", Aim({"HeadYaw": 0.4}, 0.5))
+    assert live(robot, 2.0) == []
+    joints = robot.read(Sense.JOINT)
+    assert isinstance(joints, Joints)
+    assert joints.angles[joints.names.index("HeadYaw")] == pytest.approx(0.4, abs=0.03)
+
+
+@pytest.mark.parametrize("angle", [9.0, -9.0])
+def test_no_aim_leaves_the_limits(robot: Body, project: Project, angle: float) -> None:
+    robot.start("", Aim({"HeadPitch": angle}, 1.0))
+    live(robot, 2.0)
+    joints = robot.read(Sense.JOINT)
+    assert isinstance(joints, Joints)
+    limit = project.body.joints["HeadPitch"]
+    measured = joints.angles[joints.names.index("HeadPitch")]
+    assert limit.minimum - 0.05 <= measured <= limit.maximum + 0.05
+
+
+@pytest.mark.parametrize("angle", [nan, inf])
+def test_what_is_no_angle_moves_nothing(robot: Body, angle: float) -> None:
+    before = robot.read(Sense.JOINT)
+    robot.start("", Aim({"HeadYaw": angle}, 0.5))
+    robot.start("", Aim({"NoSuchJoint": 0.1}, 0.5))
+    assert live(robot, 1.0) == []
+    after = robot.read(Sense.JOINT)
+    assert isinstance(before, Joints)
+    assert isinstance(after, Joints)
+    assert after.angles == pytest.approx(before.angles, abs=0.05)
+
+
+def test_senses_in_their_order_and_units(robot: Body, project: Project) -> None:
+    live(robot, 0.1)
+    joints, sonar = robot.read(Sense.JOINT), robot.read(Sense.SONAR)
+    tactile, battery = robot.read(Sense.TACTILE), robot.read(Sense.BATTERY)
+    assert isinstance(joints, Joints)
+    assert joints.names == tuple(project.body.joints)
+    assert len(joints.angles) == len(joints.stiffness) == 26
+    assert isinstance(sonar, Sonar)
+    assert 0 < sonar.left <= 3.0
+    assert isinstance(tactile, Tactile)
+    assert tactile.names == project.body.tactile
+    assert set(tactile.values) == {0}
+    assert isinstance(battery, Battery)
+    assert 0 <= battery.percentage <= 100
+
+
+def test_a_touch_is_noticed_once(robot: Body) -> None:
+    robot.touch("FrontTactil", True)
+    robot.touch("FrontTactil", True)
+    robot.touch("FrontTactil", False)
+    assert [(e.name, e.data) for e in live(robot, 0.1)] == [
+        ("touched", {"sensor": "FrontTactil"}),
+        ("released", {"sensor": "FrontTactil"}),
+    ]
+
+
+def test_a_visitor_is_seen_until_they_leave(robot: Body, project: Project) -> None:
+    live(robot, 0.1)
+    assert robot.face() is None
+    robot.place(Visitor(2.0, 0.0, 1.65))
+    live(robot, 0.1)
+    face = robot.face()
+    assert face is not None
+    assert abs(face[0] - project.body.camera.width / 2) < 10
+    robot.place(Visitor(2.0, 0.3, 1.65))
+    live(robot, 0.1)
+    beside = robot.face()
+    assert beside is not None
+    assert beside[0] < face[0] - 20
+    robot.place(None)
+    live(robot, 0.1)
+    assert robot.face() is None
