@@ -22,11 +22,17 @@ class Entered(set[Node]):
 
 
 class Topology:
-    """The sets of one chart under one history."""
+    """The sets of one chart under one history; `staying` are the active states that are not left.
 
-    def __init__(self, chart: Chart, history: History) -> None:
+    Two things are not in Appendix D's letter, but in the definitions of 3.13, and keep configurations legal: what is
+    active and stays is not entered, though a history in it is the target; and where one target holds another, the
+    inner one says how the outer one is entered.
+    """
+
+    def __init__(self, chart: Chart, history: History, staying: AbstractSet[Node] = frozenset()) -> None:
         self.chart = chart
         self.history = history
+        self.staying = staying
 
     def exit_set(self, rules: Iterable[Rule], active: AbstractSet[Node]) -> set[Node]:
         """The active states that these transitions leave (`computeExitSet`)."""
@@ -43,7 +49,7 @@ class Topology:
         for rule in rules:
             if not rule.targets:
                 continue
-            for target in rule.targets:
+            for target in _innermost(rule.targets):
                 self.add_descendants(target, entered)
             domain = self.domain(rule)
             for target in self.effective(rule.targets):
@@ -92,12 +98,14 @@ class Topology:
     def add_ancestors(self, node: Node, top: Node, entered: Entered) -> None:
         """`addAncestorStatesToEnter`."""
         for ancestor in node.below(top):
+            if ancestor in self.staying:
+                return
             entered.enter(ancestor)
             if ancestor.kind is Kind.PARALLEL:
                 self._add_regions(ancestor, entered)
 
     def _add_all(self, nodes: Sequence[Node], top: Node, entered: Entered) -> None:
-        for node in nodes:
+        for node in _innermost(nodes):
             self.add_descendants(node, entered)
         for node in nodes:
             self.add_ancestors(node, top, entered)
@@ -113,6 +121,11 @@ def in_final(node: Node, active: AbstractSet[Node]) -> bool:
     if node.kind is Kind.COMPOUND:
         return any(child.kind is Kind.FINAL and child in active for child in node.children)
     return node.kind is Kind.PARALLEL and all(in_final(child, active) for child in node.children)
+
+
+def _innermost(nodes: Sequence[Node]) -> list[Node]:
+    around = {ancestor for node in nodes for ancestor in node.ancestors}
+    return [node for node in nodes if node not in around]
 
 
 def _lcca(nodes: Sequence[Node]) -> Node:

@@ -100,7 +100,9 @@ class Planner:
             topology = Topology(self.chart, history)
             rules = _without_conflicts(topology, enabled, start)
             left = topology.exit_set(rules, start.nodes)
-            found = start.plans[key] = self._make(start, rules, history, left, topology.entry_set(rules))
+            kept = {**history, **_remembered(start.nodes, left)}  # a history target finds what is left just now
+            entered = Topology(self.chart, kept, start.nodes - left).entry_set(rules)
+            found = start.plans[key] = self._make(start, rules, kept, left, entered)
         return found
 
     def _make(
