@@ -1,0 +1,137 @@
+"""Executable content and data, as simply as can be: what actions do to a plain, changeable world."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
+from lumen.language.actions import Assign, CancelSend, Expression, If, LogText, Raise, Send, Step, Value
+from lumen.language.commands import Command, Log, Play, Start
+from lumen.language.diagnostics import Path
+from lumen.language.events import Event
+from lumen.language.machines import Machine, State
+
+LIMIT = 1000
+"""Microsteps and internal events of a macrostep; the interpreter promises to give up after as many."""
+
+Where = Path
+
+
+class FaultError(Exception):
+    """An action can't be done."""
+
+
+class RestlessError(Exception):
+    """The machine never comes to rest."""
+
+
+@dataclass
+class Waiting:
+    """A timer: of an `after` where it has a state, else of a `send`."""
+
+    event: str
+    due: float
+    data: Any = None
+    state: str | None = None
+    id: str = ""
+
+
+@dataclass
+class World:
+    """Everything that a machine changes while it runs."""
+
+    machine: Machine
+    context: dict[str, Any]
+    configuration: list[State] = field(default_factory=list)
+    history: dict[str, list[State]] = field(default_factory=dict)
+    timers: list[Waiting] = field(default_factory=list)
+    internal: list[Event] = field(default_factory=list)
+    raised: list[Event] = field(default_factory=list)
+    commands: list[Command] = field(default_factory=list)
+    failed: list[Where] = field(default_factory=list)
+    event: Event | None = None
+    at: float = 0.0
+    started: int = 0
+
+    def scope(self, here: State) -> Scope:
+        """What an expression standing in that state sees."""
+        event = {"name": self.event.name, "data": self.event.data} if self.event else None
+        names = {name for s in self.configuration for name in (s.path, s.alias) if s.path and name}
+        return Scope(dict(self.context), event, {"path": here.path, "language": ""}, names.__contains__, self.at)
+
+    def enqueue(self, event: Event) -> None:
+        self.internal.append(event)
+        self.raised.append(event)
+
+    def fail(self, where: Where) -> None:
+        """`error.execution`; once for a place, while that very event is being handled."""
+        if not (self.event and self.event.name == "error.execution" and where in self.failed):
+            self.failed.append(where)
+            self.enqueue(Event("error.execution", {"where": ".".join(map(str, where))}, self.at))
+
+    def holds(self, guard: Expression, here: State) -> bool:
+        """`conditionMatch`: a condition that fails is false."""
+        try:
+            return compile_guard(guard.source)(self.scope(here))
+        except ExpressionError:
+            self.fail(guard.where)
+            return False
+
+    def value(self, value: Value, here: State) -> Any:
+        match value:
+            case Expression(source):
+                return compile_expression(source)(self.scope(here))
+            case tuple():
+                return [self.value(item, here) for item in value]
+            case Mapping():
+                return {key: self.value(item, here) for key, item in value.items()}
+        return value
+
+    def execute(self, block: tuple[Step, ...], here: State) -> None:
+        """`executeContent`: the first action that fails ends the block."""
+        for step in block:
+            try:
+                self.act(step, here)
+            except (FaultError, ExpressionError):
+                self.fail(step.where)
+                return
+
+    def act(self, step: Step, here: State) -> None:
+        match step.action:
+            case Assign(values):
+                before = dict(self.context)
+                try:
+                    for key, value in values.items():
+                        self.store(key, self.value(value, here))
+                except (FaultError, ExpressionError):
+                    self.context = before
+                    raise
+            case Raise(event, data):
+                self.enqueue(Event(event, self.value(data, here), self.at))
+            case Send(event, data, delay, id):
+                self.timers.append(Waiting(event, self.at + delay, self.value(data, here), None, id))
+            case CancelSend(id):
+                self.timers = [t for t in self.timers if t.state is not None or t.id != id]
+            case LogText(template):
+                self.commands.append(Log(compile_template(template.text)(self.scope(here))))
+            case If(guard, then, otherwise):
+                for inner in then if compile_guard(guard.source)(self.scope(here)) else otherwise:
+                    self.act(inner, here)
+            case Play() as play:
+                self.started += 1
+                self.commands.append(Start(f"c{self.started}", play))
+            case other:
+                raise NotImplementedError(other)
+
+    def store(self, key: str, value: Any) -> None:
+        """A key keeps the type of its first value, if that is not null."""
+        first = self.machine.context[key]
+        if first is not None and _type(first) != _type(value):
+            raise FaultError(key)
+        self.context[key] = value
+
+
+def _type(value: Any) -> str:
+    names = {bool: "boolean", int: "number", float: "number", str: "text", type(None): "null"}
+    return names.get(type(value), "list" if isinstance(value, list | tuple) else "map")

@@ -1,0 +1,60 @@
+"""What the pseudo-code of Appendix D asks of states; every answer is looked for anew in the machine."""
+
+from collections.abc import Iterable
+
+from lumen.language.machines import Kind, Machine, State
+
+SCXML = State("<scxml>", Kind.COMPOUND, None, children=("",), initial=("",))
+"""The element around the root."""
+
+
+class Tree:
+    """The states of a machine, by the names of W3C SCXML 1.0, Appendix D."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+
+    def parent(self, state: State) -> State | None:
+        if state is SCXML:
+            return None
+        return SCXML if state.parent is None else self.machine.states[state.parent]
+
+    def children(self, state: State) -> list[State]:
+        """`getChildStates`: neither histories nor anything else that is no real state."""
+        below = [s for s in self.machine.states.values() if self.parent(s) is state]
+        return [s for s in below if s.kind is not Kind.HISTORY]
+
+    def histories(self, state: State) -> list[State]:
+        return [s for s in self.machine.states.values() if self.parent(s) is state and s.kind is Kind.HISTORY]
+
+    def initial(self, state: State) -> list[State]:
+        """The targets of the transition in `<initial>`, or in a history state."""
+        return [self.machine.states[path] for path in state.initial]
+
+    def proper_ancestors(self, state: State, top: State | None) -> list[State]:
+        """`getProperAncestors`: none where `top` is not above the state."""
+        found: list[State] = []
+        above = self.parent(state)
+        while above is not None and above is not top:
+            found.append(above)
+            above = self.parent(above)
+        return found if above is top else []
+
+    def is_descendant(self, one: State, other: State) -> bool:
+        return other in self.proper_ancestors(one, None)
+
+    def find_lcca(self, states: list[State]) -> State:
+        head, *tail = states
+        for above in self.proper_ancestors(head, None):
+            if above.kind is Kind.COMPOUND and all(self.is_descendant(s, above) for s in tail):
+                return above
+        raise AssertionError("everything lies in <scxml>")
+
+    def in_document_order(self, states: Iterable[State]) -> list[State]:
+        """Each state once, before its children: the order of entry, and backwards that of exit."""
+        wanted = list(states)
+        return [s for s in self.machine.states.values() if s in wanted]
+
+
+def is_atomic(state: State) -> bool:
+    return state.kind in (Kind.ATOMIC, Kind.FINAL)
