@@ -3,10 +3,8 @@
 import re
 from collections.abc import Iterator
 
+from lumen.formats.captions import caption
 from lumen.language.machines import Kind, Machine, State, Transition
-
-GUARD = 32
-"""How many characters of a guard are shown."""
 
 _SPECIAL = re.compile(r"[^\w .,!?()=+*/&|\'\[\]…-]|--+|\b_+")
 
@@ -89,16 +87,7 @@ def _label(state: State) -> str:
 
 def _caption(transition: Transition) -> str:
     """What stands at an arrow: ` : event [guard]`, nothing where it has neither."""
-    event = transition.event
-    if transition.delay is not None:
-        event = f"after {transition.delay:g} s"
-    elif transition.exact:
-        event = "error" if event.startswith("error.") else "done"
-    guard = " ".join(transition.guard.source.split()) if transition.guard else ""
-    if len(guard) > GUARD:
-        guard = guard[: GUARD - 1].rstrip() + "…"
-    words = [event, f"[{guard}]" if guard else ""]
-    text = " ".join(filter(None, words))
+    text = caption(transition)
     return f" : {_escaped(text)}" if text else ""
 
 

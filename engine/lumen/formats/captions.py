@@ -1,0 +1,19 @@
+"""What stands at an arrow of a diagram."""
+
+from lumen.language.machines import Transition
+
+GUARD = 32
+"""How many characters of a guard are shown."""
+
+
+def caption(transition: Transition) -> str:
+    """`event [guard]`; an `after` with its time, `onDone` and `onError` as done and error."""
+    event = transition.event
+    if transition.delay is not None:
+        event = f"after {transition.delay:g} s"
+    elif transition.exact:
+        event = "error" if event.startswith("error.") else "done"
+    guard = " ".join(transition.guard.source.split()) if transition.guard else ""
+    if len(guard) > GUARD:
+        guard = guard[: GUARD - 1].rstrip() + "…"
+    return " ".join(filter(None, (event, f"[{guard}]" if guard else "")))

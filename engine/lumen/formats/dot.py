@@ -1,0 +1,81 @@
+"""A machine as a graph for Graphviz: states as boxes, regions as dashed clusters."""
+
+from collections.abc import Iterator
+
+from lumen.formats.captions import caption
+from lumen.language.machines import Kind, Machine, State, Transition
+
+_HEAD = """\
+digraph {
+  compound=true; rankdir=TB; fontname="Helvetica"
+  node [shape=box, style=rounded, fontname="Helvetica", fontsize=11]
+  edge [fontname="Helvetica", fontsize=9]"""
+
+
+def dot(machine: Machine) -> str:
+    """The graph's text, ending with a newline; `dot -Tsvg` draws it.
+
+    A state with states within is a cluster; an arrow to or from it ends at its frame.
+    """
+    return "\n".join([_HEAD, *_Drawing(machine).lines(), "}"]) + "\n"
+
+
+class _Drawing:
+    """The lines of one graph; every state has an id `s1, s2, …` in document order."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.ids = {path: f"s{number}" for number, path in enumerate(machine.states)}
+
+    def lines(self) -> Iterator[str]:
+        yield from self._cluster(self.machine.root, 1)
+        for state in self.machine.states.values():
+            for transition in state.transitions:
+                yield from self._arrows(transition)
+
+    def _cluster(self, state: State, depth: int) -> Iterator[str]:
+        indent = "  " * depth
+        within = [s for s in self.machine.states.values() if s.parent == state.path and s.path]
+        region = state.parent is not None and self.machine.states[state.parent].kind is Kind.PARALLEL
+        yield f"{indent}subgraph cluster_{self.ids[state.path]} {{"
+        yield f"{indent}  label={_quoted(_label(state, self.machine))}; style={'dashed' if region else 'rounded'}"
+        yield f"{indent}  {self.ids[state.path]} [shape=point, style=filled, width=0.1]"
+        for child in within:
+            yield from self._cluster(child, depth + 1) if child.children else self._box(child, depth + 1)
+        for path in state.initial:
+            yield self._arrow(state.path, path, "", begins=True)
+        yield f"{indent}}}"
+
+    def _box(self, state: State, depth: int) -> Iterator[str]:
+        shape = ""
+        if state.kind is Kind.FINAL:
+            shape = ", peripheries=2"
+        elif state.kind is Kind.HISTORY:
+            shape = ", shape=circle"
+        yield f"{'  ' * depth}{self.ids[state.path]} [label={_quoted(_label(state, self.machine))}{shape}]"
+
+    def _arrows(self, transition: Transition) -> Iterator[str]:
+        for target in transition.targets or (transition.source,):
+            style = "" if transition.targets else ", style=dotted"
+            yield self._arrow(transition.source, target, f"label={_quoted(caption(transition))}{style}")
+
+    def _arrow(self, source: str, target: str, look: str, *, begins: bool = False) -> str:
+        """An arrow; its ends are cut at the frames of clusters that do not hold the other end."""
+        looks = [look] if look else []
+        for end, path, other in (("ltail", source, target), ("lhead", target, source)):
+            holds = other == path or not path or other.startswith(f"{path}.")
+            if self.machine.states[path].children and not holds and not begins:
+                looks.append(f"{end}=cluster_{self.ids[path]}")
+        shown = f" [{', '.join(looks)}]" if looks else ""
+        return f"  {self.ids[source]} -> {self.ids[target]}{shown}"
+
+
+def _label(state: State, machine: Machine) -> str:
+    if state.kind is Kind.HISTORY:
+        return "H*" if state.deep else "H"
+    return state.path.rpartition(".")[2] or machine.id or "behaviour"
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{escaped}"'

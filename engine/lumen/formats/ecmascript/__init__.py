@@ -1,0 +1,21 @@
+"""The common part of ECMAScript and of our expressions, both ways: what conditions and values in statecharts use.
+
+Both are read into the tree of `lumen.interpreters.expressions`; what ECMAScript has of its own stands in it as signs
+(`===`, `typeof`) and as calls of methods (`.trim`, the object being the first argument).
+"""
+
+from lumen.formats.ecmascript.parsing import ScriptError, parse_script
+from lumen.formats.ecmascript.reading import Names, Reading, read_condition, read_value
+from lumen.formats.ecmascript.writing import Vocabulary, Written, write_expression
+
+__all__ = [
+    "Names",
+    "Reading",
+    "ScriptError",
+    "Vocabulary",
+    "Written",
+    "parse_script",
+    "read_condition",
+    "read_value",
+    "write_expression",
+]

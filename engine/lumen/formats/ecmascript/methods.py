@@ -1,0 +1,73 @@
+"""Methods and functions of ECMAScript, and what they are here."""
+
+import re
+from typing import Protocol
+
+from lumen.formats.ecmascript.kinds import is_float
+from lumen.formats.ecmascript.words import ScriptError
+from lumen.interpreters.expressions.kinds import LIST, NUMBER, TEXT
+from lumen.interpreters.expressions.tree import Binary, Call, Field, Items, Literal, Name, Node
+
+SIGNS = {"contained": "in", "same": "=="}
+"""Calls that stand for a sign where ECMAScript's own is another one for texts and lists, or for lists and numbers."""
+
+FUNCTIONS = frozenset(("heard", "lookup", "hour", "words", "after", "matches", "contains", "size", *SIGNS))
+"""Functions that only Lumen has, by their own names."""
+
+SAME = {".toLowerCase": "lower", ".trim": "trim", ".replaceAll": "replace"}
+_COUNTS = {".toLowerCase": 0, ".trim": 0, ".replaceAll": 2, ".includes": 1, ".startsWith": 1, ".endsWith": 1}
+
+
+class Reader(Protocol):
+    def value(self, tree: Node) -> Node: ...
+    def kind(self, node: Node) -> str: ...
+
+
+def method(reading: Reader, node: Call) -> Node:
+    """The call of a method in our words; raises ScriptError where we have none."""
+    name, (owner, *arguments) = node.function, node.arguments
+    if owner == Name("Math"):
+        return _mathematics(reading, name, arguments)
+    if name == ".concat":
+        return _joined(reading, owner, arguments)
+    if _COUNTS.get(name) != len(arguments):
+        raise ScriptError(f"`{name}()` has no counterpart")
+    base, *read = (reading.value(part) for part in (owner, *arguments))
+    if name in SAME:
+        return Call(SAME[name], (base, *read))
+    if name == ".includes":
+        if reading.kind(base) == LIST:
+            return Binary("in", read[0], base)
+        if TEXT in (reading.kind(base), reading.kind(read[0])):
+            return Call("contains", (base, read[0]))
+        raise ScriptError("`.includes()` of something that may be a text or a list")
+    if not (isinstance(read[0], Literal) and isinstance(read[0].value, str)):
+        raise ScriptError(f"`{name}()` of a text that is not written there")
+    pattern = re.sub(r"([^\w\s])", r"\\\1", read[0].value, flags=re.ASCII)
+    return Call("matches", (base, Literal(f"^{pattern}" if name == ".startsWith" else f"{pattern}$")))
+
+
+def _joined(reading: Reader, owner: Node, arguments: list[Node]) -> Node:
+    parts = [reading.value(part) for part in (owner, *arguments)]
+    result, *others = [part for part in parts if part != Items(())] or [Items(())]
+    for other in others:
+        if reading.kind(result) == TEXT or reading.kind(other) not in (LIST, ""):
+            raise ScriptError("`.concat()` of something that is no list")
+        result = Binary("+", result, other)
+    return result
+
+
+def _mathematics(reading: Reader, name: str, arguments: list[Node]) -> Node:
+    match name, arguments:
+        case ".trunc", [Binary(sign="/", left=left, right=right)]:
+            read = Binary("/", reading.value(left), reading.value(right))
+            if not is_float(read):
+                return read
+        case ".pow", [base, Literal(value=int() as power)] if 1 <= power <= 4:
+            value = reading.value(base)
+            if isinstance(value, Field | Literal) and reading.kind(value) in (NUMBER, ""):
+                product: Node = value
+                for _ in range(power - 1):
+                    product = Binary("*", product, value)
+                return product
+    raise ScriptError(f"`Math{name}()` has no counterpart")

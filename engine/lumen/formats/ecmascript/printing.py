@@ -1,0 +1,105 @@
+"""A tree as text, with as few brackets as both languages allow."""
+
+from collections.abc import Iterable
+
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Call,
+    Choice,
+    Entries,
+    Field,
+    Index,
+    Items,
+    Literal,
+    Logic,
+    Name,
+    Node,
+    Unary,
+)
+
+_CHOICE, _OR, _AND, _RELATION, _SUM, _PRODUCT, _UNARY, _POSTFIX = range(1, 9)
+_ARITHMETIC = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "%": _PRODUCT}
+_ESCAPES = {"\\": "\\\\", "'": "\\'", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+
+
+def text_of(node: Node) -> str:
+    """The tree in our words or in ECMAScript's, depending on its signs; a call of `.name` is that of a method."""
+    match node:
+        case Literal(value=value):
+            return _literal(value)
+        case Name(name=name):
+            return name
+        case Field(base=base, name=name):
+            return f"{_at_least(_POSTFIX, base)}.{name}"
+        case Index(base=base, key=key):
+            return f"{_at_least(_POSTFIX, base)}[{text_of(key)}]"
+        case Items(items=items):
+            return f"[{_listed(items)}]"
+        case Entries(keys=keys, values=values):
+            pairs = zip(keys, values, strict=True)
+            return "{" + ", ".join(f"{_literal(key)}: {text_of(value)}" for key, value in pairs) + "}"
+        case Unary(sign=sign, operand=operand):
+            return _unary(sign, operand)
+        case Binary(sign=sign, left=left, right=right):
+            own = _ARITHMETIC.get(sign, _RELATION)
+            first = _at_least(own + (own == _RELATION), left)
+            return f"{first} {sign} {_at_least(own + 1, right)}"
+        case Logic(sign=sign, operands=operands):
+            own = _AND if sign == "&&" else _OR
+            return f" {sign} ".join(_at_least(own + 1, operand) for operand in operands)
+        case Choice(condition=condition, then=then, otherwise=otherwise):
+            return f"{_at_least(_OR, condition)} ? {_at_least(_OR, then)} : {text_of(otherwise)}"
+        case Call(function=function, arguments=arguments) if function.startswith("."):
+            return f"{_at_least(_POSTFIX, arguments[0])}{function}({_listed(arguments[1:])})"
+        case Call(function=function, arguments=arguments):
+            return f"{function}({_listed(arguments)})"
+
+
+def _listed(nodes: Iterable[Node]) -> str:
+    return ", ".join(map(text_of, nodes))
+
+
+def _unary(sign: str, operand: Node) -> str:
+    text = _at_least(_UNARY, operand)
+    if sign == "-" and text[0] in "-.0123456789":
+        text = f"({text})"
+    return f"{sign} {text}" if sign.isalpha() else sign + text
+
+
+def _at_least(power: int, node: Node) -> str:
+    text = text_of(node)
+    return text if _power(node, text) >= power else f"({text})"
+
+
+def _power(node: Node, text: str) -> int:
+    match node:
+        case Choice():
+            return _CHOICE
+        case Logic(sign=sign):
+            return _AND if sign == "&&" else _OR
+        case Binary(sign=sign):
+            return _ARITHMETIC.get(sign, _RELATION)
+        case Unary():
+            return _UNARY
+        case Literal(value=int() | float()) if not isinstance(node.value, bool):
+            return _UNARY
+    return _POSTFIX
+
+
+def _literal(value: object) -> str:
+    if isinstance(value, str):
+        return "'" + "".join(_escaped(character) for character in value) + "'"
+    return (
+        {None: "null", True: "true", False: "false"}[value]
+        if value is None or value is True or value is False
+        else repr(value)
+    )
+
+
+def _escaped(character: str) -> str:
+    if character in _ESCAPES:
+        return _ESCAPES[character]
+    if character.isprintable():
+        return character
+    code = ord(character)
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else character

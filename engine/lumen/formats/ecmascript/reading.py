@@ -1,0 +1,313 @@
+"""From ECMAScript's tree to ours: the same meaning, or a ScriptError that says what can't be said."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from lumen.formats.ecmascript.kinds import UNKNOWN, is_float, kind
+from lumen.formats.ecmascript.methods import FUNCTIONS, SIGNS, method
+from lumen.formats.ecmascript.parsing import ScriptError, parse_script
+from lumen.formats.ecmascript.printing import text_of
+from lumen.interpreters.expressions.kinds import BOOLEAN, LIST, MAP, NULL, NUMBER, TEXT
+from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_INT, MIN_INT
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Call,
+    Choice,
+    Entries,
+    Field,
+    Index,
+    Items,
+    Literal,
+    Logic,
+    Name,
+    Node,
+    Unary,
+    path_of,
+    walk,
+)
+
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_UNDEFINED = Name("undefined")
+_FALSY = Items((Literal(None), Literal(False), Literal(0), Literal("")))
+
+
+@dataclass(frozen=True)
+class Names:
+    """What the names in a document stand for.
+
+    `context` maps the data model's names to context keys, `kinds` those keys to the kinds they keep (absent: any);
+    `states` are the ids for `In()`, and `title` is what `_name` is.
+    """
+
+    context: Mapping[str, str] = field(default_factory=dict)
+    kinds: Mapping[str, str] = field(default_factory=dict)
+    states: frozenset[str] = frozenset()
+    title: str = ""
+
+
+def read_condition(source: str, names: Names) -> str:
+    """Our expression, true where ECMAScript's is truthy; raises ScriptError."""
+    return _printed(Reading(names).condition(parse_script(source)))
+
+
+def read_value(source: str, names: Names) -> Node:
+    """The tree of our expression with the same value; raises ScriptError."""
+    tree = Reading(names).value(parse_script(source))
+    _printed(tree)
+    return tree
+
+
+def _printed(tree: Node) -> str:
+    if any(level > MAX_DEPTH for _, level in walk(tree)):
+        raise ScriptError("it has too many levels")
+    return text_of(tree)
+
+
+class Reading:
+    """Translates one expression; `present` are the fields of the event that are known to be there so far."""
+
+    def __init__(self, names: Names) -> None:
+        self.names = names
+        self.present: frozenset[tuple[str, ...]] = frozenset()
+
+    def kind(self, node: Node) -> str:
+        return kind(node, self.names.kinds)
+
+    def condition(self, tree: Node) -> Node:
+        """True where the value is truthy."""
+        match tree:
+            case Logic(sign=sign, operands=operands):
+                return self._logic(sign, operands)
+            case Unary(sign="!", operand=operand):
+                return negated(self.condition(operand))
+            case Choice(condition=condition, then=then, otherwise=otherwise):
+                return Choice(self.condition(condition), self.condition(then), self.condition(otherwise))
+        return self._truthy(self.value(tree))
+
+    def _logic(self, sign: str, operands: tuple[Node, ...]) -> Node:
+        before, found = self.present, list[Node]()
+        for operand in operands:
+            read = self.condition(operand)
+            same = isinstance(read, Logic) and read.sign == sign
+            found += read.operands if same and isinstance(read, Logic) else (read,)
+            self.present |= _known(read, sign == "&&")
+        self.present = before
+        return Logic(sign, tuple(found))
+
+    def _truthy(self, node: Node) -> Node:
+        match self.kind(node):
+            case "boolean":
+                return node
+            case "number":
+                return Binary("!=", node, Literal(0))
+            case "text":
+                return Binary("!=", node, Literal(""))
+            case "null":
+                return Literal(False)
+            case "list" | "map":
+                return Literal(True)
+        return self._guarded(Unary("!", Binary("in", node, _FALSY)), node)
+
+    def value(self, tree: Node) -> Node:
+        """The same value."""
+        match tree:
+            case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
+                return Literal(float(value))
+            case Literal():
+                return tree
+            case Name(name=name):
+                return self._name(name)
+            case Field(base=base, name=name) | Index(base=base, key=Literal(value=str() as name)):
+                return self._field(base, name)
+            case Index(base=base, key=key):
+                return Index(self.value(base), self.value(key))
+            case Items(items=items):
+                return Items(tuple(map(self.value, items)))
+            case Entries(keys=keys, values=values):
+                return Entries(keys, tuple(map(self.value, values)))
+            case Unary():
+                return self._unary(tree)
+            case Binary():
+                return self._binary(tree)
+            case Logic():
+                return self._either(tree)
+            case Choice(condition=condition, then=then, otherwise=otherwise):
+                return Choice(self.condition(condition), self.value(then), self.value(otherwise))
+            case Call():
+                return self._call(tree)
+
+    def _name(self, name: str) -> Node:
+        if name in self.names.context:
+            return Field(Name("context"), self.names.context[name])
+        if name == "undefined":
+            return Literal(None)
+        if name == "_name":
+            return Literal(self.names.title)
+        if name in ("_event", "_sessionid", "_ioprocessors", "_x"):
+            raise ScriptError(f"`{name}` as a whole has no counterpart")
+        raise ScriptError(f"`{name}` stands in no datamodel")
+
+    def _field(self, base: Node, name: str) -> Node:
+        if base == Name("_event"):
+            if name not in ("name", "data"):
+                raise ScriptError(f"an event has no `{name}` here, only `name` and `data`")
+            return Field(Name("event"), name)
+        if base == Name("_x") and name == "state":
+            return Name("state")
+        if isinstance(base, Name) and base.name in ("_ioprocessors", "_x", "Math"):
+            raise ScriptError(f"`{base.name}.{name}` has no counterpart")
+        read = self.value(base)
+        if name == "length" and self.kind(read) != MAP:
+            return Call("size", (read,))
+        return Field(read, name) if _IDENTIFIER.fullmatch(name) else Index(read, Literal(name))
+
+    def _unary(self, node: Unary) -> Node:
+        if node.sign == "!":
+            return self.condition(node)
+        if node.sign == "typeof":
+            raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
+        read = self.value(node.operand)
+        if self.kind(read) not in (NUMBER, UNKNOWN) or (node.sign == "+" and self.kind(read) != NUMBER):
+            raise ScriptError(f"`{node.sign}` turns a value into a number")
+        return read if node.sign == "+" else Unary("-", read)
+
+    def _either(self, node: Logic) -> Node:
+        """`a || b` is one of the two values, not true or false."""
+        values = [self.value(operand) for operand in node.operands]
+        if all(self.kind(value) == BOOLEAN for value in values):
+            return self._logic(node.sign, node.operands)
+        *before, result = values
+        for value in reversed(before):
+            yes, no = (result, value) if node.sign == "&&" else (value, result)
+            result = Choice(self._truthy(value), yes, no)
+        return result
+
+    def _binary(self, node: Binary) -> Node:
+        sign = node.sign
+        if sign in ("==", "===", "!=", "!=="):
+            return self._equality(node)
+        left, right = self.value(node.left), self.value(node.right)
+        if sign in ("<", "<=", ">", ">="):
+            self._same_kind(sign, left, right, (NUMBER, TEXT))
+            return self._guarded(Binary(sign, left, right), left, right)
+        if sign == "in":
+            if self.kind(left) != TEXT:
+                raise ScriptError("`in` asks for a key of an object, in quotes")
+            return Binary("in", left, right)
+        self._same_kind(sign, left, right, (NUMBER, TEXT) if sign == "+" else (NUMBER,))
+        if sign == "/" and not (is_float(left) or is_float(right)):
+            left, right = _floats(left, right)
+        return Binary(sign, left, right)
+
+    def _same_kind(self, sign: str, left: Node, right: Node, allowed: tuple[str, ...]) -> None:
+        kinds = {self.kind(left), self.kind(right)} - {UNKNOWN}
+        if not kinds <= set(allowed) or len(kinds) > 1:
+            raise ScriptError(f"`{sign}` has values of two kinds, which ECMAScript would convert")
+
+    def _equality(self, node: Binary) -> Node:
+        positive, strict = node.sign in ("==", "==="), len(node.sign) == 3
+        found = self._undefined(node, strict) or self._index(node) or self._equal(node, strict)
+        return found if positive else negated(found)
+
+    def _undefined(self, node: Binary, strict: bool) -> Node | None:
+        """`typeof x === 'undefined'`, `x === undefined` and `x == null`: is there nothing?"""
+        for one, other in ((node.left, node.right), (node.right, node.left)):
+            kind_asked = isinstance(one, Unary) and one.sign == "typeof"
+            if isinstance(one, Unary) and kind_asked and other != Literal("undefined"):
+                raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
+            if isinstance(one, Unary) and kind_asked:
+                return self._absent(self.value(one.operand), False)
+            if one == _UNDEFINED or (one == Literal(None) and not strict):
+                return self._absent(self.value(other), not strict)
+        return None
+
+    def _absent(self, node: Node, or_null: bool) -> Node:
+        path = path_of(node)
+        is_null = Binary("==", node, Literal(None))
+        if not _is_data(path) or path in self.present:
+            return is_null
+        missing = Unary("!", Call("has", (node,)))
+        return Logic("||", (missing, is_null)) if or_null else missing
+
+    def _index(self, node: Binary) -> Node | None:
+        """`text.indexOf(part) == -1`: negated, does the text hold the part?"""
+        match node:
+            case Binary(left=Call(function=".indexOf", arguments=(text, part)), right=Literal(value=-1)):
+                return Unary("!", Call("contains", (self.value(text), self.value(part))))
+        return None
+
+    def _equal(self, node: Binary, strict: bool) -> Node:
+        left, right = self.value(node.left), self.value(node.right)
+        kinds = {self.kind(left), self.kind(right)} - {UNKNOWN}
+        if kinds & {LIST, MAP}:
+            raise ScriptError("lists and objects are compared by identity")
+        if len(kinds) == 2 and NULL not in kinds:
+            if not strict:
+                raise ScriptError("`==` has values of two kinds, which ECMAScript would convert")
+            return Literal(False)
+        return self._guarded(Binary("==", left, right), left, right)
+
+    def _guarded(self, node: Node, *operands: Node) -> Node:
+        """The comparison, false where a field of the event is missing (which ECMAScript calls undefined)."""
+        paths = {path: operand for operand in operands if _is_data(path := path_of(operand))}
+        missing = [Call("has", (operand,)) for path, operand in paths.items() if path not in self.present]
+        return Logic("&&", (*missing, node)) if missing else node
+
+    def _call(self, node: Call) -> Node:
+        if node.function == "In":
+            (state,) = node.arguments if len(node.arguments) == 1 else (None,)
+            if isinstance(state, Literal) and state.value not in self.names.states:
+                return Literal(False)
+            if state is None:
+                raise ScriptError("`In` takes the id of a state")
+            return Call("In", (self.value(state),))
+        if node.function.startswith("."):
+            return method(self, node)
+        if node.function not in FUNCTIONS:
+            raise ScriptError(f"`{node.function}()` has no counterpart")
+        arguments = tuple(map(self.value, node.arguments))
+        if node.function in SIGNS and len(arguments) == 2:
+            return Binary(SIGNS[node.function], *arguments)
+        return Call(node.function, arguments)
+
+
+def negated(node: Node) -> Node:
+    """Not that, without a needless `!`."""
+    match node:
+        case Unary(sign="!", operand=operand):
+            return operand
+        case Literal(value=bool() as value):
+            return Literal(not value)
+        case Binary(sign="==" | "!=" as sign, left=left, right=right):
+            return Binary("!=" if sign == "==" else "==", left, right)
+        case Logic(sign="&&", operands=(Call(function="has"), *_)):
+            return Logic("||", tuple(negated(operand) for operand in node.operands))
+    return Unary("!", node)
+
+
+def _is_data(path: tuple[str, ...] | None) -> bool:
+    return path is not None and path[:2] == ("event", "data") and len(path) > 2
+
+
+def _known(node: Node, holds: bool) -> frozenset[tuple[str, ...]]:
+    """The fields that are there where the node holds (or does not)."""
+    match node:
+        case Call(function="has", arguments=(target,)) if holds:
+            path = path_of(target)
+            return frozenset((path,)) if path else frozenset()
+        case Unary(sign="!", operand=operand):
+            return _known(operand, not holds)
+        case Logic(sign=sign, operands=operands) if holds == (sign == "&&"):
+            return frozenset().union(*(_known(operand, holds) for operand in operands))
+    return frozenset()
+
+
+def _floats(left: Node, right: Node) -> tuple[Node, Node]:
+    """Operands of `/` for a quotient with its fraction."""
+    match left, right:
+        case _, Literal(value=int() as value):
+            return left, Literal(float(value))
+        case Literal(value=int() as value), _:
+            return Literal(float(value)), right
+    return Binary("*", Literal(1.0), left), right

@@ -1,0 +1,82 @@
+"""What a format can't say of a behaviour, and what is wrong with a file of another format."""
+
+from collections.abc import Callable
+
+from lumen.language.diagnostics import Diagnostic, Path, Place, Severity
+
+Placing = Callable[[Path], Place]
+"""Where the node at that path of a behaviour's file stands."""
+
+LOST, CHANGED = "not-carried-over", "carried-over-differently"
+
+
+class ForeignFileError(Exception):
+    """A file can't be read at all; holds the one diagnostic that says why."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(str(diagnostic))
+        self.diagnostic = diagnostic
+
+
+class Findings:
+    """Collects what is to be said, each thing once.
+
+    What is `lost` is not in the result at all (an error: the behaviour is another one); what is `changed` is there in
+    another form, which is worth a look.
+    """
+
+    def __init__(self) -> None:
+        self._found: dict[Diagnostic, None] = {}
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """Everything said, by file and line."""
+        return sorted(self._found, key=lambda d: (d.place, d.message))
+
+    def lost(self, place: Place, message: str, hint: str = "") -> None:
+        """Something is left out."""
+        self._found[Diagnostic(LOST, message, place, hint)] = None
+
+    def changed(self, place: Place, message: str, hint: str = "") -> None:
+        """Something is there in another form."""
+        self._found[Diagnostic(CHANGED, message, place, hint, Severity.WARNING)] = None
+
+
+def broken(place: Place, code: str, message: str, hint: str = "") -> ForeignFileError:
+    """A file can't be read: the error to raise."""
+    return ForeignFileError(Diagnostic(code, message, place, hint))
+
+
+class Report:
+    """What an export leaves out, and what in it only Lumen understands: that once for each word, at its first place."""
+
+    def __init__(self, place: Placing) -> None:
+        self.place = place
+        self.findings = Findings()
+        self._foreign: dict[str, list[Place]] = {}
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """Everything said, by line."""
+        for word, places in self._foreign.items():
+            times = f", {len(places)} times" if len(places) > 1 else ""
+            self.findings.changed(min(places), f"only Lumen understands {word}{times}", "other tools pass over it")
+        self._foreign.clear()
+        return self.findings.diagnostics
+
+    def lost(self, message: str, where: Path, hint: str = "") -> None:
+        """Something is left out."""
+        self.findings.lost(self.place(where), message, hint)
+
+    def changed(self, message: str, where: Path, hint: str = "") -> None:
+        """Something is there in another form."""
+        self.findings.changed(self.place(where), message, hint)
+
+    def foreign(self, word: str, where: Path) -> None:
+        """Something is there that only Lumen understands."""
+        self._foreign.setdefault(word, []).append(self.place(where))
+
+
+def dotted(file: str) -> Placing:
+    """Places in a behaviour that comes from no file: the dotted paths of its nodes."""
+    return lambda where: Place(f"{file} ({'.'.join(map(str, where))})" if where else file)

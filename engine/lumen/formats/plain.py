@@ -1,0 +1,92 @@
+"""Actions and values of a machine as the YAML says them: lengths in [m], angles in [rad], whatever the file's units."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, assert_never
+
+from lumen.formats.durations import duration
+from lumen.language.actions import (
+    Action,
+    Assign,
+    CancelSend,
+    Expression,
+    If,
+    LogText,
+    Parallel,
+    PublishBody,
+    Raise,
+    SayText,
+    Send,
+    Step,
+    Value,
+    Wait,
+)
+from lumen.language.commands import Language, Look, Play, Posture, Rest, Stop, Track, Wake, Walk
+
+
+def plain_block(steps: Iterable[Step]) -> list[dict[str, Any]]:
+    """A list of actions."""
+    return [plain_action(step.action) for step in steps]
+
+
+def plain_value(value: Value) -> Any:
+    """A value: its expressions are texts."""
+    match value:
+        case Expression(source):
+            return source
+        case tuple():
+            return [plain_value(item) for item in value]
+        case Mapping():
+            return {key: plain_value(item) for key, item in value.items()}
+    return value
+
+
+def plain_action(action: Action) -> dict[str, Any]:
+    """One action: an object with its verb as the key."""
+    match action:
+        case SayText(texts):
+            return {"say": _say(texts)}
+        case PublishBody(route, body):
+            return {"publish": route if body is None else {"route": route, "body": plain_value(body)}}
+        case Assign(values):
+            return {"assign": {key: plain_value(value) for key, value in values.items()}}
+        case Raise(event, data):
+            return {"raise": _event(event, data)}
+        case Send(event, data, delay, id):
+            extra = ({"delay": duration(delay * 1000)} if delay else {}) | ({"id": id} if id else {})
+            body = _event(event, data)
+            return {"send": {**(body if isinstance(body, dict) else {"event": body}), **extra} if extra else body}
+        case CancelSend(id):
+            return {"cancel": id}
+        case Wait(seconds):
+            return {"wait": duration(seconds * 1000)}
+        case LogText(template):
+            return {"log": template.text}
+        case If(guard, then, otherwise):
+            block: dict[str, Any] = {"if": guard.source, "then": plain_block(then)}
+            return block | ({"else": plain_block(otherwise)} if otherwise else {})
+        case Parallel(branches):
+            return {"parallel": plain_block(branches)}
+        case Play(name) | Language(name):
+            return {"play" if isinstance(action, Play) else "language": name}
+        case Posture(name, speed):
+            return {"posture": {"name": name, "speed": speed}}
+        case Walk(x, y, theta):
+            return {"walk": {"x": x, "y": y, "theta": theta}}
+        case Look(yaw, pitch):
+            return {"look": {"yaw": yaw, "pitch": pitch}}
+        case Track(controller, on):
+            return {"track": {controller: on}}
+        case Stop(what):
+            return {"stop": what}
+        case Rest() | Wake():
+            return {"rest" if isinstance(action, Rest) else "wake": True}
+    assert_never(action)
+
+
+def _event(event: str, data: Value) -> Any:
+    return event if data is None else {"event": event, "data": plain_value(data)}
+
+
+def _say(texts: Mapping[str, tuple[Any, ...]]) -> dict[str, Any]:
+    table = {language or "any": [template.text for template in templates] for language, templates in texts.items()}
+    return {language: said[0] if len(said) == 1 else said for language, said in table.items()}

@@ -1,0 +1,152 @@
+"""The data model of an SCXML document as our context."""
+
+import json
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from lumen.formats.ecmascript import Names, ScriptError, parse_script, read_value
+from lumen.formats.ecmascript.constants import constant
+from lumen.formats.ecmascript.kinds import UNKNOWN, kind
+from lumen.formats.ecmascript.printing import text_of
+from lumen.formats.findings import Findings
+from lumen.formats.scxml.elements import Element
+from lumen.formats.scxml.outline import STATES, Outline
+from lumen.interpreters.expressions.kinds import kind_of
+
+_UNFIT = re.compile(r"\W+", re.ASCII)
+_NOTHING = object()
+
+
+class Context:
+    """`first` are the values of our context's keys, `late` those that have to be computed, in order.
+
+    `names` is what expressions see. Where a key is given values of several kinds, `wide` has it, and `types` in our
+    file lets it hold anything.
+    """
+
+    def __init__(self, outline: Outline, findings: Findings) -> None:
+        self.findings = findings
+        self.first: dict[str, Any] = {}
+        self.late: dict[str, str] = {}
+        self.wide: dict[str, dict[str, Any]] = {}
+        self.keys: dict[str, str] = {}
+        elements = list(_data(outline.top, outline.scxml))
+        for element in elements:
+            self._declare(element)
+        states = frozenset(outline.by_id)
+        self.names = Names(self.keys, {}, states, outline.title)
+        for element in elements:
+            self._value(element)
+        self._late_binding(outline, elements)
+        self._widen(outline)
+
+    def _declare(self, element: Element) -> None:
+        id = element.get("id")
+        key = wanted = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", id)) or "_"
+        number = 1
+        while key in self.keys.values() and id not in self.keys:
+            number += 1
+            key = f"{wanted}_{number}"
+        self.keys.setdefault(id, key)
+
+    def _value(self, element: Element) -> None:
+        key, value = self.keys[element.get("id")], self._first(element)
+        self.first[key] = value
+        self._rename()
+
+    def _rename(self) -> None:
+        kinds = {key: kind_of(value) for key, value in self.first.items() if value is not None and key not in self.wide}
+        self.names = Names(self.keys, kinds, self.names.states, self.names.title)
+
+    def _first(self, element: Element) -> Any:
+        id = element.get("id")
+        if "src" in element.attributes:
+            self.findings.lost(element.place, f"the first value of `{id}` lies in another file", "write it here")
+            return None
+        if "expr" in element.attributes:
+            return self._expression(element, element.get("expr"))
+        if element.children:
+            self.findings.lost(element.place, f"the first value of `{id}` is XML", "write it as JSON")
+            return None
+        return written(element.text)
+
+    def _expression(self, element: Element, source: str) -> Any:
+        try:
+            tree = parse_script(source)
+            value = constant(tree, _NOTHING)
+            if value is not _NOTHING:
+                return value
+            self.late[self.keys[element.get("id")]] = text_of(read_value(source, self.names))
+        except ScriptError as error:
+            self.findings.lost(element.place, f"the first value of `{element.get('id')}`, `{source}`: {error}")
+        return None
+
+    def _late_binding(self, outline: Outline, elements: list[Element]) -> None:
+        if outline.scxml.get("binding") != "late":
+            return
+        for element in elements[len(list(_top_data(outline.scxml))) :]:
+            hint = "all values are there from the beginning here"
+            self.findings.lost(element.place, f'`binding="late"` of `{element.get("id")}`', hint)
+
+    def _widen(self, outline: Outline) -> None:
+        """Find the keys that are given values of another kind than their first."""
+        assigned = [e for e in outline.scxml.walk() if e.tag == "assign" and e.get("location") in self.keys]
+        while True:
+            before = len(self.wide)
+            for element in assigned:
+                key = self.keys[element.get("location")]
+                first = self.first.get(key)
+                if first is not None and key not in self.wide and self._kind(element) != kind_of(first):
+                    self.wide[key] = {}
+                    self._rename()
+            if len(self.wide) == before:
+                return
+
+    def _kind(self, element: Element) -> str:
+        try:
+            if "expr" not in element.attributes:
+                return kind_of(written(element.text))
+            return kind(read_value(element.get("expr"), self.names), self.names.kinds)
+        except ScriptError:
+            key = self.keys[element.get("location")]
+            return kind_of(self.first[key])
+        except RecursionError:
+            return UNKNOWN
+
+
+def written(text: str) -> Any:
+    """The value of inline content (SCXML B.2.8.1): JSON, or a list or text as ECMAScript writes it, else the text."""
+    stripped = text.strip()
+    if not stripped:
+        return None
+    with_constant = _constant(stripped)
+    return " ".join(stripped.split()) if with_constant is _NOTHING else with_constant
+
+
+def _constant(text: str) -> Any:
+    try:
+        return json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        pass
+    try:
+        return constant(parse_script(text), _NOTHING) if text[0] in "[{" else _NOTHING
+    except ScriptError:
+        return _NOTHING
+
+
+def _refuse(name: str) -> Any:
+    raise ValueError(name)
+
+
+def _top_data(scxml: Element) -> Iterator[Element]:
+    for model in scxml.of("datamodel"):
+        yield from (data for data in model.of("data") if data.get("id"))
+
+
+def _data(top: Element, scxml: Element) -> Iterator[Element]:
+    """All `<data>`, those of the document first."""
+    yield from _top_data(scxml)
+    for state in scxml.walk():
+        if state is not scxml and state.tag in STATES:
+            yield from _top_data(state)

@@ -1,0 +1,106 @@
+"""Our actions as SCXML's executable content."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from lumen.formats.durations import duration
+from lumen.formats.ecmascript import ScriptError, Vocabulary, write_expression
+from lumen.formats.ecmascript.printing import text_of
+from lumen.formats.findings import Report
+from lumen.formats.plain import plain_action, plain_value
+from lumen.formats.scxml.templates import expression_of
+from lumen.formats.scxml.xml import Tag
+from lumen.interpreters.expressions.tree import Literal
+from lumen.language.actions import Assign, CancelSend, Expression, If, LogText, Raise, Send, Step, Value
+
+
+class Orders:
+    """Writes the actions of one machine."""
+
+    def __init__(self, vocabulary: Vocabulary, report: Report) -> None:
+        self.vocabulary, self.report = vocabulary, report
+
+    def block(self, steps: Sequence[Step]) -> list[Tag]:
+        """The elements of these actions."""
+        return [tag for step in steps for tag in self._one(step)]
+
+    def expression(self, expression: Expression) -> str:
+        """ECMAScript; raises ScriptError."""
+        written = write_expression(expression.source, self.vocabulary)
+        self._foreign(written.foreign, expression.where)
+        return written.text
+
+    def _foreign(self, names: Sequence[str], where: Any) -> None:
+        for name in names:
+            self.report.foreign(f"`{name}` in an expression", where)
+
+    def _one(self, step: Step) -> list[Tag]:
+        try:
+            return list(self._tags(step))
+        except ScriptError as error:
+            verb = next(iter(plain_action(step.action)))
+            self.report.lost(f"`{verb}` is left out: {error}", step.where)
+            return []
+
+    def _tags(self, step: Step) -> Iterator[Tag]:
+        match step.action:
+            case Assign(values):
+                for key, value in values.items():
+                    yield Tag("assign", {"location": self.vocabulary.keys[key], "expr": self.value(value)})
+            case Raise(event, None):
+                yield Tag("raise", {"event": event})
+            case Raise(event, data):
+                yield Tag("send", {"event": event, "target": "#_internal"}, self.data(data))
+            case Send(event, data, delay, id):
+                attributes = {"event": event, "id": id, "delay": duration(delay * 1000) if delay else ""}
+                yield Tag("send", attributes, self.data(data) if data is not None else [])
+            case CancelSend(id):
+                yield Tag("cancel", {"sendid": id})
+            case LogText(template):
+                text, foreign = expression_of(template.text, self.vocabulary)
+                self._foreign(foreign, step.where)
+                yield Tag("log", {"expr": text})
+            case If() as choice:
+                yield Tag("if", {"cond": self.expression(choice.guard)}, list(self._branches(choice)))
+            case action:
+                plain = plain_action(action)
+                self.report.foreign(f"`{next(iter(plain))}`", step.where)
+                yield Tag("lumen:action", {}, [], json.dumps(plain, ensure_ascii=False))
+
+    def _branches(self, choice: If) -> Iterator[Tag]:
+        yield from self.block(choice.then)
+        match choice.otherwise:
+            case (Step(action=If() as other),):
+                yield Tag("elseif", {"cond": self.expression(other.guard)})
+                yield from self._branches(other)
+            case (_, *_):
+                yield Tag("else")
+                yield from self.block(choice.otherwise)
+
+    def data(self, value: Value) -> list[Tag]:
+        """Parameters for a map, content for everything else; raises ScriptError."""
+        if isinstance(value, Mapping) and value and all(value):
+            return [Tag("param", {"name": key, "expr": self.value(item)}) for key, item in value.items()]
+        return [Tag("content", {"expr": self.value(value)})]
+
+    def value(self, value: Value) -> str:
+        """A value as ECMAScript; raises ScriptError."""
+        match value:
+            case Expression():
+                return self.expression(value)
+            case tuple():
+                return f"[{', '.join(map(self.value, value))}]"
+            case Mapping():
+                return "{" + ", ".join(f"{text_of(Literal(k))}: {self.value(v)}" for k, v in value.items()) + "}"
+        return text_of(Literal(plain_value(value)))
+
+    def literal(self, value: Any) -> str:
+        """JSON as ECMAScript."""
+        match value:
+            case list() | tuple():
+                return f"[{', '.join(map(self.literal, value))}]"
+            case Mapping():
+                pairs = (f"{text_of(Literal(str(k)))}: {self.literal(v)}" for k, v in value.items())
+                return "{" + ", ".join(pairs) + "}"
+        return text_of(Literal(value))

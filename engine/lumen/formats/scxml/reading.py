@@ -1,0 +1,299 @@
+"""An SCXML document as the data of a behaviour file."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from lumen.formats.ecmascript import ScriptError
+from lumen.formats.findings import Findings, broken
+from lumen.formats.nodes import Node, passing_key
+from lumen.formats.scxml.candidates import Row, arrange, normal, overlap, single
+from lumen.formats.scxml.contents import Action, Contents, LeftOutError, own
+from lumen.formats.scxml.context import Context
+from lumen.formats.scxml.elements import LUMEN, Element, parse_xml
+from lumen.formats.scxml.outline import STATES, Outline, regular
+from lumen.language.diagnostics import Diagnostic
+
+_KNOWN = {*STATES, "transition", "onentry", "onexit", "initial", "datamodel", "donedata", "invoke", "script"}
+_DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*")
+
+
+def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
+    """The data of our file, and everything that is not, or not quite, in it; raises ForeignFileError.
+
+    `title` is the behaviour's name where the document has none.
+    """
+    root = parse_xml(file, content)
+    if root.tag != "scxml":
+        name = root.tag.rpartition("}")[2]
+        raise broken(root.place, "not-scxml", f"the file begins with <{name}>, not with <scxml>")
+    return _Document(root, title).data()
+
+
+class _Document:
+    """Reads one document, its states from the outside to the inside."""
+
+    def __init__(self, scxml: Element, title: str) -> None:
+        self.scxml = scxml
+        self.findings = Findings()
+        self.outline = Outline(scxml, title, self.findings)
+        self.context = Context(self.outline, self.findings)
+        self.contents = Contents(self.context, self.findings)
+        self.passed: dict[Node, dict[str, Any]] = {}
+
+    def data(self) -> tuple[dict[str, Any], list[Diagnostic]]:
+        root = self.outline.root
+        if not regular(root):
+            raise broken(self.scxml.place, "not-scxml", "the chart has no states")
+        data: dict[str, Any] = {"id": self.outline.title} if self.outline.title else {}
+        own_data = self._own(self.scxml, "machine", {})
+        if self.context.first:
+            data["context"] = self.context.first
+        if types := {**self.context.wide, **own_data.pop("types", {})}:
+            data["types"] = types
+        data.update(own_data)
+        data.update(self._state(root))
+        late = [{"assign": {key: source}} for key, source in self.context.late.items()]
+        if late:
+            data = _with_entry(data, late)
+        return data, self.findings.diagnostics
+
+    def _own(self, element: Element, name: str, otherwise: Any) -> Any:
+        for found in element.of(f"{{{LUMEN}}}{name}"):
+            try:
+                return own(found)
+            except LeftOutError as error:
+                self.findings.lost(found.place, error.message)
+        return otherwise
+
+    def _state(self, node: Node) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        self._foreign(node)
+        if node.parent and node.id and (node.id != node.path or node.id == self.outline.title):
+            data["id"] = node.id
+        if node.source.tag == "history":
+            return {**data, **self._history(node)}
+        if node.source.tag == "final":
+            data["type"] = "final"
+        elif node.source.tag == "parallel" and regular(node):
+            data["type"] = "parallel"
+        elif regular(node):
+            data["initial"] = self._initial(node)
+        data.update(self._behaviour(node))
+        if regular(node):
+            data["states"] = {child.key: self._state(child) for child in node.children} | self._passed(node)
+        elif node.children:
+            self.findings.lost(node.source.place, f"`{node.name}` has a history and no other states", "delete it")
+        return data
+
+    def _foreign(self, node: Node) -> None:
+        for element in node.source.children:
+            if element.tag == "invoke":
+                self.findings.lost(element.place, "`<invoke>`: other charts and services are not carried over")
+            elif element.tag == "script":
+                self.findings.lost(element.place, "`<script>`: ECMAScript is not run here")
+            elif element.tag not in _KNOWN and not element.tag.startswith(f"{{{LUMEN}}}"):
+                self.findings.lost(element.place, f"`<{element.tag.rpartition('}')[2]}>` has no counterpart")
+
+    def _history(self, node: Node) -> dict[str, Any]:
+        data: dict[str, Any] = {"type": "history"}
+        if node.source.get("type") == "deep":
+            data["history"] = "deep"
+        for transition in node.source.of("transition"):
+            data.update(self._default(node, transition, "target"))
+        return data
+
+    def _default(self, node: Node, transition: Element, key: str) -> dict[str, Any]:
+        """`initial` or a history's `target`, with the actions on the way."""
+        home = node if key == "initial" else node.parent
+        found = self._targets(transition)
+        if found is None or not found:
+            return {}
+        wrong = next((t for t in found if home is None or not t.lies_below(home)), None)
+        if wrong is not None:
+            self.findings.lost(transition.place, f"`{wrong.name}` does not lie in `{home.name if home else ''}`")
+            return {}
+        actions = self.contents.block(transition.children)
+        if actions and home is not None and home.source.tag != "parallel":
+            return {key: self._pass_through(home, transition, found, actions)}
+        if actions:
+            self.findings.lost(transition.place, "actions on the way to the states of a parallel one", "move them")
+        return {key: self._named(node, found, inside=key == "initial")}
+
+    def _pass_through(self, home: Node, transition: Element, targets: list[Node], actions: list[Action]) -> str:
+        """A state that is left at once, doing on the way what SCXML does between `home` and its states."""
+        passed = self.passed.setdefault(home, {})
+        key = passing_key(home, passed)
+        hint = "it is passed through at once"
+        self.findings.changed(transition.place, f"what is done here becomes a state of its own, `{key}`", hint)
+        pretended = Node(transition, home, key, "", "")
+        passed[key] = {"always": {"target": self._named(pretended, targets), "actions": actions}}
+        return key
+
+    def _passed(self, home: Node) -> dict[str, Any]:
+        return self.passed.get(home, {})
+
+    def _initial(self, node: Node) -> Any:
+        for element in node.source.of("initial"):
+            for transition in element.of("transition"):
+                found = self._default(node, transition, "initial")
+                if found:
+                    return found["initial"]
+        if ids := node.source.get("initial").split():
+            pretended = Element("transition", {"target": " ".join(ids)}, node.source.place)
+            found = self._default(node, pretended, "initial")
+            if found:
+                return found["initial"]
+        return self._named(node, [regular(node)[0]], inside=True)
+
+    def _targets(self, element: Element) -> list[Node] | None:
+        """The states of `target`, None (and reported) where one does not exist."""
+        found = []
+        for id in element.get("target").split():
+            node = self.outline.by_id.get(id)
+            if node is None:
+                self.findings.lost(element.place, f"there is no state `{id}` to go to")
+                return None
+            found.append(node)
+        return found
+
+    def _named(self, source: Node, targets: list[Node], *, inside: bool = False) -> Any:
+        names = [source.calls(target, self.outline.title, inside=inside) for target in targets]
+        return names[0] if len(names) == 1 else names
+
+    def _behaviour(self, node: Node) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        afters = self._afters(node)
+        for key, tag in (("entry", "onentry"), ("exit", "onexit")):
+            blocks = [e for e in node.source.of(tag) if e not in afters[tag]]
+            if actions := [action for block in blocks for action in self.contents.block(block.children)]:
+                data[key] = actions
+            self._several(blocks)
+        if do := self._own(node.source, "do", []):
+            data["do"] = do
+        data.update(self._transitions(node, afters["events"]))
+        if node.source.tag == "final" and (output := self._output(node)) is not None:
+            data["output"] = output
+        data.update(self._own(node.source, "state", {}))
+        return data
+
+    def _several(self, blocks: list[Element]) -> None:
+        for block in blocks[:-1]:
+            if any(e.tag not in ("raise", "log", "cancel") for e in block.children):
+                hint = "where an action of the first fails, the second is skipped too"
+                self.findings.changed(block.place, f"several `<{block.tag}>` become one list", hint)
+
+    def _afters(self, node: Node) -> dict[str, Any]:
+        """The `<send>`, `<cancel>` and events that an `after` of ours was written as."""
+        found: dict[str, Any] = {"onentry": [], "onexit": [], "events": {}}
+        for block in node.source.of("onentry"):
+            send = block.children[0] if len(block.children) == 1 else None
+            if send is None or send.tag != "send" or not send.get("id").startswith("after."):
+                continue
+            text = send.get("id").removeprefix("after.").removesuffix(f".{node.name}")
+            cancels = [b for b in node.source.of("onexit") if [c.get("sendid") for c in b.children] == [send.get("id")]]
+            if f"after.{text}.{node.name}" == send.get("event") == send.get("id") and cancels:
+                found["onentry"].append(block)
+                found["onexit"] += cancels
+                found["events"][send.get("event")] = text
+        return found
+
+    def _output(self, node: Node) -> Any:
+        for element in node.source.of("donedata"):
+            try:
+                return self.contents.data(element)
+            except (LeftOutError, ScriptError) as error:
+                self.findings.lost(element.place, f"the data of `{node.name}`: {error}")
+        return None
+
+    def _transitions(self, node: Node, afters: dict[str, str]) -> dict[str, Any]:
+        always: list[Row] = []
+        after: dict[str, list[Row]] = {}
+        rows: list[tuple[str, Row]] = []
+        for element in node.source.of("transition"):
+            row = self._row(node, element)
+            if row is None:
+                continue
+            for descriptor in self._descriptors(element):
+                if descriptor in afters:
+                    after.setdefault(afters[descriptor], []).append(row)
+                else:
+                    rows.append((descriptor, row))
+            if not element.get("event"):
+                always += self._eventless(element, row)
+        done, rows = self._done(node, rows)
+        data: dict[str, Any] = {"on": arrange(rows)} if rows else {}
+        if always:
+            data["always"] = single(always)
+        if after:
+            data["after"] = {text: single(found) for text, found in after.items()}
+        return {**data, **done}
+
+    def _eventless(self, element: Element, row: Row) -> Iterator[Row]:
+        if "target" in row or "guard" in row:
+            yield row
+        elif row:
+            yield {"guard": "true", **row}
+        else:
+            self.findings.lost(element.place, "a transition without event, condition and target runs for ever")
+
+    def _descriptors(self, element: Element) -> list[str]:
+        found = [normal(word) for word in element.get("event").split()]
+        for word in found:
+            if not _DESCRIPTOR.fullmatch(word):
+                self.findings.lost(element.place, f"`{word}` is no event", "write names with dots between")
+        return list(dict.fromkeys(word for word in found if _DESCRIPTOR.fullmatch(word)))
+
+    def _done(self, node: Node, rows: list[tuple[str, Row]]) -> tuple[dict[str, Any], list[tuple[str, Row]]]:
+        """`onDone` and `onError` out of the candidates, where nothing else can be meant by them."""
+        kind = "do" if not regular(node) else "state"
+        has_do = bool(self._own(node.source, "do", []))
+        names = {f"done.{kind}.{node.name}": "onDone", f"error.do.{node.name}": "onError"}
+        if not regular(node) and not has_do:
+            return {}, rows
+        found: dict[str, Any] = {}
+        for event, key in names.items():
+            mine = [row for descriptor, row in rows if descriptor == event]
+            rivals = any(d != event and overlap(d, event) for d, _ in rows)
+            longer = any(id.startswith(f"{node.name}.") for id in self._dones)
+            if mine and not rivals and not (key == "onDone" and kind == "state" and longer):
+                found[key] = single(mine)
+                rows = [(d, row) for d, row in rows if d != event]
+        return found, rows
+
+    @property
+    def _dones(self) -> set[str]:
+        """The names of all states whose end is an event."""
+        return {node.name for node in self.outline.root.walk() if node.children}
+
+    def _row(self, node: Node, element: Element) -> Row | None:
+        row: Row = {}
+        targets = self._targets(element)
+        if targets is None:
+            return None
+        if "cond" in element.attributes:
+            try:
+                row["guard"] = self.contents.condition(element.get("cond"))
+            except ScriptError as error:
+                hint = "the transition is left out"
+                self.findings.lost(element.place, f"the condition `{_short(element.get('cond'))}`: {error}", hint)
+                return None
+        if targets:
+            row["target"] = self._named(node, targets)
+        if actions := self.contents.block(element.children):
+            row["actions"] = actions
+        inside = bool(targets) and all(target.lies_below(node) for target in targets)
+        if inside and node.source.tag != "parallel" and node.parent and element.get("type") != "internal":
+            row["reenter"] = True
+        return row
+
+
+def _with_entry(data: dict[str, Any], late: list[Action]) -> dict[str, Any]:
+    """Values that have to be computed are, before anything else."""
+    entry = [*late, *data.pop("entry", [])]
+    return {**{k: v for k, v in data.items() if k != "states"}, "entry": entry, "states": data["states"]}
+
+
+def _short(source: str) -> str:
+    text = " ".join(source.split())
+    return text if len(text) <= 60 else text[:59] + "…"

@@ -1,0 +1,66 @@
+"""`<log>` and our texts with `{{ … }}`, both ways."""
+
+import re
+
+from lumen.formats.ecmascript import Names, ScriptError, Vocabulary, parse_script, write_expression
+from lumen.formats.ecmascript.kinds import kind
+from lumen.formats.ecmascript.printing import text_of
+from lumen.formats.ecmascript.reading import Reading
+from lumen.formats.scxml.elements import Element
+from lumen.interpreters.expressions import split_template
+from lumen.interpreters.expressions.kinds import TEXT
+from lumen.interpreters.expressions.templates import Hole
+from lumen.interpreters.expressions.tree import Binary, Literal, Node
+
+
+def template_of(element: Element, names: Names) -> str:
+    """The text of a `<log>`: its label, and its expression with texts joined to values; raises ScriptError."""
+    source = element.get("expr")
+    parts = _parts(parse_script(source), names) if source else ()
+    return plain_template(element, "") + "".join(_piece(part) for part in parts)
+
+
+def plain_template(element: Element, text: str) -> str:
+    """The label of a `<log>`, and a text as it stands."""
+    label = element.get("label")
+    between = ": " if label and element.get("expr") else ""
+    return _piece(Literal(label + between + text))
+
+
+def _parts(tree: Node, names: Names) -> list[Node]:
+    """What stands between the `+` of a text put together, else the one value; read already."""
+    chain: list[Node] = []
+    rest = tree
+    while isinstance(rest, Binary) and rest.sign == "+":
+        chain.insert(0, rest.right)
+        rest = rest.left
+    reading = Reading(names)
+    read = [reading.value(part) for part in (rest, *chain)]
+    kinds = [kind(part, names.kinds) for part in read[:2]]
+    return read if TEXT in kinds else [reading.value(tree)]
+
+
+def _piece(node: Node) -> str:
+    if isinstance(node, Literal) and isinstance(node.value, str):
+        return re.sub(r"\{(?=\{)|\{$", "{{ '{' }}", node.value)
+    return f"{{{{ {text_of(node)} }}}}"
+
+
+def expression_of(text: str, vocabulary: Vocabulary) -> tuple[str, tuple[str, ...]]:
+    """The ECMAScript of our text, and what in it only Lumen knows; raises ScriptError."""
+    parts = split_template(text)
+    if not any(isinstance(part, Hole) for part in parts):
+        return text_of(Literal(text)), ()
+    pieces, foreign = [], list[str]()
+    for part in parts:
+        if isinstance(part, Hole):
+            written = write_expression(part.source, vocabulary)
+            foreign += written.foreign
+            pieces.append(written.text if len(parts) == 1 else f"({written.text})")
+        else:
+            pieces.append(text_of(Literal(part)))
+    start = ["''"] if isinstance(parts[0], Hole) and len(parts) > 1 else []
+    return " + ".join([*start, *pieces]), tuple(foreign)
+
+
+__all__ = ["ScriptError", "expression_of", "template_of"]

@@ -1,0 +1,179 @@
+"""A machine as an SCXML document."""
+
+import json
+from collections.abc import Container, Iterator, Sequence
+from typing import Any
+
+from lumen.formats.durations import duration
+from lumen.formats.ecmascript import ScriptError, Vocabulary
+from lumen.formats.ecmascript.kinds import kinds_of
+from lumen.formats.ecmascript.parsing import is_reserved
+from lumen.formats.findings import Placing, Report
+from lumen.formats.plain import plain_block
+from lumen.formats.scxml.elements import LUMEN, SCXML
+from lumen.formats.scxml.orders import Orders
+from lumen.formats.scxml.xml import Tag
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.machines import Kind, Machine, State, Transition
+
+_TAGS = {Kind.PARALLEL: "parallel", Kind.FINAL: "final", Kind.HISTORY: "history"}
+
+
+def write_scxml(machine: Machine, place: Placing) -> tuple[str, list[Diagnostic]]:
+    """The document, and what in it is missing or means something to Lumen only.
+
+    What SCXML has no word for (robot verbs, `do`, phrases, answers) stands in a namespace of its own: coming back to
+    Lumen nothing of it is lost, and other tools pass over it.
+    """
+    report = Report(place)
+    document = _Document(machine, report).tag()
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>', *document.lines()]
+    return "\n".join(lines) + "\n", report.diagnostics
+
+
+class _Document:
+    """Writes the states of one machine."""
+
+    def __init__(self, machine: Machine, report: Report) -> None:
+        self.machine, self.report = machine, report
+        names = {state.name for state in machine.states.values() if state.path}
+        self.ids = {path: state.name for path, state in machine.states.items()}
+        while self.ids[""] in names:
+            self.ids[""] += "_"
+        keys = {key: _free(key, machine.context) for key in machine.context}
+        self.vocabulary = Vocabulary(kinds_of(machine.context, machine.types), keys, self.ids)
+        self.orders = Orders(self.vocabulary, report)
+        root = machine.root
+        self.wrapped = root.kind is Kind.PARALLEL or any(
+            (root.transitions, root.entry, root.exit, root.do, root.invoke)
+        )
+
+    def tag(self) -> Tag:
+        root, ids = self.machine.root, self.ids
+        data = [self._data(key, value) for key, value in self.machine.context.items()]
+        children = [*self._own(), *([Tag("datamodel", {}, data)] if data else [])]
+        initial = ""
+        if self.wrapped:
+            children.append(self._state(root))
+        else:
+            initial = self._ids(root.initial)
+            children += [self._state(self.machine.states[path]) for path in self._below(root)]
+        attributes = {
+            "xmlns": SCXML,
+            "xmlns:lumen": LUMEN,
+            "version": "1.0",
+            "datamodel": "ecmascript",
+            "name": ids[""],
+            "initial": initial,
+        }
+        return Tag("scxml", attributes, children)
+
+    def _data(self, key: str, value: Any) -> Tag:
+        return Tag("data", {"id": self.vocabulary.keys[key], "expr": self.orders.literal(value)})
+
+    def _own(self) -> Iterator[Tag]:
+        """What a whole machine has that SCXML has not."""
+        machine = self.machine
+        phrases = {name: _listed(table) for name, table in machine.phrases.items()}
+        answers = {
+            name: [{"phrases": _listed(row.phrases), "value": row.value} for row in rows]
+            for name, rows in machine.answers.items()
+        }
+        types = {self.vocabulary.keys.get(key, key): schema for key, schema in machine.types.items()}
+        parts = {
+            "types": types, "events": machine.events, "phrases": phrases, "answers": answers,
+            "renamed": machine.renamed,
+        }  # fmt: skip
+        if found := {key: part for key, part in parts.items() if part}:
+            for key in sorted(found.keys() & {"phrases", "answers"}):
+                self.report.foreign(f"`{key}`", (key,))
+            yield _json("machine", found)
+
+    def _below(self, state: State) -> Iterator[str]:
+        """All children in document order, history states included."""
+        return (path for path, child in self.machine.states.items() if child.parent == state.path and path)
+
+    def _ids(self, paths: Sequence[str]) -> str:
+        return " ".join(self.ids[path] for path in paths)
+
+    def _state(self, state: State) -> Tag:
+        attributes = {"id": self.ids[state.path]}
+        if not state.path:
+            attributes["lumen:root"] = "true"
+        if state.kind is Kind.HISTORY:
+            attributes["type"] = "deep" if state.deep else "shallow"
+            default = [Tag("transition", {"target": self._ids(state.initial)})] if state.initial else []
+            return Tag("history", attributes, default)
+        if state.kind is Kind.COMPOUND:
+            attributes["initial"] = self._ids(state.initial)
+        children = [*self._blocks(state), *self._transitions(state)]
+        if state.output is not None:
+            children += self._output(state)
+        children += [self._state(self.machine.states[path]) for path in self._below(state)]
+        return Tag(_TAGS.get(state.kind, "state"), attributes, children)
+
+    def _blocks(self, state: State) -> Iterator[Tag]:
+        if state.do:
+            self.report.foreign("`do`", (*state.where, "do"))
+            yield _json("do", plain_block(state.do))
+        if state.on_reload:
+            self.report.foreign("`onReload`", (*state.where, "onReload"))
+            yield _json("state", {"onReload": f"#{self.ids[state.on_reload]}"})
+        for invoke in state.invoke:
+            self.report.lost(f"`invoke` of `{invoke.behavior}` is left out", (*state.where, "invoke"))
+        timers = {t.event: t.delay for t in state.transitions if t.delay is not None}
+        for event, delay in timers.items():
+            name = self._event(state, event)
+            send = Tag("send", {"event": name, "id": name, "delay": duration(delay * 1000)})
+            yield Tag("onentry", {}, [send])
+            yield Tag("onexit", {}, [Tag("cancel", {"sendid": name})])
+        for tag, steps in (("onentry", state.entry), ("onexit", state.exit)):
+            if block := self.orders.block(steps):
+                yield Tag(tag, {}, block)
+
+    def _event(self, state: State, event: str) -> str:
+        """An event of the state's own (`after`, `onDone`), by its id in the document."""
+        return event.removesuffix(state.name) + self.ids[state.path] if event.endswith(f".{state.name}") else event
+
+    def _transitions(self, state: State) -> Iterator[Tag]:
+        for transition in state.transitions:
+            attributes = {"event": self._event(state, transition.event) if transition.exact else transition.event}
+            if transition.guard:
+                try:
+                    attributes["cond"] = self.orders.expression(transition.guard)
+                except ScriptError as error:
+                    message = f"the transition on `{transition.event}` is left out: {error}"
+                    self.report.lost(message, transition.where)
+                    continue
+            attributes["target"] = self._ids(transition.targets)
+            if self._inside(state, transition) and not transition.reenter:
+                attributes["type"] = "internal"
+            yield Tag("transition", attributes, self.orders.block(transition.actions))
+
+    def _inside(self, state: State, transition: Transition) -> bool:
+        below = f"{state.path}." if state.path else ""
+        targets = transition.targets
+        return state.kind is Kind.COMPOUND and bool(targets) and all(t and t.startswith(below) for t in targets)
+
+    def _output(self, state: State) -> Iterator[Tag]:
+        try:
+            yield Tag("donedata", {}, self.orders.data(state.output))
+        except ScriptError as error:
+            self.report.lost(f"the output of `{state.name}` is left out: {error}", (*state.where, "output"))
+
+
+def _free(key: str, others: Container[str]) -> str:
+    """A name for a context key that ECMAScript leaves to the author."""
+    name = key
+    while is_reserved(name) or (name != key and name in others):
+        name += "_"
+    return name
+
+
+def _listed(table: Any) -> Any:
+    """Phrases by language; those of every language without one."""
+    return list(table[""]) if set(table) == {""} else {language: list(rows) for language, rows in table.items()}
+
+
+def _json(name: str, data: Any) -> Tag:
+    return Tag(f"lumen:{name}", {}, [], json.dumps(data, ensure_ascii=False))
