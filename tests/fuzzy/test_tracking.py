@@ -54,6 +54,24 @@ def test_a_sight_without_use_moves_nothing(plain: Tracker) -> None:
     assert plain.see({"x": 80, "y": 120}, 9.9) is None, "older than the one before"
 
 
+@pytest.mark.parametrize("time", [1754000000, 1e12, 10.2, 10**400, float("inf"), float("nan"), True])
+def test_a_message_from_the_future_changes_nothing(plain: Tracker, time: float) -> None:
+    plain.pose(time, HERE, now=10.0)
+    plain.pose(10.0, HERE, now=10.0)
+    assert plain.see({"x": 80, "y": 120}, time, now=10.0) is None
+    assert plain.see({"x": 80, "y": 120}, 10.0, now=10.0) is not None
+    plain.pose(10.5, {"HeadYaw": 0.3, "HeadPitch": 0.0}, now=10.5)
+    assert plain.pose_at(10.5)["HeadYaw"] == 0.3
+    assert plain.see({"x": 80, "y": 120}, 10.55, now=10.5) is not None, "clocks differ a little"
+
+
+def test_an_integer_beyond_all_floats_is_no_number(plain: Tracker) -> None:
+    plain.pose(10.0, HERE | {"HeadYaw": 10**400})
+    assert plain.see({"x": 80, "y": 120}, 10.0) is None, "no pose"
+    plain.pose(10.0, HERE)
+    assert plain.see({"x": 10**400, "y": 120}, 10.0) is None
+
+
 @given(st.floats(-2.1, 2.1), st.floats(-0.7, 0.6), st.integers(0, 319), st.integers(0, 239))
 def test_every_limit_holds(yaw: float, pitch: float, x: int, y: int) -> None:
     tracker = Tracker(CONTROLLER, HEAD)

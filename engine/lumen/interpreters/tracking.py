@@ -22,6 +22,9 @@ Angles = dict[str, float]
 SWING = 0.5235987755982988
 """How far the first joint swings to either side in search where the file does not say: 30 deg, in [rad]."""
 
+EARLY = 0.1
+"""How far in the future [s] a message may say it was made, as clocks go; farther, it goes by another clock."""
+
 
 class Tracker:
     """What a bound controller asks of its joints. It reads no clock and moves nothing; times are in [s].
@@ -44,30 +47,43 @@ class Tracker:
         self._lost_since: float | None = None
         self._held: Angles = {}
 
-    def pose(self, time: float, angles: Mapping[str, float]) -> None:
-        """Remember where the joints stand [rad], measured at `time`; without all of `joints` it is no pose."""
-        if (self._poses and time <= self._poses[-1][0]) or not angles.keys() >= set(self.joints):
+    def pose(self, time: float, angles: Mapping[str, float], *, now: float = inf) -> None:
+        """Remember where the joints stand [rad], measured at `time`, as a message says that comes in at `now`.
+
+        It is no pose where one of `joints` is missing, where something is no number, or where it lies in the future:
+        more than `EARLY` after `now`.
+        """
+        measured = _number(time)
+        turned = {joint: angle for joint in self.joints if (angle := _number(angles.get(joint))) is not None}
+        if measured is None or measured > now + EARLY or len(turned) < len(self.joints):
             return
-        self._poses.append((time, {joint: angles[joint] for joint in self.joints}))
-        while self._poses[0][0] < time - 2.0 * self.controller.tracking.stale:
+        if self._poses and measured <= self._poses[-1][0]:
+            return
+        self._poses.append((measured, turned))
+        while self._poses[0][0] < measured - 2.0 * self.controller.tracking.stale:
             self._poses.popleft()
 
-    def see(self, fields: Mapping[str, Any], captured_at: float, route: str | None = None) -> Angles | None:
+    def see(
+        self, fields: Mapping[str, Any], captured_at: float, route: str | None = None, *, now: float = inf
+    ) -> Angles | None:
         """Where the joints should go [rad], from the body of a message and when its image was taken.
 
-        `route` is the message's, for a controller whose inputs come from several. None where the sight is stale, older
-        than the one before, lacks a field, comes before the first pose, or fires no rule of an output without default.
+        `route` is the message's, for a controller whose inputs come from several; `now` is when it came in. None where
+        the sight is stale, older than the one before, from the future (`EARLY`), lacks a field, comes before the first
+        pose, or fires no rule of an output without default.
         """
-        fresh = self._poses and self._poses[-1][0] - captured_at <= self.controller.tracking.stale
-        if not fresh or captured_at < self._seen or not self._take(fields, route):
+        captured = _number(captured_at)
+        if captured is None or captured > now + EARLY or captured < self._seen or not self._poses:
             return None
-        pose = self.pose_at(captured_at)
+        if self._poses[-1][0] - captured > self.controller.tracking.stale or not self._take(fields, route):
+            return None
+        pose = self.pose_at(captured)
         try:
             self._turn = self._glance.turn(self._inputs, pose)
         except LumenError:
             return None
         target = self.clamped({joint: angle + self._turn[joint] for joint, angle in pose.items()})
-        self._seen, self._lost_since, self._held = captured_at, None, target
+        self._seen, self._lost_since, self._held = captured, None, target
         return target
 
     def idle(self, now: float) -> Angles | None:
@@ -129,7 +145,18 @@ class Tracker:
                 value: Any = fields
                 for step in binding.path:
                     value = value.get(step) if isinstance(value, Mapping) else None
-                if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+                if (number := _number(value)) is None:
                     return False
-                self._inputs[binding.variable] = float(value)
+                self._inputs[binding.variable] = number
         return self._inputs.keys() == self.controller.inputs.keys()
+
+
+def _number(value: object) -> float | None:
+    """A finite number from somebody's message; None for anything else, and for an integer beyond all floats."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if isfinite(number) else None
