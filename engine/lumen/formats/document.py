@@ -64,8 +64,9 @@ def _compact(value: Any) -> yaml.Node:
 
 def _scalar(value: Any) -> yaml.Node:
     node = SafeRepresenter().represent_data(value)
-    quoted = isinstance(value, str) and "'" in value and isinstance(node, yaml.ScalarNode)
-    if quoted and _HARD.isdisjoint(value) and not _SPECIAL.isdisjoint(value):
+    if not (isinstance(node, yaml.ScalarNode) and isinstance(value, str) and "'" in value):
+        return node
+    if _HARD.isdisjoint(value) and not _SPECIAL.isdisjoint(value):
         node.style = '"'
     return node
 

@@ -50,8 +50,8 @@ def broken(place: Place, code: str, message: str, hint: str = "") -> ForeignFile
 class Report:
     """What an export leaves out, and what in it only Lumen understands: that once for each word, at its first place."""
 
-    def __init__(self, place: Placing) -> None:
-        self.place = place
+    def __init__(self, place: Placing, hint: str = "other tools pass over it") -> None:
+        self.place, self.hint = place, hint
         self.findings = Findings()
         self._foreign: dict[str, list[Place]] = {}
 
@@ -60,7 +60,7 @@ class Report:
         """Everything said, by line."""
         for word, places in self._foreign.items():
             times = f", {len(places)} times" if len(places) > 1 else ""
-            self.findings.changed(min(places), f"only Lumen understands {word}{times}", "other tools pass over it")
+            self.findings.changed(min(places), f"only Lumen understands {word}{times}", self.hint)
         self._foreign.clear()
         return self.findings.diagnostics
 

@@ -101,7 +101,13 @@ class _Document:
             data["history"] = "deep"
         for transition in node.source.of("transition"):
             data.update(self._default(node, transition, "target"))
-        return data
+        return data if "target" in data else data | self._remembered(node)
+
+    def _remembered(self, node: Node) -> dict[str, Any]:
+        """Where a history leads that names no target (which SCXML does not allow): as its parent begins."""
+        home = node.parent
+        found = regular(home)[: None if home.source.tag == "parallel" else 1] if home else []
+        return {"target": self._named(node, found)} if found else {}
 
     def _default(self, node: Node, transition: Element, key: str) -> dict[str, Any]:
         """`initial` or a history's `target`, with the actions on the way."""

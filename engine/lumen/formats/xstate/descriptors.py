@@ -1,0 +1,70 @@
+"""Our `on` as XState's: there a name is matched exactly, and the longest descriptor is tried first."""
+
+from collections.abc import Iterator, Sequence
+
+from lumen.formats.scxml.candidates import overlap
+from lumen.language.actions import If, Raise, Send, Step
+from lumen.language.machines import Machine, State, Transition
+
+
+class Descriptors:
+    """Knows every event that a machine speaks of."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.names = set(machine.events)
+        for state in machine.states.values():
+            for block in (state.entry, state.exit, state.do, *(t.actions for t in state.transitions)):
+                self.names.update(_raised(block))
+            self.names.update(bare(t.event) for t in state.transitions if t.event not in ("", "*") and not t.exact)
+
+    def arranged(self, state: State) -> dict[str, list[Transition]]:
+        """The candidates by XState's descriptors, the longest first.
+
+        A more general candidate that comes before a particular one here is repeated among its own, where XState
+        would try it later.
+        """
+        rows = [t for t in state.transitions if t.event and t.delay is None]
+        table: dict[str, list[Transition]] = {}
+        for transition in rows:
+            table.setdefault(self._named(transition), [])
+        for descriptor in table:
+            own = [i for i, t in enumerate(rows) if self._named(t) == descriptor]
+            table[descriptor] = [
+                t for t in rows[: own[-1] + 1] if self._named(t) == descriptor or _covers(t, bare(descriptor))
+            ]
+        return {descriptor: table[descriptor] for descriptor in longest_first(list(table))}
+
+    def _named(self, transition: Transition) -> str:
+        event = transition.event
+        if transition.exact or event == "*" or event.endswith(".*"):
+            return event
+        return f"{event}.*" if any(name.startswith(f"{event}.") for name in self.names) else event
+
+
+def bare(descriptor: str) -> str:
+    """`a` for `a.*`."""
+    return descriptor.removesuffix(".*")
+
+
+def longest_first(descriptors: Sequence[str]) -> list[str]:
+    """As XState tries them, where the order matters at all."""
+    rivals = any(overlap(bare(a), bare(b)) for i, a in enumerate(descriptors) for b in descriptors[:i])
+    return sorted(descriptors, key=lambda d: (d == "*", -len(d))) if rivals else list(descriptors)
+
+
+def _covers(transition: Transition, event: str) -> bool:
+    """Whether every event below `event` selects it."""
+    if transition.exact:
+        return transition.event == event
+    general = bare(transition.event)
+    return general == "*" or f"{event}.".startswith(f"{general}.")
+
+
+def _raised(steps: Sequence[Step]) -> Iterator[str]:
+    for step in steps:
+        match step.action:
+            case Raise(event) | Send(event):
+                yield event
+            case If(_, then, otherwise):
+                yield from _raised(then)
+                yield from _raised(otherwise)
