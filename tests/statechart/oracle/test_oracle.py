@@ -27,7 +27,7 @@ def compare(machine: Machine, events: list[Happening | None], tally: Counter[str
         ours = by_lumen(machine, snapshot, event)
         oracle = by_the_book(machine, oracle, event if happening or not due_in(oracle) else None)
         if ours is None or oracle is None:
-            assert ours is None and oracle is None, "only one of them comes to rest"
+            assert (ours, oracle) == (None, None), "only one of them comes to rest"
             tally["machines without rest"] += 1
             return
         assert of_lumen(ours) == of_the_book(oracle)

@@ -1,0 +1,141 @@
+"""Google's CEL as an oracle: the same expression there, its value, and where the two differ on purpose."""
+
+from collections.abc import Iterator, Mapping
+from math import isfinite
+from typing import Any
+
+from cel_expr_python import cel
+from cel_expr_python.ext import ext_strings
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions import Node, Scope, compile_expression, unparse
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Call,
+    Choice,
+    Entries,
+    Field,
+    Index,
+    Items,
+    Literal,
+    Logic,
+    Name,
+    Unary,
+    children,
+)
+
+ENVIRONMENT = cel.NewEnv(
+    variables=dict.fromkeys(("context", "event", "state"), cel.Type.DYN), extensions=[ext_strings.ExtStrings()]
+)
+METHODS = {"contains": "contains", "replace": "replace", "trim": "trim", "matches": "matches", "lower": "lowerAscii"}
+
+Outcome = tuple[Any, ...]
+"""`("value", …)` or `("error",)`."""
+
+
+def by_lumen(source: str, scope: Scope) -> Outcome:
+    try:
+        return "value", compile_expression(source)(scope)
+    except ExpressionError:
+        return ("error",)
+
+
+def by_cel(source: str, scope: Scope) -> Outcome:
+    """The outcome in CEL, without the type checker, as lint is for us; RuntimeError where it can't be read."""
+    data = {"context": scope.context, "event": scope.event, "state": scope.state}
+    result = ENVIRONMENT.compile(source, disable_check=True).eval(data=data)
+    return ("error",) if result.type().name() == "ERROR" else ("value", result.plain_value())
+
+
+def printed(node: Node) -> str:
+    """The expression as CEL writes it, with every bracket."""
+    match node:
+        case Literal():
+            return f"({unparse(node)})"
+        case Name(name=name):
+            return name
+        case Field(base=base, name=name):
+            return f"{printed(base)}.{name}"
+        case Index(base=base, key=key):
+            return f"{printed(base)}[{printed(key)}]"
+        case Items(items=items):
+            return f"[{', '.join(map(printed, items))}]"
+        case Entries(keys=keys, values=values):
+            pairs = zip(keys, values, strict=True)
+            return "{" + ", ".join(f"{unparse(Literal(key))}: {printed(value)}" for key, value in pairs) + "}"
+        case Unary(sign=sign, operand=operand):
+            return f"({sign}{printed(operand)})"
+        case Binary(sign=sign, left=left, right=right):
+            return f"({printed(left)} {sign} {printed(right)})"
+        case Logic(sign=sign, operands=operands):
+            return f"({f' {sign} '.join(map(printed, operands))})"
+        case Choice(condition=condition, then=then, otherwise=otherwise):
+            return f"({printed(condition)} ? {printed(then)} : {printed(otherwise)})"
+        case Call(function=function, arguments=(first, *rest)) if function in METHODS:
+            return f"{printed(first)}.{METHODS[function]}({', '.join(map(printed, rest))})"
+        case Call(function=function, arguments=arguments):
+            return f"{function}({', '.join(map(printed, arguments))})"
+
+
+def same(one: Outcome, other: Outcome) -> bool:
+    """Whether two outcomes are the same, 1, 1.0 and true being three values."""
+    return repr(_ordered(one)) == repr(_ordered(other))
+
+
+def _ordered(value: Any) -> Any:
+    match value:
+        case Mapping():
+            return {key: _ordered(value[key]) for key in sorted(value)}
+        case list() | tuple():
+            return [_ordered(item) for item in value]
+    return value
+
+
+def compare(node: Node, scope: Scope) -> bool:
+    """Whether the expression has the same outcome in both.
+
+    AssertionError where it has not, though all its parts have, and it is not in the table of docs/expressions.md.
+    """
+    alike = not [child for child in children(node) if not compare(child, scope)]
+    ours, theirs = by_lumen(unparse(node), scope), by_cel(printed(node), scope)
+    if same(ours, theirs):
+        return True
+    assert not alike or is_meant(node, scope, ours, theirs), f"{unparse(node)}: {ours}, and {theirs} in CEL"
+    return False
+
+
+def is_meant(node: Node, scope: Scope, ours: Outcome, theirs: Outcome) -> bool:
+    """Whether this one step from the values of its parts is among the differences that the table promises."""
+    values = [by_lumen(unparse(child), scope)[1:] for child in children(node)]
+    flat = [leaf for value in values for leaf in leaves(list(value))]
+    kinds = {type(value) for value in flat}
+    match node:
+        case Binary(sign="+" | "-" | "*" | "/") if kinds == {int, float}:
+            return theirs == ("error",)
+        case Binary(sign="%") if float in kinds:
+            return theirs == ("error",) and kinds <= {int, float}
+        case Binary(sign="+" | "-" | "*" | "/") if kinds == {float}:
+            return ours == ("error",) and not isfinite(theirs[1])
+        case Binary(sign="==" | "!=" | "<" | "<=" | ">" | ">=" | "in") if "error" not in (*ours, *theirs):
+            return kinds >= {int, float} and any(type(v) is int and abs(v) > 2**53 for v in flat)
+        case Binary(sign="in") if isinstance(values[1][0], Mapping) and not isinstance(values[0][0], str):
+            return theirs == ("error",) and ours == ("value", False)
+        case Call(function="has", arguments=(Field(base=base),)):
+            found = by_lumen(unparse(base), scope)
+            return theirs == ("error",) and ours == ("value", False) and not isinstance(found[-1], Mapping)
+        case Call(function="lower" | "trim"):
+            return not flat[0].isascii()
+    return False
+
+
+def leaves(value: Any) -> Iterator[Any]:
+    """The values inside lists and maps, or the value itself."""
+    match value:
+        case Mapping():
+            for item in value.values():
+                yield from leaves(item)
+        case list() | tuple():
+            for item in value:
+                yield from leaves(item)
+        case _:
+            yield value

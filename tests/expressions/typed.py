@@ -1,0 +1,161 @@
+"""Random expressions that mostly have a value: each part is of a kind that the whole can use, or sometimes is not."""
+
+from typing import Any
+
+from hypothesis import strategies as st
+
+from lumen.interpreters.expressions import Node, Scope
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Call,
+    Choice,
+    Entries,
+    Field,
+    Index,
+    Items,
+    Literal,
+    Logic,
+    Name,
+    Unary,
+)
+
+KINDS = ["number", "text", "boolean", "list", "map"]
+PATTERNS = ["a", "^a", "a$", "a|b", "[a-c]+", "x*", r"\d", r"\w+ \w+", "(ab)?c", ".", "a{2}", "(?i)A", r"\.", r"[^a]"]
+
+TEXTS = st.one_of(
+    st.sampled_from(["", "a", "ab", "Ab c", "dance", "x1", "é", "10"]),
+    st.text("ab c", max_size=4),
+    st.text(st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=4),
+)
+"""Without NUL, at which the oracle cuts the texts it is given."""
+
+NUMBERS = st.one_of(
+    st.integers(-3, 9),
+    st.sampled_from([0.5, 1.0, 2.0, -1.5, 0.0, -0.0, 1e308, 2**53 + 1, 2**63 - 1, -(2**63), 9007199254740992.0]),
+    st.integers(-(2**63), 2**63 - 1),
+    st.floats(allow_nan=False, allow_infinity=False),
+)
+SCALARS = st.none() | st.booleans() | NUMBERS | TEXTS
+VALUES = st.recursive(
+    SCALARS, lambda v: st.lists(v, max_size=3) | st.dictionaries(st.sampled_from("abc"), v, max_size=3), max_leaves=6
+)
+scopes = st.builds(
+    lambda **context: Scope(context=context, event={"name": "e", "data": context["any"]}, state={"path": "p"}),
+    n=NUMBERS,
+    t=TEXTS,
+    b=st.booleans(),
+    l=st.lists(VALUES, max_size=3),
+    m=st.dictionaries(st.sampled_from("abc"), VALUES, max_size=3),
+    any=VALUES,
+)
+LETTERS = {"number": "n", "text": "t", "boolean": "b", "list": "l", "map": "m"}
+
+
+@st.composite
+def expressions(draw: st.DrawFn, depth: int = 4) -> Node:
+    return Writer(draw).any(depth)
+
+
+class Writer:
+    """Writes one expression, from the outside."""
+
+    def __init__(self, draw: st.DrawFn) -> None:
+        self.draw = draw
+
+    def pick(self, *options: Any) -> Any:
+        return self.draw(st.sampled_from(options))
+
+    def any(self, depth: int) -> Node:
+        return self.of(self.pick(*KINDS), depth)
+
+    def of(self, kind: str, depth: int) -> Node:
+        """An expression of that kind; one in twelve is of any kind, or of none known."""
+        stray = self.draw(st.integers(0, 11)) == 11
+        if stray:
+            return self.path() if depth == 0 or self.draw(st.booleans()) else self.any(depth - 1)
+        if depth == 0 or self.draw(st.integers(0, 4)) == 4:
+            return self.leaf(kind)
+        if self.draw(st.integers(0, 7)) == 7:
+            return Choice(self.of("boolean", depth - 1), self.of(kind, depth - 1), self.of(kind, depth - 1))
+        written: Node = getattr(self, kind)(depth - 1)
+        return written
+
+    def leaf(self, kind: str) -> Node:
+        if self.draw(st.booleans()):
+            return Field(Name("context"), LETTERS[kind])
+        match kind:
+            case "number":
+                return Literal(self.draw(NUMBERS))
+            case "text":
+                return Literal(self.draw(TEXTS))
+            case "boolean":
+                return Literal(self.draw(st.booleans()))
+            case "list":
+                return Items(tuple(Literal(value) for value in self.draw(st.lists(SCALARS, max_size=3))))
+        values = self.draw(st.dictionaries(st.sampled_from("abc"), SCALARS, max_size=3))
+        return Entries(tuple(values), tuple(map(Literal, values.values())))
+
+    def path(self) -> Node:
+        """A path that may lead nowhere."""
+        node: Node = Field(Name("context"), self.pick("any", "m", "l", "n", "none"))
+        if self.draw(st.booleans()):
+            node = Field(Name("event"), "data")
+        for _ in range(self.draw(st.integers(0, 2))):
+            node = Field(node, self.pick("a", "b", "c"))
+        return node
+
+    def number(self, depth: int) -> Node:
+        match self.draw(st.integers(0, 5)):
+            case 0:
+                return Call("size", (self.of(self.pick("text", "list", "map"), depth),))
+            case 1:
+                operand = self.of("number", depth)
+                return operand if isinstance(operand, Literal) else Unary("-", operand)
+        return Binary(self.pick("+", "-", "*", "/", "%"), self.of("number", depth), self.of("number", depth))
+
+    def text(self, depth: int) -> Node:
+        match self.draw(st.integers(0, 3)):
+            case 0:
+                return Call(self.pick("lower", "trim"), (self.of("text", depth),))
+            case 1:
+                return Call("replace", tuple(self.of("text", depth) for _ in range(3)))
+        return Binary("+", self.of("text", depth), self.of("text", depth))
+
+    def boolean(self, depth: int) -> Node:
+        match self.draw(st.integers(0, 7)):
+            case 0 | 1:
+                operands = [self.of("boolean", depth) for _ in range(self.draw(st.integers(2, 3)))]
+                return Logic(self.pick("&&", "||"), tuple(operands))
+            case 2:
+                return Unary("!", self.of("boolean", depth))
+            case 3:
+                return Binary("in", self.any(depth), self.of(self.pick("list", "map"), depth))
+            case 4:
+                return Binary(self.pick("==", "!="), self.any(depth), self.any(depth))
+            case 5:
+                return Call("contains", (self.of("text", depth), self.of("text", depth)))
+            case 6:
+                path = self.path()
+                asked = self.draw(st.booleans()) and isinstance(path, Field)
+                return (
+                    Call("has", (path,))
+                    if asked
+                    else Call("matches", (self.of("text", depth), Literal(self.pick(*PATTERNS))))
+                )
+        kind = self.pick("number", "text", "boolean")
+        return Binary(self.pick("==", "!=", "<", "<=", ">", ">="), self.of(kind, depth), self.of(kind, depth))
+
+    def list(self, depth: int) -> Node:
+        if self.draw(st.booleans()):
+            return Binary("+", self.of("list", depth), self.of("list", depth))
+        return Items(tuple(self.any(depth) for _ in range(self.draw(st.integers(0, 3)))))
+
+    def map(self, depth: int) -> Node:
+        keys = self.draw(st.lists(st.sampled_from("abc"), unique=True, max_size=3))
+        entries = Entries(tuple(keys), tuple(self.any(depth) for _ in keys))
+        match self.draw(st.integers(0, 3)):
+            case 0:
+                return Index(self.of("list", depth), self.of("number", depth))
+            case 1:
+                return Index(self.of("map", depth), Literal(self.pick("a", "b", "c")))
+        return entries
