@@ -52,6 +52,7 @@ def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pyte
         (["--video", "film.avi"], "name an .mp4 file"),
         (["--robot", "recording", "--video", "film.mp4"], "--video films the simulation"),
         (["--robot", "none", "--speed", "4"], "leave out --speed"),
+        (["--robot", "none", "--story", "visitor"], "a story needs a robot in a hall"),
     ],
 )
 def test_what_can_not_be_is_one_line_and_exit_code_2(
@@ -80,13 +81,13 @@ def test_a_broken_project_is_named_with_its_place(copy: Path, capsys: pytest.Cap
 
 def test_so_much_time_and_no_more(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--for", "5s"]
-    assert main(run) == 0
+    assert main(run) == 1
     assert "Ended before the story did: 0:05 of simulated time" in capsys.readouterr().out
 
 
 def test_the_tour_in_indonesian(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--for", "12s"]
-    assert main([*run, "--language", "id"]) == 0
+    assert main([*run, "--language", "id"]) == 1
     assert "Selamat pagi!" in capsys.readouterr().out
 
 

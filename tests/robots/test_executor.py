@@ -68,6 +68,17 @@ def test_rest_cancels_everything_and_waits_only_for_balance() -> None:
     assert ex.owner("legs") == "rest"
 
 
+def test_asking_for_rest_again_does_not_put_it_off() -> None:
+    ex = executor()
+    ex.start("rest", Rest())
+    ex.advance(0.0)
+    for tick in range(1, 10):
+        ex.start(f"again{tick}", Rest())
+        answers = names(ex.advance(tick * 0.25))
+        if tick == 8:
+            assert answers == ["done.command.rest"]
+
+
 def test_stop_ends_only_its_channel_and_answers_when_that_is_over() -> None:
     ex = executor(balance=0.5)
     ex.start("say", Say("hello"))

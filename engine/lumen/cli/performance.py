@@ -14,6 +14,7 @@ from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
+from lumen.robots.broadcast import Count
 
 FAREWELL = 5.0
 """How long it goes on after whoever typed has left [s]."""
@@ -28,13 +29,18 @@ class Performance:
         self._show.exhibition.observers.append(self._transcript)
         self._story, self._blind = story, chosen.blind
         self._typed: TypedSpeech | None = None
-        self._interrupts = 0
+        self._interrupts, self._resting = 0, False
+        self._show.exhibition.parts.append(self._rest)
         self._face: float | None = None
 
     def interrupt(self) -> None:
         """Ctrl-C: once rests the robot, twice ends."""
         self._interrupts += 1
-        if self._interrupts == 1:
+
+    def _rest(self, now: float) -> None:
+        """What the first Ctrl-C asks for, at the tick after it."""
+        if self._interrupts and not self._resting:
+            self._resting = True
             self._show.robot.start("operator", Rest())
             self._show.exhibition.happen(Event("stop", {}))
             self._transcript.line("operator", "Ctrl-C: the robot rests; again to end")
@@ -91,28 +97,26 @@ class Performance:
     def _summary(self, now: float, took: float, video: Path | None) -> int:
         player, log = self._show.player, self._transcript
         failure = player.failure if player else ""
-        ended = (
-            "The story failed"
-            if failure
-            else "Ended before the story did"
-            if player and not player.finished
-            else "All well"
-        )
-        print(
-            f"\n{ended}: {clock_time(now)} of simulated time in {took:.0f} s ({now / max(took, 0.01):.1f} × real time)."
-        )
+        early = player is not None and not player.finished
+        ended = "The story failed" if failure else "Ended before the story did" if early else "All well"
+        pace = "" if self._show.walker is None else f" in {took:.0f} s ({now / max(took, 0.01):.1f} × real time)"
+        print(f"\n{ended}: {clock_time(now)} of {'simulated ' * bool(pace)}time{pace}.")
         if failure:
             print(f"  {failure}")
         print(f"  {len(log.states)} states, {log.said} texts, motions: {', '.join(log.played) or 'none'}")
         if self._face is not None:
             print(f"  the visitor's face ended {self._face:.0f} px from the centre of the camera's image")
-        counts = self._show.server.counts
-        print("  published: " + ", ".join(f"{count.published} {sense}" for sense, count in counts.items()))
+        print("  published: " + ", ".join(map(_told, self._show.server.counts.items())))
         if video:
             print(f"  the film is {video}")
-        print("Next: change a sentence in behaviors/tour.yaml while it runs (docs/change-the-tour.md),")
+        print(f"Next: change a sentence in behaviors/{self._show.exhibition.project.behavior}.yaml while it runs,")
         print("      `lumen run` to be the visitor yourself, `lumen lint` after every change, `lumen graph` to see it.")
-        return 1 if failure else 0
+        return 1 if failure or (early and not self._interrupts) else 0
+
+
+def _told(item: tuple[str, Count]) -> str:
+    sense, count = item
+    return f"{count.published} {sense}" + (f" ({count.dropped} dropped)" if count.dropped else "")
 
 
 def clock_time(now: float) -> str:

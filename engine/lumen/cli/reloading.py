@@ -1,5 +1,6 @@
 """Saved files on a running exhibition: taken where they are good, reported where they are not."""
 
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,7 +18,7 @@ class Reloading:
 
     def __init__(self, show: Show, transcript: Transcript) -> None:
         self._show, self._transcript = show, transcript
-        self._watcher = Watcher(Path(show.exhibition.project.root))
+        self._watcher = Watcher(Path(show.exhibition.project.root), show.exhibition.project.hash)
         self._staged: Project | None = None
         self._since = 0.0
         self._waiting = ""
@@ -32,17 +33,18 @@ class Reloading:
             project, diagnostics = self._watcher.results.get()
             self._report(diagnostics)
             if project is None:
+                self._staged = None
                 self._transcript.line("reload", "refused: the exhibition goes on as it was")
             else:
-                self._staged, self._since, self._waiting = project, now, ""
+                self._staged, self._since, self._waiting = project, time.monotonic(), ""
         if self._staged:
-            self._apply(self._staged, now)
+            self._apply(self._staged)
 
-    def _apply(self, project: Project, now: float) -> None:
+    def _apply(self, project: Project) -> None:
         reason = self._show.reload(project)
         if not reason:
             self._transcript.line("reload", "the saved files are in force")
-        elif now - self._since < PATIENCE:
+        elif time.monotonic() - self._since < PATIENCE:
             if reason != self._waiting:
                 self._transcript.line("reload", f"waiting: {reason}")
                 self._waiting = reason

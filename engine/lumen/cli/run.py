@@ -31,6 +31,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     project = lumen.load(options.project)
     story = _story(project, options.story)
+    if story and story.robot and options.robot != "recording":
+        raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
+    if story and options.robot == "none":
+        raise UsageError("a story needs a robot in a hall: leave out --robot none")
     period, language = _period(options.period), _language(project, options.language)
     video = film_path(options.video, options.robot)
     performance = Performance(

@@ -1,6 +1,8 @@
 """An exhibition with everything around it: senses on the bus, a visitor in the hall, files that may change."""
 
 from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
@@ -10,18 +12,23 @@ from lumen.cli.cast import Cast
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Deed, Story
+from lumen.ports import Sense
 from lumen.robots.server import Server
 from lumen.runtime.exhibition import Exhibition, Observer
 from lumen.runtime.perception import FaceDetector
-from lumen.runtime.story import StoryPlayer
+from lumen.runtime.story import StoryPlayer, staged
 from lumen.runtime.visitor import Walker
+
+MORNING = "10:00"
+"""The time of day at which a story begins that does not say."""
 
 
 class Show(Observer):
     """Puts the parts together; `tick` until it is over, then `close`.
 
     With a story its visitor plays it (`player`); without one the visitor (`walker`) does what whoever holds the show
-    makes them do. Both are None where the robot is in no world of ours. `tell` hears what the visitor does.
+    makes them do. Both are None where the robot is in no world of ours. `tell` hears what the visitor does. Where
+    `sensing` is off, only those senses are on the bus that the behaviour hears of as events.
     """
 
     def __init__(
@@ -31,11 +38,15 @@ class Show(Observer):
         bus_url: str = "memory://",
         story: Story | None = None,
         tell: Callable[[Deed], None] = lambda _: None,
+        *,
+        sensing: bool = True,
     ) -> None:
+        project = staged(project, story)
         self.bus = validated(connect(bus_url), project)
         self.robot, self._story = chosen.robot, story
         self.exhibition = Exhibition(project, chosen.robot, self.bus, chosen.clock)
-        self.server = Server(project, chosen.robot, self.bus)
+        self._sensed: Callable[[Project], Project] = _all if sensing else _quiet
+        self.server = Server(self._sensed(project), chosen.robot, self.bus)
         self.walker: Walker | None = None
         self.faces: FaceDetector | None = None
         self.player: StoryPlayer | None = None
@@ -52,9 +63,13 @@ class Show(Observer):
                 self.exhibition.parts.append(self.player.tick)
 
     def start(self, language: str = "") -> None:
-        """Enter the initial states; a story may say in which language and at what time of day."""
-        language = language or (self._story.language if self._story else "")
-        self.exhibition.start(language=language, epoch=time_of_day(self._story.clock if self._story else ""))
+        """Enter the initial states; a story may say in which language, at what time of day, and remembering what."""
+        story = self._story
+        self.exhibition.start(
+            language=language or (story.language if story else ""),
+            epoch=time_of_day((story.clock or MORNING) if story else ""),
+            context=story.context if story else None,
+        )
 
     def tick(self) -> float:
         """Live through a tick; its time [s]."""
@@ -62,23 +77,38 @@ class Show(Observer):
 
     def reload(self, project: Project) -> str:
         """Go on with another bundle; empty, or why not and nothing has changed."""
+        project = staged(project, self._story)
         reason = self.exhibition.reload(project)
         if not reason:
             self.bus.use(project)
-            self.server.use(project)
+            self.server.use(self._sensed(project))
+            for part in (self.walker, self.faces):
+                if part:
+                    part.use(project)
         return reason
 
     def close(self) -> None:
-        """End what has threads, files or windows open."""
-        for close in self.closing:
-            close()
+        """End what has threads, files or windows open, whatever one of them may raise."""
+        with ExitStack() as stack:
+            for close in reversed(self.closing):
+                stack.callback(close)
 
     def answered(self, event: Event) -> None:
         self.server.answer(event)
 
     def _sense(self, now: float) -> None:
-        self.server.settle()
         self.server.sample(now)
+        self.server.settle()
+
+
+def _all(project: Project) -> Project:
+    return project
+
+
+def _quiet(project: Project) -> Project:
+    """The project without the routes of senses that become no event."""
+    routes = {name: route for name, route in project.routes.items() if name not in set(Sense) or route.event}
+    return replace(project, routes=routes)
 
 
 def film(show: Show, path: Path) -> None:

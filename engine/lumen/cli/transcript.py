@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TextIO
 
 from lumen.cli.terminal import coloured, paint
-from lumen.cli.why import innermost, why
+from lumen.cli.why import innermost, reason_of, why
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import (
     Command,
@@ -45,8 +45,7 @@ class Transcript(Observer):
         self._running: dict[str, str] = {}
         self.states: set[str] = set()
         self.said = 0
-        self.played: list[str] = []
-        self.errors = 0
+        self.played: dict[str, int] = {}
 
     def line(self, who: str, text: str) -> None:
         """One line: the time, who it is about, and what."""
@@ -58,8 +57,7 @@ class Transcript(Observer):
     def stepped(self, step: Step) -> None:
         for error in step.raised:
             if error.name.startswith("error."):
-                self.errors += 1
-                self.line("trouble", f"{error.name}: {error.data.get('reason', '')}")
+                self.line("trouble", f"{error.name}: {reason_of(error)}".rstrip(": "))
         entered = innermost(self._machine(), step.entered)
         if entered:
             self.states.update(entered)
@@ -72,8 +70,9 @@ class Transcript(Observer):
                 self.line("robot", f"“{text}”")
             case Start(id, body_command):
                 if words := _words(body_command):
-                    self._running[id] = words
                     self.line("robot", words)
+                    if not isinstance(body_command, Track | Language):
+                        self._running[id] = words
             case Publish(route):
                 self.line("robot", f"publishes on {route}")
             case Log(text):
@@ -83,10 +82,10 @@ class Transcript(Observer):
         kind, _, id = event.name.partition(".command.")
         running = self._running.pop(id, "")
         if kind == "error":
-            self.errors += 1
-            self.line("trouble", f"could not {_base(running) or 'do that'}: {event.data['reason']}")
+            self.line("trouble", f"could not {_base(running) or 'do that'}: {reason_of(event)}")
         elif kind == "done" and running.startswith("plays "):
-            self.played.append(running.removeprefix("plays "))
+            motion = running.removeprefix("plays ")
+            self.played[motion] = self.played.get(motion, 0) + 1
         elif kind == "cancelled" and running:
             self.line("robot", f"ends early: {running}")
         elif not id:

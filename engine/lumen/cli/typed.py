@@ -4,6 +4,7 @@ import queue
 import sys
 import threading
 from collections.abc import Callable
+from io import TextIOWrapper
 
 from lumen.language.stories import Deed, Leave, Speak
 from lumen.runtime.visitor import Walker
@@ -35,6 +36,8 @@ class TypedSpeech:
         return 0.0 if self._gone is None else now - self._gone
 
     def _read(self) -> None:
+        if isinstance(sys.stdin, TextIOWrapper):
+            sys.stdin.reconfigure(errors="replace")
         for line in sys.stdin:
             self._lines.put(line.strip())
         self._lines.put(None)

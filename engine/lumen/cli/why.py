@@ -1,8 +1,9 @@
 """Which states a step entered, and why, in a few words."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from lumen.interpreters.statechart import Step
+from lumen.language.events import Event
 from lumen.language.machines import Machine, Transition
 
 
@@ -22,6 +23,11 @@ def why(step: Step) -> str:
     return ", then ".join(causes[:3]) + (", …" if len(causes) > 3 else "")
 
 
+def reason_of(event: Event) -> str:
+    """The reason that an error says, empty where it says none."""
+    return str(event.data.get("reason", "")) if isinstance(event.data, Mapping) else ""
+
+
 def _cause(taken: Transition, step: Step) -> str:
     return _trigger(taken, step) + (f", as {taken.guard.source}" if taken.guard else "")
 
@@ -32,6 +38,6 @@ def _trigger(taken: Transition, step: Step) -> str:
     if taken.event.startswith("done."):
         return "done"
     if taken.event.startswith("error."):
-        reasons = [event.data.get("reason", "") for event in step.raised if event.name == taken.event and event.data]
+        reasons = [reason for event in step.raised if event.name == taken.event and (reason := reason_of(event))]
         return f"failed: {reasons[-1]}" if reasons else "failed"
     return taken.event or "at once"

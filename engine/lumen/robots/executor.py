@@ -80,7 +80,7 @@ class Executor:
             task.activity = _Ended(ended, self._tasks)
             self._cancel(ended)
         elif isinstance(command, Rest):
-            self._cancel([t for t in self._tasks if not isinstance(t.command, Stop)])
+            self._cancel([t for t in self._tasks if not isinstance(t.command, Stop | Rest)])
         self._tasks.append(task)
         self._tasks.sort(key=lambda t: t.rank)
 

@@ -1,7 +1,9 @@
 """A running exhibition: the loop that owns the order of things, fifty times a second."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
+from lumen.errors import BusError
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command
 from lumen.language.events import Event
@@ -9,6 +11,7 @@ from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot
 from lumen.runtime.inbox import Inbox
 from lumen.runtime.performer import Performer
+from lumen.runtime.reload import Refusal
 from lumen.runtime.runtime import Runtime
 from lumen.runtime.tracking import Tracking
 
@@ -54,10 +57,11 @@ class Exhibition:
     def project(self) -> Project:
         return self.runtime.project
 
-    def start(self, *, language: str = "", epoch: float = 0.0) -> None:
-        """Listen, and enter the initial states."""
+    def start(self, *, language: str = "", epoch: float = 0.0, context: Mapping[str, Any] | None = None) -> None:
+        """Listen, and enter the initial states; `context` gives keys of the context other first values."""
         self.inbox.listen(self.project)
-        self._perform(self.runtime.start(self._last, language=language, epoch=epoch), self._last)
+        first = self.runtime.start(self._last, language=language, epoch=epoch, context=context)
+        self._perform(first, self._last)
 
     def happen(self, event: Event) -> None:
         """Let something happen at the next tick."""
@@ -78,11 +82,17 @@ class Exhibition:
 
     def reload(self, project: Project) -> str:
         """Go on with another bundle from the next tick on; empty, or why not."""
-        refusal = self.runtime.reload(project)
-        if refusal:
-            return refusal.reason
-        self.inbox.listen(project)
-        self.tracking.reload(project)
+        plan = self.runtime.plan(project)
+        if isinstance(plan, Refusal):
+            return plan.reason
+        try:
+            self.inbox.listen(project)
+            self.tracking.reload(project)
+        except BusError as error:
+            self.inbox.listen(self.project)
+            self.tracking.reload(self.project)
+            return f"the bus refuses its routes: {error}"
+        self.runtime.apply(project, plan)
         return ""
 
     def _stepped(self, step: Step) -> None:
@@ -107,6 +117,6 @@ class Exhibition:
 
 
 def _ours(event: Event) -> bool:
-    """Whether it is for the behaviour: its own commands are c1, d2, …; others' answers are theirs alone."""
+    """Whether it is for the behaviour: its own commands are c1, d2@quiz, …; others' answers are theirs alone."""
     _, separator, id = event.name.partition(".command.")
-    return not separator or (id[:1] in ("c", "d") and id[1:].isdecimal())
+    return not separator or (id[:1] in ("c", "d") and id[1:].partition("@")[0].isdecimal())

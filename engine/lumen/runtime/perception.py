@@ -1,10 +1,13 @@
 """The stand-in for the visual module: a face detector that is never wrong, and takes its time."""
 
+import logging
 from collections import deque
 
 from lumen.language.projects import Project
-from lumen.language.routes import Route
 from lumen.ports import Bus, Hall
+from lumen.runtime.sending import send
+
+_log = logging.getLogger(__name__)
 
 PERIOD = 0.1
 LATENCY = 0.1
@@ -19,21 +22,26 @@ class FaceDetector:
 
     def __init__(self, project: Project, hall: Hall, bus: Bus) -> None:
         self._hall, self._bus = hall, bus
-        self._route: Route | None = project.routes.get(ROUTE)
-        self._robot, self.camera = project.robot, project.body.camera
+        self.camera = project.body.camera
         self._next = 0.0
         self._developing: deque[tuple[float, dict[str, object]]] = deque()
         self.last: tuple[float, float] | None = None
+        self.use(project)
+
+    def use(self, project: Project) -> None:
+        """Publish on the route of this project from now on; on none where it has none."""
+        self._project = project
 
     def tick(self, now: float) -> None:
         """Look, where it is time to, and publish what has been recognised by now."""
-        if self._route is None:
+        if ROUTE not in self._project.routes:
             return
         if now >= self._next:
             self._next += PERIOD
             self._look(now)
         while self._developing and self._developing[0][0] <= now:
-            self._bus.publish(self._route.key_for(self._robot), self._developing.popleft()[1])
+            if reason := send(self._bus, self._project, ROUTE, self._developing.popleft()[1]):
+                _log.warning("a face could not be published: %s", reason)
 
     def _look(self, now: float) -> None:
         self.last = self._hall.face()

@@ -3,11 +3,11 @@
 import logging
 from collections.abc import Callable
 
-from lumen.errors import BusError
 from lumen.language.commands import BodyCommand, Cancel, Command, Language, Log, Play, Publish, Start, Track
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Perform, Robot
+from lumen.runtime.sending import send
 
 _log = logging.getLogger(__name__)
 
@@ -30,7 +30,8 @@ class Performer:
             case Cancel(id):
                 self._robot.cancel(id)
             case Publish(name, body):
-                self._publish(project, name, body, now)
+                if reason := send(self._bus, project, name, body):
+                    self.events.append(Event("error.communication", {"route": name, "reason": reason}, now))
             case Log(text):
                 _log.info(text)
 
@@ -47,14 +48,6 @@ class Performer:
                 self._answer("done", id, now)
             case _:
                 self._robot.start(id, wanted)
-
-    def _publish(self, project: Project, name: str, body: object, now: float) -> None:
-        try:
-            route = project.routes[name]
-            self._bus.publish(route.key_for(project.robot), body, ttl=route.ttl)
-        except (KeyError, BusError) as error:
-            reason = f"there is no route `{name}`" if isinstance(error, KeyError) else str(error)
-            self.events.append(Event("error.communication", {"route": name, "reason": reason}, now))
 
     def _answer(self, kind: str, id: str, now: float, reason: str = "") -> None:
         self.events.append(Event(f"{kind}.command.{id}", {"reason": reason} if reason else None, now))

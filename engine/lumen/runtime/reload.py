@@ -34,7 +34,7 @@ def migrate(old: Machine, new: Machine, snapshot: Snapshot) -> Snapshot | Refusa
             for path, paths in snapshot.history.items()
             if path in new.states and all(p in new.states for p in paths)
         },
-        timers=tuple(timer for timer in snapshot.timers if _lives(new, timer)),
+        timers=_timers(old, new, snapshot, active),
     )
 
 
@@ -53,11 +53,20 @@ def _illegal(new: Machine, active: list[str]) -> str:
 
 
 def _changed(old: Machine, new: Machine, snapshot: Snapshot) -> str:
-    """Which `do` under way has another shape now; texts and names in it may differ."""
+    """Which `do` under way has another shape now (texts and names in it may differ), or what that runs is another."""
     for path in snapshot.doing:
         if _shape(old.states[path]) != _shape(new.states[path]):
             return f"what state `{path}` is doing has changed: until it is left"
+    for id, child in snapshot.invoked.items():
+        if _behind(old, child.state, id) != _behind(new, child.state, id):
+            return f"what state `{child.state or new.id}` has invoked (`{id}`) has changed: until it is left"
     return ""
+
+
+def _behind(machine: Machine, path: str, id: str) -> Machine | None:
+    """The machine that a state invokes under that id, None where it does not."""
+    found = [invoke.behavior for invoke in machine.states[path].invoke if invoke.id == id]
+    return machine.invoked[found[0]] if found else None
 
 
 def _shape(state: State) -> object:
@@ -88,9 +97,24 @@ def _context(new: Machine, context: Mapping[str, Any]) -> dict[str, Any]:
     return {**new.context, **kept}
 
 
-def _lives(new: Machine, timer: Timer) -> bool:
-    """Whether what the timer ends is still there; a delayed `send` always is."""
-    if timer.kind != "after":
-        return True
-    state = new.states.get(timer.state)
-    return state is not None and any(t.event == timer.event and t.delay is not None for t in state.transitions)
+def _timers(old: Machine, new: Machine, snapshot: Snapshot, active: list[str]) -> tuple[Timer, ...]:
+    """Every timer whose end is still there, with its deadline; an active state's new or changed `after` is armed.
+
+    A changed one runs from when the one that it replaces was set, a new one from now.
+    """
+    afters = {path: _afters(new.states[path]) for path in active}
+    kept = [timer for timer in snapshot.timers if timer.kind != "after" or timer.event in afters.get(timer.state, {})]
+    replaced = [timer for timer in snapshot.timers if timer not in kept]
+    for path, delays in afters.items():
+        for event in delays.keys() - _afters(old.states[path]).keys():
+            before = next((timer for timer in replaced if timer.state == path), None)
+            if before:
+                replaced.remove(before)
+            since = before.due - before.delay if before else snapshot.at
+            kept.append(Timer(event, since + delays[event], delays[event], event, None, path, "after"))
+    return tuple(kept)
+
+
+def _afters(state: State) -> dict[str, float]:
+    """The delays [s] of a state's `after`, by the event that each raises."""
+    return {t.event: t.delay for t in state.transitions if t.delay is not None}

@@ -1,16 +1,23 @@
 """The one thread's core: events in, commands out, and never a wait."""
 
-from collections.abc import Callable, Iterable
+import logging
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
 
+from lumen.errors import LumenError
 from lumen.interpreters.statechart import Snapshot, Step, elapse, initial, step
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.runtime.reload import Refusal, migrate
 
+_log = logging.getLogger(__name__)
+
 
 class Runtime:
     """A running behaviour: its bundle, its snapshot, and what happens to them at a tick.
+
+    An event or timer after which the behaviour would never come to rest is dropped, and logged.
 
     `observe` is shown every step in the order taken. `epoch` is the local time of day at time 0 [s since midnight].
     """
@@ -27,31 +34,42 @@ class Runtime:
             raise RuntimeError("start the runtime first")
         return self._snapshot
 
-    def start(self, now: float = 0.0, *, language: str = "", epoch: float = 0.0) -> list[Command]:
-        """Enter the initial states; the commands to perform."""
+    def start(
+        self, now: float = 0.0, *, language: str = "", epoch: float = 0.0, context: Mapping[str, Any] | None = None
+    ) -> list[Command]:
+        """Enter the initial states; the commands to perform. `context` gives keys other first values."""
         language = language or self.project.languages[0]
-        return self._take(initial(self.project.machine, at=now, language=language, epoch=epoch))
+        return self._take(initial(self.project.machine, at=now, input=context, language=language, epoch=epoch))
 
     def tick(self, now: float, events: Iterable[Event] = ()) -> list[Command]:
         """Let everything happen that is due until `now` [s], timers and events in the order of their times."""
         commands: list[Command] = []
         for event in sorted(events, key=lambda e: e.at):
             commands += self._timers(min(event.at, now))
-            commands += self._take(step(self.project.machine, self.snapshot, event))
+            try:
+                commands += self._take(step(self.project.machine, self.snapshot, event))
+            except LumenError as error:
+                _log.error("the event `%s` is dropped: %s", event.name, error)
         return commands + self._timers(now)
 
-    def reload(self, project: Project) -> Refusal | None:
-        """Go on with another bundle, between two macrosteps; None, or why it can't be and nothing has changed."""
-        result = migrate(self.project.machine, project.machine, self.snapshot)
-        if isinstance(result, Refusal):
-            return result
-        self.project, self._snapshot = project, result
-        return None
+    def plan(self, project: Project) -> Snapshot | Refusal:
+        """Where the behaviour would go on under another bundle, or why it can't now; nothing changes."""
+        return migrate(self.project.machine, project.machine, self.snapshot)
+
+    def apply(self, project: Project, planned: Snapshot) -> None:
+        """Go on with another bundle as planned, between two macrosteps."""
+        self.project, self._snapshot = project, planned
 
     def _timers(self, until: float) -> list[Command]:
         commands: list[Command] = []
-        for taken in elapse(self.project.machine, lambda: self.snapshot, until):
-            commands += self._take(taken)
+        try:
+            for taken in elapse(self.project.machine, lambda: self.snapshot, until):
+                commands += self._take(taken)
+        except LumenError as error:
+            first = min(self.snapshot.timers, key=lambda t: t.due)
+            _log.error("the timer `%s` is dropped: %s", first.event, error)
+            kept = tuple(timer for timer in self.snapshot.timers if timer is not first)
+            self._snapshot = self.snapshot._replace(timers=kept)
         return commands
 
     def _take(self, taken: Step) -> list[Command]:

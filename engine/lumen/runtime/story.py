@@ -1,16 +1,49 @@
 """Plays a story: does what it says, waits for what it expects, and tells where it failed."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import assert_never
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple, assert_never
 
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Play, Publish, Say, Start
+from lumen.language.diagnostics import Path
 from lumen.language.events import Event
+from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Expect, Happen, Leave, Pause, Send, Speak, Story, Touch
 from lumen.ports import Hall
 from lumen.runtime.exhibition import Exhibition, Observer
+from lumen.runtime.sending import send
 from lumen.runtime.visitor import Walker
+
+
+class Lack(NamedTuple):
+    """What was expected, and what was instead, in words."""
+
+    expected: str
+    was: str
+
+
+class Failure(NamedTuple):
+    """Why a story failed: in which step (from 1) that stands `where`, what was expected, and what was."""
+
+    story: str
+    step: int
+    where: Path
+    expected: str
+    was: str
+
+    def __str__(self) -> str:
+        return f"step {self.step} of `{self.story}`: {self.what}"
+
+    @property
+    def what(self) -> str:
+        """What was expected, and what was."""
+        return f"expected {self.expected}, but {self.was}" if self.expected else self.was
+
+
+def staged(project: Project, story: Story | None) -> Project:
+    """The project with the behaviour that the story is about as the one that runs."""
+    return replace(project, behavior=story.behavior) if story and story.behavior else project
 
 
 @dataclass
@@ -21,23 +54,38 @@ class Witness:
     context: dict[str, object] = field(default_factory=dict)
     said: list[str] = field(default_factory=list)
     played: list[str] = field(default_factory=list)
-    published: list[str] = field(default_factory=list)
+    published: list[tuple[str, Any]] = field(default_factory=list)
     playing: dict[str, str] = field(default_factory=dict)
 
-    def lacks(self, expected: Expect) -> str:
-        """What of `expected` does not hold, in words; empty where all does."""
+    def lacks(self, expected: Expect) -> Lack | None:
+        """The first thing of `expected` that does not hold."""
         if missing := [s for s in expected.states if s not in self.states]:
-            return f"state `{missing[0]}`, but active are {_names(self.states)}"
-        if expected.said is not None and not any(expected.said.lower() in text.lower() for text in self.said):
-            return f"to hear “{expected.said}”, but it said {_texts(self.said)}"
+            return Lack(f"state `{missing[0]}`", f"active are {_names(self.states)}")
+        return self._unheard(expected) or self._unsent(expected) or self._unlike(expected.context)
+
+    def _unheard(self, expected: Expect) -> Lack | None:
+        part, whole = expected.said, expected.said_exactly
+        if part is not None and not any(part.lower() in text.lower() for text in self.said):
+            return Lack(f"to hear “{part}”", f"it said {_texts(self.said)}")
+        if whole is not None and whole not in self.said:
+            return Lack(f"to hear exactly “{whole}”", f"it said {_texts(self.said)}")
         if expected.played is not None and expected.played not in self.played:
-            return f"the motion `{expected.played}`, but it played {_names(self.played)}"
-        if expected.published is not None and expected.published not in self.published:
-            return f"a message on `{expected.published}`, but it sent {_names(self.published)}"
-        for key, value in expected.context.items():
+            return Lack(f"the motion `{expected.played}`", f"it played {_names(self.played)}")
+        return None
+
+    def _unsent(self, expected: Expect) -> Lack | None:
+        route, body = expected.published, expected.body
+        if route is None or any(name == route and _holds(sent, body) for name, sent in self.published):
+            return None
+        wanted = f" with {body!r}" if body is not None else ""
+        sent = "; ".join(f"{sent!r} on `{name}`" for name, sent in self.published)
+        return Lack(f"a message on `{route}`{wanted}", f"it sent {sent or 'nothing'}")
+
+    def _unlike(self, context: Mapping[str, Any]) -> Lack | None:
+        for key, value in context.items():
             if self.context.get(key) != value:
-                return f"{key} = {value!r}, but it is {self.context.get(key)!r}"
-        return ""
+                return Lack(f"{key} = {value!r}", f"it is {self.context.get(key)!r}")
+        return None
 
     def forget(self) -> None:
         self.said, self.played, self.published = [], [], []
@@ -46,8 +94,10 @@ class Witness:
 class StoryPlayer(Observer):
     """One story on an exhibition, which it watches; call `tick` with its time.
 
-    It is `finished` when its last step is done or one has failed; `failure` says in a line what was expected where.
+    It is `finished` when its last step is done or one has failed; `failed` says what was expected where.
     """
+
+    failed: Failure | None = None
 
     def __init__(
         self,
@@ -58,7 +108,6 @@ class StoryPlayer(Observer):
         tell: Callable[[Deed], None] = lambda _: None,
     ) -> None:
         self.story = story
-        self.failure = ""
         self.scene = 0
         self._exhibition, self._hall, self._walker = exhibition, hall, walker
         self._tell = tell
@@ -66,14 +115,19 @@ class StoryPlayer(Observer):
         self._since = 0.0
 
     @property
+    def failure(self) -> str:
+        """Why it failed, in a line; empty where it has not."""
+        return str(self.failed or "")
+
+    @property
     def finished(self) -> bool:
-        return bool(self.failure) or self.scene >= len(self.story.scenes)
+        return self.failed is not None or self.scene >= len(self.story.scenes)
 
     def stepped(self, step: Step) -> None:
         self._witness.states = step.snapshot.configuration
         self._witness.context = dict(step.snapshot.context)
         if bad := self._witness.states.intersection(self.story.never):
-            self._fail(f"never state {_names(bad)}, but it was entered")
+            self.fail(Lack(f"never state {_names(bad)}", "it was entered"))
 
     def performing(self, command: Command, now: float) -> None:
         match command:
@@ -81,8 +135,8 @@ class StoryPlayer(Observer):
                 self._witness.said.append(text)
             case Start(id, Play(motion)):
                 self._witness.playing[id] = motion
-            case Publish(route):
-                self._witness.published.append(route)
+            case Publish(route, body):
+                self._witness.published.append((route, body))
 
     def answered(self, event: Event) -> None:
         if event.name.startswith("done.command."):
@@ -116,8 +170,8 @@ class StoryPlayer(Observer):
             case Happen(name, data):
                 self._exhibition.happen(Event(name, data, now))
             case Send(name, body):
-                project = self._exhibition.project
-                self._exhibition.bus.publish(project.routes[name].key_for(project.robot), body)
+                if reason := send(self._exhibition.bus, self._exhibition.project, name, body):
+                    self.fail(Lack(f"to send on `{name}`", reason))
             case _:
                 assert_never(deed)
         return True
@@ -127,11 +181,20 @@ class StoryPlayer(Observer):
         if not lacking:
             self._witness.forget()
         elif now >= self._since + expected.within:
-            self._fail(f"expected within {expected.within:g} s {lacking}")
+            self.fail(lacking._replace(expected=f"within {expected.within:g} s {lacking.expected}"))
         return not lacking
 
-    def _fail(self, why: str) -> None:
-        self.failure = self.failure or f"step {self.scene + 1} of `{self.story.name}`: {why}"
+    def fail(self, lack: Lack) -> None:
+        """End the story at the step it stands at; where it has failed already, that counts."""
+        scene = min(self.scene, len(self.story.scenes) - 1)
+        self.failed = self.failed or Failure(self.story.name, scene + 1, self.story.scenes[scene].where, *lack)
+
+
+def _holds(body: Any, wanted: Any) -> bool:
+    """Whether a body has all that is wanted of it: of a map the keys given, of a list every item."""
+    if isinstance(wanted, Mapping) and isinstance(body, Mapping):
+        return all(key in body and _holds(body[key], value) for key, value in wanted.items())
+    return wanted is None or bool(body == wanted)
 
 
 def _names(names: object) -> str:

@@ -1,7 +1,8 @@
 """Lumen Motion: controllers that follow what is seen, switched on and off by the behaviour."""
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from lumen.interpreters.tracking import Tracker
 from lumen.language.commands import Track
@@ -23,7 +24,7 @@ class Tracking:
         self._robot, self._bus = robot, bus
         self._waiting: deque[tuple[str, Message]] = deque(maxlen=BACKLOG)
         self._trackers: dict[str, Tracker] = {}
-        self._undo: dict[str, Callable[[], None]] = {}
+        self._undo: dict[tuple[str, str], Callable[[], None]] = {}
         self._project = project
         self.reload(project)
 
@@ -51,11 +52,10 @@ class Tracking:
         while self._waiting:
             route, message = self._waiting.popleft()
             for name, tracker in self._trackers.items():
-                if route == POSES:
-                    body = message.body
-                    tracker.pose(body.get("time", now), dict(zip(body["name"], body["angle"], strict=True)))
-                elif route in tracker.routes:
-                    captured = message.body.get("time", now - self._project.routes[route].latency)
+                if route == POSES and (angles := _angles(message.body, tracker.joints)):
+                    tracker.pose(_time(message.body, now), angles)
+                elif route in tracker.routes and isinstance(message.body, Mapping):
+                    captured = _time(message.body, now - self._project.routes[route].latency)
                     if (target := tracker.see(message.body, captured, route)) is not None:
                         seen[name] = target
         for name, tracker in self._trackers.items():
@@ -67,11 +67,30 @@ class Tracking:
         """Subscribe to the poses and to the routes of all controllers."""
         names = {POSES} | {b.route for c in self._project.controllers.values() for b in c.input_bindings}
         routes = {name: route for name in sorted(names) if (route := self._project.routes.get(name))}
-        wanted = {route.key_for(self._project.robot): name for name, route in routes.items()}
-        for key in wanted.keys() - self._undo.keys():
-            self._undo[key] = self._bus.subscribe(key, self._receiver(wanted[key]))
-        for key in self._undo.keys() - wanted.keys():
-            self._undo.pop(key)()
+        wanted = {(route.key_for(self._project.robot), name) for name, route in routes.items()}
+        for key, name in sorted(wanted - self._undo.keys()):
+            self._undo[key, name] = self._bus.subscribe(key, self._receiver(name))
+        for gone in sorted(self._undo.keys() - wanted):
+            self._undo.pop(gone)()
 
     def _receiver(self, route: str) -> Callable[[Message], None]:
         return lambda message: self._waiting.append((route, message))
+
+
+def _angles(body: Any, joints: tuple[str, ...]) -> dict[str, float]:
+    """Where these joints stand [rad], by a body of the joint route; empty where it does not say so for each."""
+    names, angles = (body.get("name"), body.get("angle")) if isinstance(body, Mapping) else (None, None)
+    if not isinstance(names, list) or not isinstance(angles, list):
+        return {}
+    found = {name: angle for name, angle in zip(names, angles, strict=False) if name in joints}
+    return found if len(found) == len(joints) and all(map(_is_number, found.values())) else {}
+
+
+def _time(body: Mapping[str, Any], otherwise: float) -> float:
+    """The body's `time` [s] where it has one."""
+    time = body.get("time")
+    return time if isinstance(time, int | float) and _is_number(time) else otherwise
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

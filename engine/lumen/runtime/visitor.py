@@ -1,10 +1,14 @@
 """A visitor who walks up, speaks and leaves: what modules and people do in a real hall."""
 
+import logging
 from dataclasses import replace
 
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, Hall
+from lumen.runtime.sending import send
+
+_log = logging.getLogger(__name__)
 
 PACE = 1.0
 APPROACH = 1.5
@@ -24,6 +28,10 @@ class Walker:
         self._leaving = False
         self._last = 0.0
 
+    def use(self, project: Project) -> None:
+        """Speak on the routes of this project from now on."""
+        self._project = project
+
     def arrive(self, visitor: Visitor) -> None:
         """Come from further off to where `visitor` stands; who is there already walks over."""
         if self._visitor is None:
@@ -38,10 +46,9 @@ class Walker:
 
     def speak(self, text: str, language: str = "") -> None:
         """Say something the speech module understands at once."""
-        route = self._project.routes.get(SPEECH)
-        if route:
-            body = {"name": "visitor", "result": text, "date": "", "language": language}
-            self._bus.publish(route.key_for(self._project.robot), body)
+        body = {"name": "visitor", "result": text, "date": "", "language": language}
+        if reason := send(self._bus, self._project, SPEECH, body):
+            _log.warning("nobody hears the visitor: %s", reason)
 
     def tick(self, now: float) -> None:
         dt, self._last = now - self._last, now

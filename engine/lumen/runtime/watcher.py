@@ -9,7 +9,7 @@ from pathlib import Path
 
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
-from lumen.loading.project import FOLDERS, read_files
+from lumen.loading.files import FOLDERS, fingerprint, read_files
 from lumen.rules import check_files
 
 QUIET = 0.3
@@ -23,13 +23,13 @@ class Watcher:
     """A thread that loads and lints the project anew whenever the content of its files has changed and stayed quiet.
 
     The operating system's notice of a saved file is a hint that hurries it; what decides is the content, read at least
-    once a second. `results` yields what `check_files` made of each new content, good or bad.
+    once a second. `hash` is that of the bundle that runs. `results` yields what `check_files` made of each new content,
+    good or bad.
     """
 
-    def __init__(self, root: Path) -> None:
-        self._root = root
+    def __init__(self, root: Path, hash: str) -> None:
+        self._root, self._hash = root, hash
         self._stop = threading.Event()
-        self._files = read_files(root)
         self.results: queue.SimpleQueue[Bundle] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._run, name="lumen-watcher", daemon=True)
 
@@ -64,11 +64,14 @@ class Watcher:
 
     def _look(self) -> None:
         files = read_files(self._root)
-        if files == self._files:
+        if fingerprint(files) == self._hash:
             return
         files = self._settled(files)
-        self._files = files
-        self.results.put(check_files(self._root, files))
+        self._hash = fingerprint(files)
+        try:
+            self.results.put(check_files(self._root, files))
+        except Exception:  # a fault of ours must not end the watching
+            _log.exception("the saved files could not be checked")
 
     def _settled(self, files: dict[str, bytes]) -> dict[str, bytes]:
         """The files once they have not changed for the quiet period."""

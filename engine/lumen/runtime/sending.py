@@ -1,0 +1,18 @@
+"""Messages on a project's routes, from inside the loop: what can't be sent is a reason, not an exception."""
+
+from typing import Any
+
+from lumen.errors import BusError
+from lumen.language.projects import Project
+from lumen.ports import Bus
+
+
+def send(bus: Bus, project: Project, route: str, body: Any) -> str:
+    """Publish a body on the route of that name; empty, or why it could not be."""
+    if route not in project.routes:
+        return f"there is no route `{route}`"
+    try:
+        bus.publish(project.routes[route].key_for(project.robot), body, ttl=project.routes[route].ttl)
+    except BusError as error:
+        return str(error)
+    return ""
