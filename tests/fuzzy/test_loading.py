@@ -49,6 +49,14 @@ CASES = [
     ("gaussian: [160, 50]", "gaussian: [160, 0]", "not-positive", "0", "how wide"),
     ("gaussian: [160, 50]", "gaussian: [.nan, 50]", "not-a-number", ".nan", "write a number"),
     ("gaussian: [160, 50]", "gaussian: [160, .inf]", "not-finite", ".inf", "write a number"),
+    ("gaussian: [160, 50]", "gaussian: [160, 1e-200]", "extreme-number", "1e-200", "between 1e-12 and 1e+12"),
+    ("gaussian: [160, 50]", "gaussian: [1e308, 50]", "extreme-number", "1e308", "between 1e-12 and 1e+12"),
+    ("gain: 1.5", "gain: .inf", "not-finite", ".inf", "write a number"),
+    ("gain: 1.5", "gain: .nan", "not-a-number", ".nan", "write a number"),
+    ("gain: 1.5", "gain: 1e308", "extreme-number", "1e308", "between 1e-12 and 1e+12"),
+    ("limits: [-60, 60]", "limits: [-60, .inf]", "not-finite", ".inf", "write a number"),
+    ("period: 4s", "period: 0s", "bad-duration", "0s", "raise it"),
+    ("period: 4s", "stale: 0 ms", "bad-duration", "0 ms", "raise it"),
     ("gaussian: [160, 50]", "ramp: [5, 5]", "empty-term", "[5, 5]", "two different numbers"),
     ("gaussian: [160, 50]", "constant: 5", "term-without-set", "constant", "use a shape"),
     ("gaussian: [160, 50]", "gausian: [160, 50]", "unknown-key", "gausian", "did you mean `gaussian`?"),
@@ -86,7 +94,14 @@ def test_the_shipped_controller_has_no_fault() -> None:
 
 
 def test_one_fault_is_said_once() -> None:
-    for old, new in (("gaussian: [160, 50]", "gausian: [160, 50]"), ("gaussian: [160, 50]", "gaussian: [160, 0]")):
+    for old, new in (
+        ("gaussian: [160, 50]", "gausian: [160, 50]"),
+        ("gaussian: [160, 50]", "gaussian: [160, 0]"),
+        ("gaussian: [160, 50]", "gaussian: [.nan, 50]"),
+        ("range: [0, 320]", "range: [0, 1e300]"),
+        ("gaussian: [160, 50]", "gaussian: [160, 1e-200]"),
+        ("gain: 1.5", "gain: .inf"),
+    ):
         assert len(diagnose(HEAD.replace(old, new))) == 1
 
 

@@ -21,6 +21,7 @@ from lumen.language.actions import (
 from lumen.language.commands import Language, Look, Play, Posture, Rest, Stop, Track, Wake, Walk
 from lumen.language.diagnostics import Path
 from lumen.loading.expressions import Expressions
+from lumen.loading.numbers import finite
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES, LENGTHS, seconds
 
@@ -88,9 +89,11 @@ class Actions:
                 return None if length is None else Wait(length)
             case "parallel":
                 return Parallel(self.block(body, where, do=True))
-        return self._motor(verb, body)
+        return self._motor(verb, body, where)
 
-    def _motor(self, verb: str, body: Any) -> Action | None:
+    def _motor(self, verb: str, body: Any, where: Path) -> Action | None:
+        if not self._finite(body, where):
+            return None
         match verb:
             case "play":
                 return Play(body)
@@ -112,6 +115,11 @@ class Actions:
             case "language":
                 return Language(body)
         return None
+
+    def _finite(self, body: Any, where: Path) -> bool:
+        """Whether every number of a motor's action can be gone to; reported where not."""
+        numbers = body.items() if isinstance(body, Mapping) else ()
+        return all(finite(n, self.report, (*where, k)) for k, n in numbers if isinstance(n, int | float))
 
     def _say(self, body: Any, where: Path) -> SayText | None:
         table = {"any": body} if isinstance(body, str) else body

@@ -1,12 +1,12 @@
 """A fuzzy controller, `fuzzy/NAME.yaml`, from its plain data to a `Controller`."""
 
 from collections.abc import Mapping
-from math import isnan
 from typing import Any, TypeVar
 
 from lumen.language.controllers import Controller, Tracking
 from lumen.language.diagnostics import Path
 from lumen.loading.bindings import Bindings
+from lumen.loading.numbers import without_extremes
 from lumen.loading.rulebook import Rulebook
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES, seconds
@@ -19,7 +19,7 @@ def build_controller(data: Any, report: Report, *, name: str, into: type[C] = Co
     """The controller that the data of `fuzzy/NAME.yaml` describes, None where it has no inputs or no outputs."""
     if not isinstance(data, Mapping) or not data.get("inputs") or not data.get("outputs"):
         return None
-    _refuse_nan(data, report, ())
+    data = without_extremes(data, report, _endless)
     angle = ANGLES.get((data.get("units") or {}).get("angle", "rad"), 1.0)
     inputs, outputs = build_variables(data, report, "inputs"), build_variables(data, report, "outputs")
     blocks = Rulebook(data, report, inputs, outputs).blocks()
@@ -31,24 +31,24 @@ def build_controller(data: Any, report: Report, *, name: str, into: type[C] = Co
         blocks=tuple(blocks),
         input_bindings=tuple(bindings.inputs()),
         output_bindings=tuple(bindings.outputs()),
-        tracking=_tracking(data.get("track") or {}, angle),
+        tracking=_tracking(data.get("track") or {}, report, angle),
         angle=angle,
     )
 
 
-def _refuse_nan(data: Any, report: Report, path: Path) -> None:
-    """Report every `.nan`: no value of a controller may be one."""
-    if isinstance(data, float) and isnan(data):
-        report("not-a-number", path, "`.nan` is not a number that a controller can use", hint="write a number")
-    children = data.items() if isinstance(data, Mapping) else enumerate(data) if isinstance(data, list) else ()
-    for key, child in children:
-        _refuse_nan(child, report, (*path, key))
+def _endless(path: Path) -> bool:
+    """Whether a number there may be infinite: ranges and terms have their own rules."""
+    return path[0] in ("inputs", "outputs") and ("terms" in path or "range" in path)
 
 
-def _tracking(data: Mapping[str, Any], angle: float) -> Tracking:
+def _tracking(data: Mapping[str, Any], report: Report, angle: float) -> Tracking:
     """The file's times in [s] and angles in [rad], and the defaults of those that it leaves out."""
     said: dict[str, Any] = {key: data[key] for key in ("speed", "looks", "zoom") if key in data}
     times = {key: seconds(data.get(key)) for key in ("hold", "search", "period", "stale")}
+    for key in ("period", "stale"):
+        if times[key] == 0:
+            message = f"`{key}` has to be longer than nothing"
+            report("bad-duration", ("track", key), message, hint="leave it out, or raise it")
     said.update({key: time for key, time in times.items() if time is not None})
     for key in ("sweep", "ahead"):
         said[key] = {joint: float(value) * angle for joint, value in (data.get(key) or {}).items()}

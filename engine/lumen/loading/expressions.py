@@ -6,6 +6,7 @@ from typing import Any
 from lumen.interpreters.expressions import Finding, check_expression, check_template
 from lumen.language.actions import Expression, Template, Value
 from lumen.language.diagnostics import Diagnostic, Path, Place, did_you_mean
+from lumen.loading.numbers import finite
 from lumen.loading.source import Document, Report
 
 
@@ -35,7 +36,10 @@ class Expressions:
         return Template(text, where) if self._sound(check_template(text, **self.names), text, where) else None
 
     def value(self, data: Any, where: Path) -> Value:
-        """Every text an expression, lists and maps read through; None in place of what can't be read."""
+        """Every text an expression, lists and maps read through; None in place of what can't be read.
+
+        A number is finite: it goes into messages and snapshots, and JSON has no other.
+        """
         match data:
             case str():
                 return self.expression(data, where)
@@ -43,8 +47,10 @@ class Expressions:
                 return tuple(self.value(item, (*where, i)) for i, item in enumerate(data))
             case dict():
                 return {key: self.value(item, (*where, key)) for key, item in data.items()}
-            case None | bool() | int() | float():
+            case None | bool():
                 return data
+            case int() | float():
+                return data if finite(data, self.report, where) else None
         return None
 
     def key(self, key: str, where: Path) -> bool:

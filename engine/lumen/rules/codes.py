@@ -88,6 +88,7 @@ CODES: Mapping[str, Code] = {
     "duplicate-variable": Code(ERROR, "an input and an output have the same name"),
     "empty-range": Code(ERROR, "a range holds nothing"),
     "empty-term": Code(ERROR, "a term covers nothing"),
+    "extreme-number": Code(ERROR, "a number is too large or too small to count with"),
     "hand-out-of-range": Code(ERROR, "a hand is opened to less than 0 or more than 1"),
     "handles-without-key": Code(ERROR, "handles are given for a joint that has no key there"),
     "incomplete-posture": Code(ERROR, "a posture leaves out a joint"),

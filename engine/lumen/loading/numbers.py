@@ -1,0 +1,68 @@
+"""Numbers that nothing can be counted with: what YAML calls `.nan` and `.inf`, and what no float tells from them."""
+
+from collections.abc import Callable, Iterator, Mapping
+from math import isfinite, isinf, isnan
+from typing import Any
+
+from lumen.language.diagnostics import Path
+from lumen.loading.pruning import prune
+from lumen.loading.source import Report
+
+LEAST, GREATEST = 1e-12, 1e12
+"""A number of a controller is 0, or its size lies between these: their squares and quotients are floats as well."""
+
+
+def finite(value: float, report: Report, path: Path) -> bool:
+    """Whether that is an ordinary number; reported where it is not."""
+    try:
+        sound = isfinite(value)
+    except OverflowError:
+        sound = False
+    if not sound:
+        shown = f".{value}".replace(".-", "-.") if isinstance(value, float) else "an endless row of digits"
+        report("not-a-number", path, f"`{shown}` can't be used here", hint="write an ordinary number")
+    return sound
+
+
+def without_extremes(data: Any, report: Report, endless: Callable[[Path], bool]) -> Any:
+    """The data of the report's document without the keys whose numbers can't be counted with, each of them reported.
+
+    `endless` tells where a number may be infinite.
+    """
+    doomed = {_key(path) for path, number in _numbers(data, ()) if not _usable(number, report, path, endless)}
+    if not doomed:
+        return data
+    prune(report, doomed)
+    return report.document.data
+
+
+def _usable(number: float, report: Report, path: Path, endless: Callable[[Path], bool]) -> bool:
+    if isinstance(number, float) and isnan(number):
+        message = "`.nan` is not a number that a controller can use"
+        report("not-a-number", path, message, hint="write a number")
+    elif isinstance(number, float) and isinf(number):
+        if endless(path):
+            return True
+        report("not-finite", path, "this number is infinite, and has to have an end", hint="write a number")
+    elif number and not LEAST <= abs(number) <= GREATEST:
+        size = "large" if abs(number) > 1 else "small"
+        hint = f"write 0, or a number between {LEAST:g} and {GREATEST:g}"
+        report("extreme-number", path, f"this number is too {size} to count with", hint=hint)
+    else:
+        return True
+    return False
+
+
+def _numbers(data: Any, path: Path) -> Iterator[tuple[Path, float]]:
+    if isinstance(data, int | float) and not isinstance(data, bool):
+        yield path, data
+    children = data.items() if isinstance(data, Mapping) else enumerate(data) if isinstance(data, list) else ()
+    for key, child in children:
+        yield from _numbers(child, (*path, key))
+
+
+def _key(path: Path) -> Path:
+    """The key that a number stands under: a list without it would say something else."""
+    while not isinstance(path[-1], str):
+        path = path[:-1]
+    return path
