@@ -79,15 +79,16 @@ def _waited(draft: Draft, machine: Machine, report: Report) -> None:
             said.add(event)
             if not _of_the_engine(event):
                 path = _descriptor(transition.where, event)
-                hint = did_you_mean(event, known - draft.main.lost)
+                hint = did_you_mean(event, {*known, *(f.removesuffix(".") for f in FAMILIES)} - draft.main.lost)
                 if "mean" not in hint:
                     hint = "declare it under `events:`, or give a route of lumen.yaml this `event`"
                 find(report, "unknown-event", path, f"nothing raises the event `{event}`", hint, key=True)
 
 
 def _of_the_engine(event: str) -> bool:
-    prefix = event.removesuffix(".*")
-    return any(family.startswith(prefix) or prefix.startswith(family) for family in FAMILIES)
+    """Whether the engine could raise that: the descriptor begins the name of a family, or goes on from it."""
+    longer = tuple(family for family in FAMILIES if family.endswith("."))
+    return event.startswith(longer) or any(hears(event, family.removesuffix(".")) for family in FAMILIES)
 
 
 def _descriptor(where: Path, event: str) -> Path:
