@@ -5,15 +5,11 @@ from pathlib import Path
 from typing import Any, Self
 
 from lumen.clocks.virtual import VirtualClock
-from lumen.errors import ProjectError, UsageError
+from lumen.errors import UsageError
 from lumen.interpreters.statechart import Snapshot, Step, Timing, due, elapse, freeze, initial, retimed, step, thaw
 from lumen.language import machines
-from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.events import Event
-from lumen.loading.behaviors import build_machine
-from lumen.loading.plain import plain_document
-from lumen.loading.schema import check_schema
-from lumen.loading.source import Document, Report, parse
+from lumen.loading.standalone import machine_from_dict, machine_from_file
 from lumen.ports import Clock
 
 __all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock", "due", "initial", "step"]
@@ -24,31 +20,21 @@ class Machine(machines.Machine):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The machine in a file; raises UsageError where it can't be read, ProjectError for what it says."""
-        try:
-            content = Path(path).read_bytes()
-        except OSError as error:
-            raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
-        return cls._build(*parse(str(path), content), Path(path).stem)
+        """The machine in a file; behaviours that it invokes stand beside it.
+
+        Raises UsageError where a file can't be read, ProjectError for what they say.
+        """
+        return machine_from_file(Path(path), cls)
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any], name: str = "machine") -> Self:
-        """The machine that a dict of the file's shape describes; raises ProjectError."""
-        return cls._build(*plain_document(name, data), name)
+    def from_dict(
+        cls, data: Mapping[str, Any], name: str = "machine", behaviors: Mapping[str, Mapping[str, Any]] | None = None
+    ) -> Self:
+        """The machine that a dict of the file's shape describes; raises ProjectError.
 
-    @classmethod
-    def _build(cls, document: Document | None, diagnostics: list[Diagnostic], name: str) -> Self:
-        if document is None:
-            raise ProjectError(diagnostics)
-        report = Report(document)
-        machine = build_machine(check_schema(document, "behavior", report), report, name=name, into=cls)
-        found = [*diagnostics, *report.diagnostics]
-        if machine is None and not has_errors(found):
-            report("missing-key", (), "a behaviour needs `states`", hint="write `states:` with at least one state")
-            found += report.diagnostics
-        if machine is None or has_errors(found):
-            raise ProjectError(found)
-        return machine
+        `behaviors` are those that it may invoke, each a dict of its own, by their names.
+        """
+        return machine_from_dict(data, name, behaviors or {}, cls)
 
 
 class Interpreter:

@@ -74,7 +74,8 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
     "type of no key": ("types: {x: {type: string}}\nstates: {a: }", "unknown-context-key", "x:", ""),
     "renamed": ("renamed: {x: b}\nstates: {a: }", "unknown-state", "b}", ""),
     "onReload": ("states: {a: {onReload: c}, b: }", "unknown-state", "c}", ""),
-    "invoke": ("states: {a: {invoke: {behavior: quiz}}}", "unsupported", "invoke", ""),
+    "invoke": ("states: {a: {invoke: {behavior: quiz}}}", "unknown-behavior", "quiz", ""),
+    "invoke of itself": ("states: {a: {invoke: {behavior: tour}}}", "invoke-cycle", "tour", "a state of its own"),
     "two verbs": ("states: {a: {entry: {say: x, play: y}}}", "one-verb", "", ""),
     "unknown verb": ("states: {a: {entry: {sai: x}}}", "unknown-key", "sai", "`say`"),
 }

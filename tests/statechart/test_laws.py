@@ -1,6 +1,7 @@
 """What holds of every machine: the same events give the same steps, and a snapshot on the disk loses nothing."""
 
 import json
+from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
@@ -9,6 +10,8 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError
 from lumen.interpreters.statechart import Snapshot, Step, due, freeze, initial, step, thaw
+from lumen.interpreters.statechart.doing import awaited
+from lumen.language.commands import Cancel, Start
 from lumen.language.events import Event
 from lumen.language.machines import Kind
 from lumen.statechart import Machine
@@ -32,8 +35,8 @@ DEEDS: list[dict[str, Any]] = [
 
 
 @st.composite
-def machines(draw: st.DrawFn) -> Machine:
-    """A random machine: at most three levels, any target, no endless `always`."""
+def trees(draw: st.DrawFn, invokes: list[str]) -> dict[str, Any]:
+    """A random behaviour: at most three levels, any target, no endless `always`; some states invoke one of these."""
     tree = draw(
         st.recursive(st.just({}), lambda t: st.dictionaries(st.sampled_from("abc"), t, min_size=1), max_leaves=8)
     )
@@ -68,14 +71,45 @@ def machines(draw: st.DrawFn) -> Machine:
         rows = st.fixed_dictionaries({"target": targets, "reenter": st.booleans(), "guard": guards})
         data["on"] = draw(st.dictionaries(st.sampled_from([*EVENTS, "*"]), rows, max_size=2))
         data["after"] = draw(st.dictionaries(st.sampled_from(["100ms", "1s"]), rows, max_size=1))
+        if invokes and draw(st.booleans()):
+            called = {"id": f"q{data['id']}", "behavior": draw(st.sampled_from(invokes))}
+            ends = {"onDone": draw(st.lists(rows, max_size=1)), "onError": draw(st.lists(rows, max_size=1))}
+            data["invoke"] = {**called, "input": {"n": "context.n + 2"}, **ends}
         for child in data.get("states", {}).values():
             fill(child)
 
     fill(root)
-    return Machine.from_dict(root)
+    if not invokes or draw(st.booleans()):
+        end = draw(st.sampled_from(EVENTS))
+        root = {"context": {"n": 0}, "states": {"s": {**root, "on": {**root["on"], end: "f"}}, "f": {"type": "final"}}}
+        root["states"]["s"].pop("context")
+    return root
+
+
+@st.composite
+def machines(draw: st.DrawFn) -> Machine:
+    """A random machine that may invoke others, which may invoke a third."""
+    inner = draw(trees([]))
+    outer = draw(trees(["inner"]))
+    return Machine.from_dict(draw(trees(["inner", "outer"])), behaviors={"inner": inner, "outer": outer})
 
 
 HAPPENINGS = st.lists(st.sampled_from([*EVENTS, "g", "tick", "answer", "refuse"]), max_size=12)
+
+
+def last_awaited(snapshot: Snapshot) -> str:
+    """The id of the command that a `do` has awaited for the shortest time, anywhere in what runs; empty for none."""
+    ids = [id for position in snapshot.doing.values() for id in awaited(position) if id.startswith("d")]
+    ids += [f"{id}@{owner}" for owner, c in snapshot.invoked.items() if (id := last_awaited(c.snapshot))]
+    return max(ids, key=lambda id: int(id[1:].partition("@")[0]), default="")
+
+
+def running(machine: Machine, snapshot: Snapshot) -> Iterator[tuple[Machine, Snapshot]]:
+    """The machine, and all that it has invoked, each with where it stands."""
+    yield machine, snapshot
+    for id, child in snapshot.invoked.items():
+        [name] = [invoke.behavior for invoke in machine.states[child.state].invoke if invoke.id == id]
+        yield from running(machine.invoked[name], child.snapshot)
 
 
 def happen(snapshot: Snapshot, what: str) -> Event:
@@ -84,7 +118,7 @@ def happen(snapshot: Snapshot, what: str) -> Event:
         return due(snapshot) or Event("e", None, snapshot.at)
     if what in ("answer", "refuse"):
         kind = "done" if what == "answer" else "error"
-        return Event(f"{kind}.command.d{snapshot.counters.awaited}", None, snapshot.at)
+        return Event(f"{kind}.command.{last_awaited(snapshot) or 'd1'}", None, snapshot.at)
     return Event(what, {"x": True}, snapshot.at + 0.05)
 
 
@@ -115,23 +149,36 @@ def test_the_same_events_give_the_same_steps(machine: Machine, happenings: list[
 @settings(max_examples=60, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_every_configuration_is_legal(machine: Machine, happenings: list[str]) -> None:
-    for taken in run(machine, happenings):
-        names = taken.snapshot.configuration
-        for state in machine.states.values():
-            active = [c for c in state.children if machine.states[c].name in names]
+    for inner, snapshot in (r for taken in run(machine, happenings) for r in running(machine, taken.snapshot)):
+        names = snapshot.configuration
+        for state in inner.states.values():
+            active = [c for c in state.children if inner.states[c].name in names]
             if state.path and state.name not in names:
                 assert not active
             elif state.kind is Kind.COMPOUND:
                 assert len(active) == 1
             elif state.kind is Kind.PARALLEL:
-                assert active == [c for c in state.children if machine.states[c].kind is not Kind.HISTORY]
+                assert active == [c for c in state.children if inner.states[c].kind is not Kind.HISTORY]
 
 
 @settings(max_examples=40, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_what_waits_belongs_to_an_active_state(machine: Machine, happenings: list[str]) -> None:
-    for taken in run(machine, happenings):
-        snapshot = taken.snapshot
-        active = {path for path, s in machine.states.items() if not path or s.name in snapshot.configuration}
+    for inner, snapshot in (r for taken in run(machine, happenings) for r in running(machine, taken.snapshot)):
+        active = {path for path, s in inner.states.items() if not path or s.name in snapshot.configuration}
         assert snapshot.doing.keys() <= active
         assert {timer.state for timer in snapshot.timers if timer.kind != "send"} <= active
+        assert {child.state for child in snapshot.invoked.values()} <= active
+
+
+@settings(max_examples=40, deadline=None)
+@given(machines(), HAPPENINGS)
+def test_what_began_ends_once_and_ids_are_never_used_again(machine: Machine, happenings: list[str]) -> None:
+    begun: list[str] = []
+    ended: list[str] = []
+    for taken in run(machine, happenings):
+        begun += [command.id for command in taken.commands if isinstance(command, Start)]
+        ended += [command.id for command in taken.commands if isinstance(command, Cancel)]
+        assert set(ended) <= set(begun)
+    for ids in ([id.partition("@")[0] for id in begun], ended):
+        assert len(ids) == len(set(ids))

@@ -45,11 +45,11 @@ class Transition:
 
 @dataclass(frozen=True, slots=True)
 class Invoke:
-    """Another behaviour that runs while the state is active."""
+    """Another behaviour that runs while the state is active; `input` gives keys of its context first values."""
 
     id: str
     behavior: str
-    input: Value = None
+    input: Mapping[str, Value] = field(default_factory=dict)
     where: Path = field(default=(), compare=False)
 
 
@@ -94,7 +94,10 @@ class Answer:
 
 @dataclass(frozen=True)
 class Machine:
-    """A whole statechart; `states` maps paths to states in document order, the root under the empty path."""
+    """A whole statechart; `states` maps paths to states in document order, the root under the empty path.
+
+    `invoked` holds the machines that its states invoke, by the names of their behaviours.
+    """
 
     id: str
     states: Mapping[str, State]
@@ -105,6 +108,7 @@ class Machine:
     answers: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
     renamed: Mapping[str, str] = field(default_factory=dict)
     hash: str = ""
+    invoked: Mapping[str, "Machine"] = field(default_factory=dict, repr=False)
 
     @property
     def root(self) -> State:

@@ -9,6 +9,7 @@ from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.machines import Answer, Kind, Machine, State
 from lumen.loading.actions import Actions
 from lumen.loading.expressions import Expressions
+from lumen.loading.invocations import check_ids, invocations
 from lumen.loading.outline import Entry, Outline
 from lumen.loading.shapes import check_shapes
 from lumen.loading.source import Report
@@ -49,6 +50,7 @@ class _Builder:
         """Everything that a `Machine` holds."""
         data = self.data
         check_shapes(self.outline, self.report)
+        check_ids(self.outline, self.report)
         return {
             "id": self.outline.root.alias,
             "states": {path: self.state(entry) for path, entry in self.outline.entries.items()},
@@ -63,9 +65,6 @@ class _Builder:
 
     def state(self, entry: Entry) -> State:
         data, where = entry.data, entry.where
-        if "invoke" in data:
-            hint = "put its states into this file for now"
-            self.report("unsupported", (*where, "invoke"), "`invoke` can't be run yet", hint=hint, key=True)
         return State(
             path=entry.path,
             kind=entry.kind,
@@ -78,6 +77,7 @@ class _Builder:
             do=self.actions.block(data.get("do"), (*where, "do"), do=True),
             exit=self.actions.block(data.get("exit"), (*where, "exit")),
             transitions=self.transitions.of(entry),
+            invoke=invocations(entry, self.expressions),
             output=self.expressions.value(data.get("output"), (*where, "output")),
             on_reload=self.on_reload(entry),
             where=where,

@@ -13,6 +13,7 @@ from lumen.loading.bodies import build_body
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import Draft
 from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_files
+from lumen.loading.linking import link
 from lumen.loading.messages import ENDING, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
@@ -44,6 +45,9 @@ def draft(files: Mapping[str, bytes]) -> Draft:
         found.settings = _built(main[1], lambda: build_settings(*main))
     found.bodies = _each(sources["models"], build_body)
     found.behaviors = _each(sources["behaviors"], lambda *a, name: build_machine(*a, name=name, into=Machine))
+    found.behaviors = link(
+        found.behaviors, {n: found.report("behaviors", n) for n in found.behaviors}, found.names["behaviors"]
+    )
     found.stories = _each(sources["behaviors/stories"], build_story)
     found.controllers = _each(sources["fuzzy"], build_controller)
     found.motions = _motions(found, sources["motions"])

@@ -8,6 +8,7 @@ from lumen.language.diagnostics import Path
 from lumen.language.machines import Kind, Transition
 from lumen.loading.actions import Actions
 from lumen.loading.expressions import Expressions
+from lumen.loading.invocations import invoked
 from lumen.loading.outline import Entry, Outline
 from lumen.loading.source import Report
 
@@ -44,6 +45,11 @@ class Transitions:
                 yield from self._candidates(entry, body, where)
             case "after":
                 yield from self._after(entry, body, where)
+            case "invoke":
+                for place, id, row in invoked(entry):
+                    for end, event in (("onDone", f"done.invoke.{id}"), ("onError", f"error.invoke.{id}")):
+                        if end in row:
+                            yield from self._candidates(entry, row[end], (*place, end), event=event, exact=True)
             case "onDone":
                 kind = "do" if entry.kind is Kind.ATOMIC else "state"
                 yield from self._candidates(entry, body, where, event=f"done.{kind}.{entry.name}", exact=True)

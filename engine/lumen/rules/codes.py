@@ -58,9 +58,10 @@ CODES: Mapping[str, Code] = {
     "unknown-story": Code(ERROR, "a story is named that is not in behaviors/stories/"),
     # behaviours
     "conflicting-targets": Code(ERROR, "the states of a target can't be active together"),
-    "duplicate-id": Code(ERROR, "two states have the same id"),
+    "duplicate-id": Code(ERROR, "two states, or two behaviours that are invoked at once, have the same id"),
     "endless-always": Code(ERROR, "an `always` would run for ever"),
     "final-in-parallel": Code(ERROR, "a final state is a region of a parallel state"),
+    "invoke-cycle": Code(ERROR, "a behaviour would invoke itself in the end"),
     "misplaced-key": Code(ERROR, "a key stands in a kind of state that does not have it"),
     "no-states": Code(ERROR, "a compound or parallel state has no states"),
     "not-within": Code(ERROR, "a state is named that does not lie in the one meant"),

@@ -6,7 +6,7 @@ from typing import Any
 from lumen.language.actions import Raise, Send
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.events import ROBOT_EVENTS
-from lumen.language.machines import Machine
+from lumen.language.machines import Kind, Machine, Transition
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.finding import find, first
@@ -17,6 +17,8 @@ FAMILIES = (
     "cancelled.command.", "error.execution", "error.communication",
 )  # fmt: skip
 """Events that the engine raises by itself, or the beginnings of their names."""
+
+_REASON = {"type": "object", "properties": {"reason": {"type": "string"}}, "required": ["reason"]}
 
 
 def check(draft: Draft) -> None:
@@ -49,6 +51,29 @@ def declared(draft: Draft, machine: Machine) -> dict[str, Any]:
             schema = draft.messages.get(route.schema)
             found[route.event] = schema if found.get(route.event, schema) == schema else None
     return {**ROBOT_EVENTS, **found, **machine.events}
+
+
+def outcome(machine: Machine, transition: Transition) -> dict[str, Any] | None:
+    """The event of an `onDone` or `onError` of an invoke, with the schema of its data; None for other transitions."""
+    for invoke in machine.states[transition.source].invoke:
+        if transition.event == f"error.invoke.{invoke.id}":
+            return {transition.event: _REASON}
+        if transition.event == f"done.invoke.{invoke.id}":
+            other = machine.invoked.get(invoke.behavior)
+            return {transition.event: _output(other) if other else None}
+    return None
+
+
+def _output(machine: Machine) -> Mapping[str, Any] | None:
+    """The JSON Schema of what a machine hands on at its end; None where that is no map in all cases."""
+    states = [machine.states[path] for path in machine.root.children]
+    outputs = [state.output for state in states if state.kind is Kind.FINAL]
+    maps = [output for output in outputs if isinstance(output, Mapping)]
+    if not maps or len(maps) < len(outputs):
+        return None
+    properties: dict[str, Any] = {key: {} for output in maps for key in output}
+    required = [key for key in properties if all(key in output for output in maps)]
+    return {"type": "object", "properties": properties, "required": required}
 
 
 def raised(data: Any) -> Iterator[str]:

@@ -11,7 +11,7 @@ from lumen.loading.draft import Draft
 from lumen.loading.expressions import place_within
 from lumen.loading.source import Report
 from lumen.rules.codes import CODES
-from lumen.rules.events import declared, hears, raised
+from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.walk import Spot, spots
 
 BOOLEAN: Mapping[str, Any] = {"type": "boolean"}
@@ -52,13 +52,15 @@ class _Expressions:
         }
         if isinstance(spot.text, Template):
             return check_template(spot.text.text, **around)
-        expected = BOOLEAN if spot.guard else self.context.get(spot.key)
+        expected = BOOLEAN if spot.guard else spot.expected or self.context.get(spot.key)
         return check_expression(spot.text.source, **around, expected=expected)
 
     def possible(self, transition: Transition | None) -> dict[str, Any] | None:
         """The events that can arrive where a transition is taken, None where it could be any."""
-        if transition is None or not transition.event or transition.exact or "*" in transition.event or not self.known:
+        if transition is None or not transition.event or "*" in transition.event or not self.known:
             return None
+        if transition.exact:
+            return outcome(self.machine, transition)
         return {name: schema for name, schema in self.events.items() if hears(transition.event, name)} or None
 
     def say(self, spot: Spot, finding: Finding) -> None:

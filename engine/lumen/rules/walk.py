@@ -1,8 +1,9 @@
 """Every action and every expression of a behaviour, and where each stands."""
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from lumen.interpreters.expressions import schema_of
 from lumen.language.actions import (
     Assign,
     Expression,
@@ -17,7 +18,7 @@ from lumen.language.actions import (
     Template,
     Value,
 )
-from lumen.language.machines import Machine, State, Transition
+from lumen.language.machines import Invoke, Machine, State, Transition
 
 
 class Site(NamedTuple):
@@ -29,12 +30,16 @@ class Site(NamedTuple):
 
 
 class Spot(NamedTuple):
-    """An expression or template; `key` is the context key that its value goes to, `guard` whether it is a condition."""
+    """An expression or template; `key` is the context key that its value goes to, `guard` whether it is a condition.
+
+    `expected` is the JSON Schema that its value has to fit, where neither says so.
+    """
 
     text: Expression | Template
     transition: Transition | None
     guard: bool = False
     key: str = ""
+    expected: Mapping[str, Any] | None = None
 
 
 def sites(machine: Machine) -> Iterator[Site]:
@@ -50,11 +55,21 @@ def spots(machine: Machine) -> Iterator[Spot]:
     """All expressions and templates."""
     for state in machine.states.values():
         yield from (Spot(text, None) for text in _values(state.output))
+        for invoke in state.invoke:
+            yield from _input(invoke, machine.invoked.get(invoke.behavior))
         for transition in state.transitions:
             if transition.guard:
                 yield Spot(transition.guard, transition, guard=True)
     for site in sites(machine):
         yield from _spots(site)
+
+
+def _input(invoke: Invoke, machine: Machine | None) -> Iterator[Spot]:
+    for key, value in invoke.input.items():
+        if isinstance(value, Expression) and machine and key in machine.context:
+            yield Spot(value, None, expected=machine.types.get(key, schema_of(machine.context[key])))
+        else:
+            yield from (Spot(text, None) for text in _values(value))
 
 
 def _nested(block: tuple[Step, ...]) -> Iterator[Step]:

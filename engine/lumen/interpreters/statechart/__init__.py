@@ -2,12 +2,23 @@
 
 from lumen.interpreters.statechart.frozen import Timing, freeze, retimed, thaw
 from lumen.interpreters.statechart.stepping import due, elapse, initial, step
-from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Position, Snapshot, Step, Timer, Within
+from lumen.interpreters.statechart.values import (
+    Awaiting,
+    Counters,
+    Fork,
+    Invoked,
+    Position,
+    Snapshot,
+    Step,
+    Timer,
+    Within,
+)
 
 __all__ = [
     "Awaiting",
     "Counters",
     "Fork",
+    "Invoked",
     "Position",
     "Snapshot",
     "Step",

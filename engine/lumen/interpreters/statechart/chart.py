@@ -15,8 +15,8 @@ class Node:
     """A state, with its neighbours at hand; compared by identity. `index` is its place in document order."""
 
     __slots__ = (
-        "afters", "ancestors", "children", "do", "entry", "exit", "histories", "index", "initial", "kind", "name",
-        "output", "parent", "path", "rules", "state", "views",
+        "afters", "ancestors", "children", "do", "entry", "exit", "histories", "index", "initial", "invokes",
+        "kind", "name", "output", "parent", "path", "rules", "state", "views",
     )  # fmt: skip
 
     def __init__(self, state: State | None, index: int, parent: "Node | None") -> None:
@@ -35,8 +35,14 @@ class Node:
         self.entry: Block = compile_block(state.entry) if state else ()
         self.exit: Block = compile_block(state.exit) if state else ()
         self.do: tuple[Deed, ...] = compile_do(state.do) if state else ()
+        self.invokes = tuple((i, compile_value(i.input)) for i in state.invoke) if state else ()
         self.views: dict[str, Mapping[str, str]] = {}
         self.output = compile_value(state.output) if state and state.output is not None else None
+
+    @property
+    def busy(self) -> bool:
+        """Whether it has anything to be started when it is entered, or ended when it is left."""
+        return bool(self.do or self.invokes or self.afters)
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or 'root'}>"

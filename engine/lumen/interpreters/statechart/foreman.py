@@ -11,10 +11,15 @@ from lumen.language.events import Event
 class Foreman(Workbench):
     """A workbench that knows how far each `do` has come."""
 
-    def begin_doing(self) -> None:
-        """Begin the `do` of every state entered and not left, in the order of entry."""
+    def begin_waiting(self) -> None:
+        """Begin what every state entered and not left has to do, in the order of entry."""
         waiting, self.waiting = sorted(self.waiting, key=lambda node: node.index), ()
         for node in waiting:
+            self.begin(node)
+
+    def begin(self, node: Node) -> None:
+        """Begin what a state does while it is active."""
+        if node.do:
             self.stand(node)
             self.progress(node, None)
 

@@ -1,10 +1,10 @@
 """Snapshots as plain JSON data and back, for the disk; and their timers on another clock."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal
 
 from lumen.errors import SnapshotError
-from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Position, Snapshot, Timer, Within
+from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Invoked, Position, Snapshot, Timer, Within
 from lumen.language.machines import Machine
 
 VERSION = 1
@@ -32,6 +32,14 @@ def freeze(machine: Machine, snapshot: Snapshot) -> dict[str, Any]:
         "counters": snapshot.counters._asdict(),
         "generator": snapshot.generator,
         "epoch": snapshot.epoch,
+        "invoked": {
+            id: {
+                "state": child.state,
+                "snapshot": freeze(_invoked(machine, child.state, id), child.snapshot),
+                "commands": child.commands,
+            }
+            for id, child in snapshot.invoked.items()
+        },
     }
 
 
@@ -58,9 +66,19 @@ def retimed(snapshot: Snapshot, now: float, timing: Timing) -> Snapshot:
             return snapshot
         case "remaining":
             later = now - snapshot.at
-            return snapshot._replace(at=now, timers=tuple(t._replace(due=t.due + later) for t in snapshot.timers))
+            return _moved(snapshot, now, lambda timer: timer.due + later)
         case "restart":
-            return snapshot._replace(at=now, timers=tuple(t._replace(due=now + t.delay) for t in snapshot.timers))
+            return _moved(snapshot, now, lambda timer: now + timer.delay)
+
+
+def _moved(snapshot: Snapshot, now: float, due: Callable[[Timer], float]) -> Snapshot:
+    return snapshot._replace(
+        at=now,
+        timers=tuple(timer._replace(due=due(timer)) for timer in snapshot.timers),
+        invoked={
+            id: child._replace(snapshot=_moved(child.snapshot, now, due)) for id, child in snapshot.invoked.items()
+        },
+    )
 
 
 def _read(machine: Machine, data: Mapping[str, Any]) -> Snapshot:
@@ -80,7 +98,23 @@ def _read(machine: Machine, data: Mapping[str, Any]) -> Snapshot:
         counters=Counters(**data["counters"]),
         generator=int(data["generator"]),
         epoch=float(data["epoch"]),
+        invoked={
+            id: Invoked(
+                child["state"],
+                thaw(_invoked(machine, child["state"], id), child["snapshot"]),
+                int(child["commands"]),
+            )
+            for id, child in data["invoked"].items()
+        },
     )
+
+
+def _invoked(machine: Machine, state: str, id: str) -> Machine:
+    """The machine that a state invokes under that id; raises KeyError where there is none."""
+    for invoke in machine.states[state].invoke:
+        if invoke.id == id:
+            return machine.invoked[invoke.behavior]
+    raise KeyError(id)
 
 
 def _difference(machine: Machine, other: Mapping[str, Any]) -> str:

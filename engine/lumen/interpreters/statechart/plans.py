@@ -50,6 +50,11 @@ class Configuration:
         self._by_name: dict[str, tuple[tuple[Rule, ...], ...]] = {}
         self.eventless = self._select(lambda rule: not rule.transition.event)
 
+    @property
+    def finished(self) -> bool:
+        """Whether the whole machine has come to its end."""
+        return in_final(self.ordered[0], self.nodes)
+
     def candidates(self, name: str) -> tuple[tuple[Rule, ...], ...]:
         """For each active atomic state the transitions that an event of that name selects, the innermost first."""
         found = self._by_name.get(name)
@@ -90,6 +95,10 @@ class Planner:
     def beginning(self) -> Plan:
         """The microstep that enters a machine."""
         return self._make(self.nothing, (), {}, set(), Topology(self.chart, {}).beginning())
+
+    def end(self, start: Configuration) -> Plan:
+        """The microstep that leaves every state (`exitInterpreter`)."""
+        return self._make(start, (), {}, set(start.nodes), set())
 
     def plan(self, start: Configuration, enabled: tuple[Rule, ...], history: History) -> Plan:
         """The microstep that these enabled transitions make from there."""
@@ -135,7 +144,7 @@ def known(nodes: AbstractSet[Node]) -> frozenset[str]:
 def _ways_out(way: Sequence[Node], active: set[Node]) -> tuple[Stop, ...]:
     stops = []
     for node in way:
-        if node.exit or node.do or node.afters:
+        if node.exit or node.busy:
             stops.append(Stop(node, known(active)))
         active.remove(node)
     return tuple(stops)
@@ -146,7 +155,7 @@ def _ways_in(way: Sequence[Node], active: set[Node]) -> tuple[Stop, ...]:
     for node in way:
         active.add(node)
         done = _done(node, active)
-        if node.entry or node.do or node.afters or done:
+        if node.entry or node.busy or done:
             stops.append(Stop(node, known(active), done))
     return tuple(stops)
 

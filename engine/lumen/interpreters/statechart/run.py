@@ -19,21 +19,18 @@ Groups = tuple[tuple[Rule, ...], ...]
 class Run(Foreman):
     """The main loop of SCXML's Appendix D."""
 
-    def settle(self) -> Step:
-        """Take eventless transitions and internal events until there are none, then begin what was entered to do."""
+    def macrostep(self) -> None:
+        """Take eventless transitions and internal events until there are none."""
         while True:
             if self.configuration.eventless and self.take(self.configuration.eventless):
                 continue
-            if self.queue:
-                self.turns += 1
-                if self.turns > LIMIT:
-                    self.give_up()
-                self.event, self.happened, self.scope = self.queue.popleft(), None, None
-                self.take(self.configuration.candidates(self.event.name))
-            elif self.waiting:
-                self.begin_doing()
-            else:
-                return self.step()
+            if not self.queue:
+                return
+            self.turns += 1
+            if self.turns > LIMIT:
+                self.give_up()
+            self.event, self.happened, self.scope = self.queue.popleft(), None, None
+            self.take(self.configuration.candidates(self.event.name))
 
     def take(self, groups: Groups) -> bool:
         """One microstep with the transitions that are enabled among these candidates; False where none is."""
@@ -94,7 +91,7 @@ class Run(Foreman):
             self.timers = (*self.timers, Timer(event, self.at + delay, delay, event, None, node.path, "after"))
         if node.entry:
             self.perform(node.entry, node)
-        if node.do:
+        if node.do or node.invokes:
             self.waiting += (node,)
         for ended, name in enumerate(done):
             self.post(Event(f"done.state.{name.name}", None if ended else self.output(node), self.at))
@@ -143,7 +140,19 @@ class Run(Foreman):
                 self.counters,
                 self.generator,
                 self.epoch,
+                self.invoked,
             ),
         )
-        taken = (self.trigger, self.exited, self.entered, self.commands, snapshot, self.transitions, self.raised)
-        return tuple.__new__(Step, taken)
+        return tuple.__new__(
+            Step,
+            (
+                self.trigger,
+                self.exited,
+                self.entered,
+                self.commands,
+                snapshot,
+                self.transitions,
+                self.raised,
+                self.steps,
+            ),
+        )

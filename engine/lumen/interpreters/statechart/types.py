@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from lumen.errors import UsageError
+from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import Machine
 
 _TESTS: Mapping[str, Callable[[Any], bool]] = {
@@ -56,6 +58,17 @@ def type_checks(machine: Machine) -> dict[str, Check | None]:
 def fits(value: Any, check: Check | None) -> bool:
     """Whether a context key with that check may hold the value."""
     return check is None or type(value) in check.quick or check.accepts(value)
+
+
+def checked(name: str, checks: Mapping[str, Check | None], given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The values given for context keys of the machine of that name; raises UsageError where one does not fit."""
+    for key, value in given.items():
+        if key not in checks:
+            hint = did_you_mean(key, checks)
+            raise UsageError(f"`{name}` has no `{key}` in its context to be given" + f": {hint}" * bool(hint))
+        if not fits(value, checks[key]):
+            raise UsageError(f"`{key}` is {checks[key]} and can't be a {type_name(value)}")
+    return given
 
 
 def type_name(value: Any) -> str:

@@ -54,13 +54,22 @@ class Counters(NamedTuple):
     timers: int = 0
 
 
+class Invoked(NamedTuple):
+    """A behaviour that the state at path `state` has invoked, where it stands, and what had been started before it."""
+
+    state: str
+    snapshot: "Snapshot"
+    commands: int = 0
+
+
 class Snapshot(NamedTuple):
     """Where a behaviour stands between two macrosteps.
 
     `configuration` holds the names of the active states but the root (the alias where there is one, else the path);
     `doing` the position of each active `do` and `history` the paths remembered by each history state, both by path.
     `at` [s] is the time of the last event, `epoch` the local time of day at time 0 [s since midnight], `generator` the
-    state from which alternatives of `say` are drawn. Mappings in it are never changed, only replaced.
+    state from which alternatives of `say` are drawn. `invoked` are the behaviours that run within it, by their ids; its
+    time, language, counters and generator are theirs too. Mappings in it are never changed, only replaced.
     """
 
     configuration: frozenset[str]
@@ -73,13 +82,16 @@ class Snapshot(NamedTuple):
     counters: Counters = Counters()
     generator: int = 0
     epoch: float = 0.0
+    invoked: Mapping[str, Invoked] = {}
 
 
 class Step(NamedTuple):
     """One macrostep: what happened, which states were left and entered, what has to be done, and where it ends.
 
     `event` is None for the first step. `transitions` are those taken and `raised` the internal events, in order; an
-    `error.*` among them says its `reason`, and where the fault stands, in its data. The root is not listed.
+    `error.*` among them says its `reason`, and where the fault stands, in its data. The root is not listed. `invoked`
+    are the steps of invoked behaviours, each with its id, in order; what they ask for is among `commands`, where the
+    ids of their commands end in `@` and the id of the invoke.
     """
 
     event: Event | None
@@ -89,3 +101,4 @@ class Step(NamedTuple):
     snapshot: Snapshot
     transitions: tuple[Transition, ...] = ()
     raised: tuple[Event, ...] = ()
+    invoked: "tuple[tuple[str, Step], ...]" = ()

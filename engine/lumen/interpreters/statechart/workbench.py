@@ -6,10 +6,11 @@ from typing import Any
 
 from lumen.interpreters.expressions import ExpressionError, Scope
 from lumen.interpreters.statechart.blocks import ActionError, Block
-from lumen.interpreters.statechart.chart import Chart, Node
-from lumen.interpreters.statechart.plans import Configuration, Planner
+from lumen.interpreters.statechart.chart import Node
+from lumen.interpreters.statechart.plans import Configuration
+from lumen.interpreters.statechart.program import Program
 from lumen.interpreters.statechart.types import type_name
-from lumen.interpreters.statechart.values import Counters, Snapshot, Timer
+from lumen.interpreters.statechart.values import Counters, Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import Path
 from lumen.language.events import Event
@@ -33,19 +34,21 @@ class Workbench:
     raised: tuple[Event, ...] = ()
     failed: frozenset[Path] = frozenset()
     begun: tuple[str, ...] = ()
+    steps: tuple[tuple[str, Step], ...] = ()
     turns = 0
 
-    def __init__(self, chart: Chart, planner: Planner, before: Snapshot, event: Event | None, at: float) -> None:
-        self.chart, self.planner = chart, planner
+    def __init__(self, program: Program, before: Snapshot, event: Event | None, at: float) -> None:
+        self.program = program
+        self.chart, self.planner, _ = program
         self.trigger = self.event = event
         self.at = at
         (
             names, self.context, _, self.language, self.timers, self.doing, self.history, self.counters,
-            self.generator, self.epoch,
+            self.generator, self.epoch, self.invoked,
         ) = before  # fmt: skip
-        self.configuration: Configuration = planner.configuration(names)
+        self.configuration: Configuration = self.planner.configuration(names)
         self.active = self.configuration.known
-        self.here = chart.root
+        self.here = self.chart.root
 
     def perform(self, block: Block, node: Node) -> None:
         """Do the actions of a block; the first that fails ends it."""

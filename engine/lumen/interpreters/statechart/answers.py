@@ -1,0 +1,51 @@
+"""Ids of commands and timers as they leave a machine, and the way back to who awaits them.
+
+What an invoked behaviour starts as `d7` is `d7@quiz` outside, where `quiz` is the id of its invoke; two levels deep it
+is `d7@hint@quiz`.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from lumen.language.commands import Cancel, Command, Start
+from lumen.language.events import Event
+
+KINDS = ("done", "error", "cancelled")
+
+
+class Answer(NamedTuple):
+    """What became of a command: `done`, or `error` or `cancelled` with a reason."""
+
+    kind: str
+    id: str
+    reason: str
+
+
+def answer_of(event: Event) -> Answer | None:
+    """The robot's answer that an event is; None where it is something else."""
+    kind, _, id = event.name.partition(".command.")
+    if kind not in KINDS or id[:1] not in ("c", "d") or not id[1:].partition("@")[0].isdecimal():
+        return None
+    data = event.data if isinstance(event.data, Mapping) else {}
+    return Answer(kind, id, str(data.get("reason", "")) or kind)
+
+
+def outside(id: str, owner: str) -> str:
+    """What an id of the invoked behaviour `owner` is called outside of it."""
+    return f"{id}@{owner}"
+
+
+def inside(id: str) -> tuple[str, str]:
+    """An id as the behaviour that was invoked knows it, and which that is; empty for one's own."""
+    own, separator, owner = id.rpartition("@")
+    return (own, owner) if separator else (id, "")
+
+
+def labelled(command: Command, owner: str) -> Command:
+    """A command of an invoked behaviour as it is called outside."""
+    match command:
+        case Start(id, wanted):
+            return Start(outside(id, owner), wanted)
+        case Cancel(id):
+            return Cancel(outside(id, owner))
+    return command

@@ -1,0 +1,54 @@
+"""`invoke` of a state: which behaviours run while it is active."""
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import Any
+
+from lumen.language.diagnostics import Path
+from lumen.language.machines import Invoke, Kind
+from lumen.loading.expressions import Expressions
+from lumen.loading.outline import Entry, Outline
+from lumen.loading.source import Report
+
+
+def invocations(entry: Entry, expressions: Expressions) -> tuple[Invoke, ...]:
+    """What a state invokes, in the order of the file."""
+    found = []
+    for where, id, row in invoked(entry):
+        data = row.get("input") or {}
+        values = {key: expressions.value(value, (*where, "input", key)) for key, value in data.items()}
+        found.append(Invoke(id, row["behavior"], values, where))
+    return tuple(found)
+
+
+def invoked(entry: Entry) -> Iterator[tuple[Path, str, dict[str, Any]]]:
+    """Each item under `invoke`, with its place and its id."""
+    body, where = entry.data.get("invoke"), (*entry.where, "invoke")
+    rows = [((*where, i), row) for i, row in enumerate(body)] if isinstance(body, list) else [(where, body)]
+    for place, row in rows:
+        if row:
+            yield place, row.get("id") or row["behavior"], row
+
+
+def check_ids(outline: Outline, report: Report) -> None:
+    """Report where two behaviours that can run at the same time have the same id."""
+    found: dict[str, list[tuple[Entry, Path]]] = {}
+    for entry in outline.entries.values():
+        for where, id, row in invoked(entry):
+            found.setdefault(id, []).append((entry, (*where, "id" if "id" in row else "behavior")))
+    for id, uses in found.items():
+        said: set[Path] = set()
+        for (one, _), (other, where) in combinations(uses, 2):
+            if where not in said and _together(one, other):
+                said.add(where)
+                message = f"{one.title} invokes something as `{id}` too, and both can run at once"
+                report("duplicate-id", where, message, hint="give each an `id` of its own")
+
+
+def _together(one: Entry, other: Entry) -> bool:
+    """Whether two states can be active at the same time."""
+    inner = other
+    while not one.lies_in(inner):
+        assert inner.parent is not None  # every state lies in the root
+        inner = inner.parent
+    return inner is one or inner is other or inner.kind is Kind.PARALLEL

@@ -1,0 +1,80 @@
+"""Behaviours that invoke others, each joined with the machines of those others."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from typing import Generic, TypeVar
+
+from lumen.interpreters.statechart.types import fits, type_checks, type_name
+from lumen.language.actions import Expression
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.machines import Invoke, Machine
+from lumen.loading.source import Report
+
+M = TypeVar("M", bound=Machine)
+
+DEPTH = 16
+"""How many levels of behaviours may run within one another."""
+
+
+def link(machines: Mapping[str, M], reports: Mapping[str, Report], names: Collection[str]) -> dict[str, M]:
+    """These machines by name, each with those that it invokes; what can't be invoked is reported.
+
+    `names` are all behaviours that there are; one that could not be read is among them and is not missed.
+    """
+    linker = _Linker(machines, reports, names)
+    return {name: linker.machine(name) for name in machines}
+
+
+class _Linker(Generic[M]):
+    """Goes down from each behaviour to what it invokes; `way` are those above the one that is being linked."""
+
+    def __init__(self, machines: Mapping[str, M], reports: Mapping[str, Report], names: Collection[str]) -> None:
+        self.machines, self.reports, self.names = machines, reports, names
+        self.linked: dict[str, M] = {}
+        self.levels: dict[str, int] = {}
+        self.way: list[str] = []
+
+    def machine(self, name: str) -> M:
+        """The machine of that name with those that it invokes, and they with theirs."""
+        if name not in self.linked:
+            self.way.append(name)
+            machine, found = self.machines[name], dict[str, Machine]()
+            self.levels[name] = 0
+            for invoke in (i for state in machine.states.values() for i in state.invoke):
+                if other := self.invoked(name, invoke):
+                    found[invoke.behavior] = other
+                    self.levels[name] = max(self.levels[name], 1 + self.levels[invoke.behavior])
+                    self.check_input(name, invoke, other)
+            self.way.pop()
+            self.linked[name] = replace(machine, invoked=found) if found else machine
+        return self.linked[name]
+
+    def invoked(self, name: str, invoke: Invoke) -> M | None:
+        """The machine that is invoked, None where it can't be."""
+        report, where, wanted = self.reports[name], (*invoke.where, "behavior"), invoke.behavior
+        if wanted in self.way:
+            way = " → ".join(f"`{n}`" for n in (*self.way[self.way.index(wanted) :], wanted))
+            message = f"`{wanted}` would invoke itself without end: {way}"
+            report("invoke-cycle", where, message, hint="let one of them go on in a state of its own instead")
+        elif wanted not in self.names:
+            hint = did_you_mean(wanted, self.names, "behaviors/ has")
+            report("unknown-behavior", where, f"there is no behaviour `{wanted}`", hint=hint)
+        elif wanted in self.machines:
+            if len(self.way) < DEPTH and (machine := self.machine(wanted)) and self.levels[wanted] < DEPTH:
+                return machine
+            hint = "put the states of some into one file"
+            report("too-large", where, f"more than {DEPTH} behaviours would run within one another", hint=hint)
+        return None
+
+    def check_input(self, name: str, invoke: Invoke, machine: Machine) -> None:
+        """Report input that the invoked behaviour has no key for, or that can't be of the key's type."""
+        report, checks, called = self.reports[name], type_checks(machine), invoke.behavior
+        for key, value in invoke.input.items():
+            where, check = (*invoke.where, "input", key), checks.get(key)
+            if key in checks:
+                if not (isinstance(value, Expression) or value is None or fits(value, check)):
+                    message = f"`{key}` of `{called}` is {check} and can't be a {type_name(value)}"
+                    report("type-mismatch", where, message, hint="give it a value of that type")
+            elif key not in self.reports[called].lost:
+                hint = did_you_mean(key, checks, "it has")
+                report("unknown-context-key", where, f"the context of `{called}` has no `{key}`", hint=hint, key=True)

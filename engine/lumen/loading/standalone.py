@@ -1,0 +1,80 @@
+"""A behaviour without a project around it: from its file and those beside it, or from dicts."""
+
+from collections.abc import Callable, Collection, Mapping
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from lumen.errors import ProjectError, UsageError
+from lumen.language.diagnostics import Diagnostic, has_errors
+from lumen.language.machines import Machine
+from lumen.loading.behaviors import build_machine
+from lumen.loading.linking import link
+from lumen.loading.plain import plain_document
+from lumen.loading.schema import check_schema
+from lumen.loading.source import Document, Report, parse
+
+M = TypeVar("M", bound=Machine)
+Read = Callable[[str], tuple[Document | None, list[Diagnostic]]]
+
+
+def machine_from_file(path: Path, into: type[M]) -> M:
+    """The machine in a file; what it invokes stands beside it.
+
+    Raises UsageError where a file can't be read, ProjectError for what they say.
+    """
+    files = {file.stem: file for file in sorted(path.parent.glob("*.yaml"))} | {path.stem: path}
+
+    def read(name: str) -> tuple[Document | None, list[Diagnostic]]:
+        try:
+            return parse(str(files[name]), files[name].read_bytes())
+        except OSError as error:
+            raise UsageError(f"can't read {files[name]}: {(error.strerror or str(error)).lower()}") from None
+
+    return _Family(read, files.keys(), into).head(path.stem)
+
+
+def machine_from_dict(data: Mapping[str, Any], name: str, behaviors: Mapping[str, Any], into: type[M]) -> M:
+    """The machine that a dict of a file's shape describes; `behaviors` are those that it may invoke, by name.
+
+    Raises ProjectError.
+    """
+    every = {**behaviors, name: data}
+    return _Family(lambda each: plain_document(each, every[each]), every.keys(), into).head(name)
+
+
+class _Family(Generic[M]):
+    """A behaviour, those that it invokes, and those that they invoke."""
+
+    def __init__(self, read: Read, names: Collection[str], into: type[M]) -> None:
+        self.read, self.names, self.into = read, names, into
+        self.machines: dict[str, M] = {}
+        self.reports: dict[str, Report] = {}
+        self.loose: list[Diagnostic] = []
+
+    def head(self, name: str) -> M:
+        """The machine of that name, its family linked; raises ProjectError."""
+        waiting = [name]
+        while waiting:
+            each = waiting.pop()
+            if each in self.names and each not in self.reports:
+                waiting += self.build(each)
+        linked = link(self.machines, self.reports, self.names)
+        found = [*self.loose, *(d for report in self.reports.values() for d in report.diagnostics)]
+        if name not in linked or has_errors(found):
+            raise ProjectError(found)
+        return linked[name]
+
+    def build(self, name: str) -> list[str]:
+        """Build one of them; what it invokes."""
+        document, diagnostics = self.read(name)
+        self.loose += diagnostics
+        report = self.reports[name] = Report(document or Document(name, None))
+        if document is None:
+            return []
+        machine = build_machine(check_schema(document, "behavior", report), report, name=name, into=self.into)
+        if machine is None:
+            if not has_errors([*diagnostics, *report.diagnostics]):
+                report("missing-key", (), "a behaviour needs `states`", hint="write `states:` with at least one state")
+            return []
+        self.machines[name] = machine
+        return [invoke.behavior for state in machine.states.values() for invoke in state.invoke]
