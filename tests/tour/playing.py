@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from lumen.cli.cast import Cast
-from lumen.cli.show import Show
+from lumen.cli.rehearsal import rehearse
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Play, Say, Start
@@ -13,11 +13,8 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Hall, Robot
-from lumen.robots.recording import RecordingRobot
 from lumen.runtime.exhibition import Observer, Part
 from tests.tour.names import GUIDE
-
-LIMIT = 600.0
 
 
 @dataclass
@@ -72,14 +69,7 @@ class Log(Observer):
 def play(project: Project, story: Story, performer: Performer | None = None, *, part: Part | None = None) -> Run:
     """The story played to its end, or to its failure; `part` lives with it."""
     run = Run()
-    robot = performer or RecordingRobot(project.body, story.robot)
-    show = Show(project, Cast(robot, SimulatedClock(robot.advance), robot), story=story)
-    show.exhibition.observers.append(Log(run))
-    show.exhibition.parts += [part] if part else []
-    show.start()
-    assert show.player
-    while not show.player.finished and run.time < LIMIT:
-        run.time = show.tick()
-    show.close()
-    run.failure = show.player.failure or ("" if show.player.finished else f"not finished after {LIMIT:g} s")
+    chosen = Cast(performer, SimulatedClock(performer.advance), performer) if performer else None
+    rehearsal = rehearse(project, story, chosen, observers=[Log(run)], parts=[part] if part else [])
+    run.time, run.failure = rehearsal.time, str(rehearsal.failed or "")
     return run

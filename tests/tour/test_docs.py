@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.cli.main import VERBS
+from lumen.cli.main import VERBS, main
 from tests.tour.names import ROOT
 
 CHANGE = (ROOT / "docs" / "change-the-tour.md").read_text("utf-8")
@@ -52,7 +52,8 @@ def test_lint_says_what_the_tutorial_quotes(copy: Path) -> None:
 @pytest.mark.parametrize("kind", ["behavior", "story", "motion", "controller", "lumen"])
 def test_the_vocabulary_names_every_key_of_the_schemas(kind: str) -> None:
     schema = json.loads((ROOT / "schemas" / f"{kind}.schema.json").read_text("utf-8"))
-    written = set(re.findall(r"[A-Za-z_]+", " ".join(re.findall(r"`[^`]+`", VOCABULARY))))
+    text = re.sub(r"```.*?```", "", VOCABULARY, flags=re.S)
+    written = set(re.findall(r"[A-Za-z_]+", " ".join(re.findall(r"`[^`]+`", text))))
     wanted = set(schema["properties"])
     if kind == "behavior":
         wanted |= {key for name in ("state", "transition", "action") for key in schema["$defs"][name]["properties"]}
@@ -64,6 +65,12 @@ def test_the_vocabulary_names_every_key_of_the_schemas(kind: str) -> None:
     if kind == "lumen":
         wanted |= set(schema["$defs"]["route"]["properties"])
     assert wanted - written == set()
+
+
+def test_the_story_in_the_documentation_goes_as_it_says(copy: Path) -> None:
+    [story] = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "stories.md").read_text("utf-8"), re.S)
+    (copy / "behaviors" / "stories" / "song.yaml").write_text(story, "utf-8")
+    assert main(["test", str(copy), "song"]) == 0
 
 
 def test_the_schemas_know_every_file_that_the_vocabulary_lists() -> None:
@@ -80,7 +87,7 @@ def commands(text: str) -> Iterator[list[str]]:
             yield line.split()
 
 
-@pytest.mark.parametrize("page", ["change-the-tour.md", "yaml.md", "paper.md"])
+@pytest.mark.parametrize("page", ["change-the-tour.md", "yaml.md", "paper.md", "stories.md"])
 def test_the_commands_in_the_documentation_exist(page: str) -> None:
     makefile = (ROOT / "Makefile").read_text("utf-8")
     for command, *rest in commands((ROOT / "docs" / page).read_text("utf-8")):

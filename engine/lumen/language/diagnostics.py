@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from enum import StrEnum
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 Path = tuple[str | int, ...]
 """Where something stands in a document: keys and indices from its root, as in `("states", "idle", "on", 0)`."""
@@ -27,6 +27,14 @@ class Place(NamedTuple):
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}:{self.column}"
+
+
+class Places(Protocol):
+    """A document that knows where its nodes stand."""
+
+    def place(self, path: Path, *, key: bool = False) -> Place:
+        """The place of the node at `path`, or of its key."""
+        ...
 
 
 class Related(NamedTuple):

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from lumen.language.controllers import Controller
+from lumen.language.diagnostics import Path, Place, Places
 from lumen.language.machines import Machine
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
@@ -24,7 +25,8 @@ class Project:
     """Everything the YAML of a project says. `root` is its folder, `hash` of all its files' contents.
 
     `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has
-    the default first; `messages` maps a message's name to its JSON Schema.
+    the default first; `messages` maps a message's name to its JSON Schema; `documents`
+    know where in each file what stands.
     """
 
     root: str
@@ -44,8 +46,14 @@ class Project:
     stage: Stage | None = None
     bus: str = "memory://"
     hash: str = ""
+    documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def machine(self) -> Machine:
         """The behaviour that runs."""
         return self.behaviors[self.behavior]
+
+    def place(self, file: str, where: Path) -> Place:
+        """Where in a file stands what a state, transition, action or scene calls its `where`."""
+        document = self.documents.get(file)
+        return document.place(where) if document else Place(file)

@@ -71,14 +71,17 @@ class Pause:
 class Expect:
     """`expect:`: all of this holds, or comes to hold `within` [s], else the story fails.
 
-    `states` are active together; `said` is part of a text said, and `played` a motion finished, since the last
-    `expect` that held; `context` maps keys to values.
+    `states` are active together; `said` is part of a text said and `said_exactly` the whole of one, `played` a motion
+    finished, `published` a route on which a message was sent whose body has at least what `body` has (None: any), all
+    since the last `expect` that held; `context` maps keys to values.
     """
 
     states: tuple[str, ...] = ()
     said: str | None = None
+    said_exactly: str | None = None
     played: str | None = None
     published: str | None = None
+    body: Any = None
     context: Mapping[str, Any] = field(default_factory=dict)
     within: float = 30.0
 

@@ -78,6 +78,7 @@ def assemble(found: Draft, root: str) -> Project:
         stage=settings.stage,
         bus=settings.bus,
         hash=fingerprint(found.files),
+        documents={file: report.document for file, report in found.reports.items()},
     )
 
 

@@ -90,13 +90,16 @@ def _visitor(body: Any, report: Report, where: Path) -> Deed | None:
 
 
 def _expect(body: Mapping[str, Any], report: Report, where: Path) -> Expect:
-    states = body.get("state", ())
+    states, published = body.get("state", ()), body.get("published")
+    message = published if isinstance(published, Mapping) else {"route": published}
     within = duration(body, "within", report, where)
     return Expect(
         states=(states,) if isinstance(states, str) else tuple(states),
         said=body.get("said"),
+        said_exactly=body.get("said_exactly"),
         played=body.get("played"),
-        published=body.get("published"),
+        published=message["route"],
+        body=message.get("body"),
         context=body.get("context", {}),
         within=WITHIN if within is None else within,
     )

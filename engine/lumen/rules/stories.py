@@ -1,8 +1,10 @@
 """Stories: the names they use of their behaviour, the robot and the exhibition."""
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
+from lumen.interpreters.statechart.types import fits, type_checks, type_name
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect, Happen, Send, Story, Touch
@@ -28,14 +30,15 @@ class _Script:
         self.behavior = story.behavior or main
         self.machine = draft.behaviors.get(self.behavior)
         self.events = declared(draft, self.machine) if self.machine else {}
+        self.sound = not any(behavior == self.behavior for behavior, *_ in draft.unsound)
 
     def check(self) -> None:
         if self.story.behavior:
             self.references.look_up(self.report, ("behavior",), "behavior", self.story.behavior)
         for i, state in enumerate(self.story.never):
             self.state(("never", i), state)
-        for key in self.story.context:
-            self.key(("context", key), key)
+        for key, value in self.story.context.items():
+            self.key(("context", key), key, value)
         for scene in self.story.scenes:
             match scene.deed:
                 case Touch(sensor, pressed):
@@ -51,12 +54,13 @@ class _Script:
     def expect(self, where: Path, expected: Expect) -> None:
         for i, state in enumerate(expected.states):
             self.state(first(self.report, (*where, "state", i), (*where, "state")), state)
-        for key in expected.context:
-            self.key((*where, "context", key), key)
+        for key, value in expected.context.items():
+            self.key((*where, "context", key), key, value)
         if expected.played is not None:
             self.references.look_up(self.report, (*where, "played"), "motion", expected.played)
         if expected.published is not None:
-            known_route(self.draft, self.report, (*where, "published"), expected.published)
+            place = first(self.report, (*where, "published", "route"), (*where, "published"))
+            known_route(self.draft, self.report, place, expected.published)
 
     def state(self, path: Path, name: str) -> None:
         """A state as `configuration` calls it: by its id where it has one."""
@@ -69,11 +73,17 @@ class _Script:
             message = f"`{self.behavior}` has no state that is called `{name}`"
             find(self.report, "unknown-state", path, message, hint)
 
-    def key(self, path: Path, key: str) -> None:
-        if self.machine is not None and key not in self.machine.context and not self._lost(key):
+    def key(self, path: Path, key: str, value: Any) -> None:
+        """A context key, and whether it can have that value."""
+        if self.machine is None or self._lost(key):
+            return
+        if key not in self.machine.context:
             hint = did_you_mean(key, self.machine.context, "it has")
             message = f"the context of `{self.behavior}` has no `{key}`"
             find(self.report, "unknown-context-key", path, message, hint, key=True)
+        elif self.sound and not fits(value, check := type_checks(self.machine)[key]):
+            hint = f"it begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}"
+            find(self.report, "wrong-type", path, f"`{key}` is {check} and can't be a {type_name(value)}", hint)
 
     def sensor(self, path: Path, sensor: str) -> None:
         body = self.draft.body

@@ -145,8 +145,10 @@ class StoryPlayer(Observer):
                 self._witness.played.append(motion)
 
     def tick(self, now: float) -> None:
-        """Do every step that can be done by `now` [s]."""
-        while not self.finished and self._do(now):
+        """Do every step that can be done by `now` [s]; what is done is heard before anything is expected of it."""
+        heard = True
+        while heard and not self.finished and self._do(now):
+            heard = isinstance(self.story.scenes[self.scene].deed, Pause | Expect)
             self.scene += 1
             self._since = now
 

@@ -1,0 +1,114 @@
+"""A story played on the recording robot in simulated time, as fast as this machine can, and what came of it."""
+
+import logging
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from lumen.cli.cast import Cast, cast
+from lumen.cli.show import Show
+from lumen.cli.transcript import Transcript
+from lumen.errors import LumenError
+from lumen.language.diagnostics import Place
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.runtime.exhibition import Observer, Part
+from lumen.runtime.story import Failure, Lack, StoryPlayer
+
+REMEMBERED = 12
+"""How many lines of what happened last are told with a failure."""
+
+
+@dataclass(frozen=True)
+class Rehearsal:
+    """How a story went: `time` is simulated, `took` this machine's time [s].
+
+    Where it failed, `place` is that of the step in the story's file, and `trace` tells what happened last: each time
+    [s], who, and what.
+    """
+
+    story: Story
+    time: float
+    took: float
+    failed: Failure | None = None
+    place: Place | None = None
+    trace: tuple[tuple[float, str, str], ...] = ()
+
+
+class Trace(Transcript):
+    """Keeps the last lines of a transcript."""
+
+    def __init__(self, show: Show) -> None:
+        super().__init__(show.exhibition.clock.now, lambda: show.exhibition.project.machine)
+        self._clock = show.exhibition.clock
+        self.lines: deque[tuple[float, str, str]] = deque(maxlen=REMEMBERED)
+
+    def line(self, who: str, text: str) -> None:
+        self.lines.append((self._clock.now(), who, text))
+
+
+def rehearse(
+    project: Project,
+    story: Story,
+    chosen: Cast | None = None,
+    *,
+    observers: Iterable[Observer] = (),
+    parts: Iterable[Part] = (),
+) -> Rehearsal:
+    """Play the story to its end, or to its failure; `chosen` is another robot than the recording one.
+
+    The recording robot keeps its head still: joints and pictures, which no behaviour hears of, are not on its bus.
+    `observers` watch, `parts` live with it. A behaviour that never comes to rest fails the story, as does whatever
+    else the engine logs as an error; its warnings stand in the trace.
+    """
+    robot = chosen or cast("recording", project, "max", story)
+    show = Show(project, robot, story=story, tell=lambda deed: trace.deed(deed), sensing=chosen is not None)
+    trace = Trace(show)
+    show.exhibition.observers += [trace, *observers]
+    show.exhibition.parts += parts
+    player, now, began = show.player, 0.0, time.perf_counter()
+    assert player is not None  # the robot stands in a hall
+    try:
+        with _logged(show, trace):
+            show.start()
+            while not player.finished:
+                now = show.tick()
+    except LumenError as error:
+        player.fail(Lack("", str(error)))
+    finally:
+        show.close()
+    took, failed = time.perf_counter() - began, player.failed
+    if failed is None:
+        return Rehearsal(story, now, took)
+    place = project.place(f"behaviors/stories/{story.name}.yaml", failed.where)
+    return Rehearsal(story, now, took, failed, place, tuple(trace.lines))
+
+
+class _Log(logging.Handler):
+    """Takes what the engine logs into the trace; an error fails the story."""
+
+    def __init__(self, player: StoryPlayer, trace: Trace) -> None:
+        super().__init__(logging.WARNING)
+        self._player, self._trace = player, trace
+
+    def emit(self, record: logging.LogRecord) -> None:
+        said = record.getMessage()
+        self._trace.line("trouble", said)
+        if record.levelno >= logging.ERROR:
+            self._player.fail(Lack("", said))
+
+
+@contextmanager
+def _logged(show: Show, trace: Trace) -> Iterator[None]:
+    """While it lasts, the engine's log is the story's and nobody else's."""
+    assert show.player is not None
+    log, handler = logging.getLogger("lumen"), _Log(show.player, trace)
+    before, log.propagate = log.propagate, False
+    log.addHandler(handler)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
+        log.propagate = before

@@ -1,0 +1,110 @@
+"""`lumen test`: the stories of a project, played on the recording robot."""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import lumen
+from lumen.cli.exploring import Explored, explored
+from lumen.cli.rehearsal import Rehearsal, rehearse
+from lumen.cli.terminal import coloured
+from lumen.cli.verdict import Verdict
+from lumen.cli.verdicts import FORMATS, text
+from lumen.errors import UsageError
+from lumen.interpreters.exploration import BOUND
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.loading.packaged import MAIN_FILE
+from lumen.runtime.coverage import Coverage
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("words", nargs="*", metavar="[PROJECT] STORY", help="its folder, then stories by name; default: all of them")
+    add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
+    add("-o", "--output", metavar="FILE", type=Path, help="write it there instead of printing it")
+    add("--coverage", action="store_true", help="list the states never entered and the transitions never taken")
+    add("--fail-under", metavar="N", type=float, help="with --coverage: fail where less than N %% is covered")
+    add("--explore", action="store_true", help="walk the behaviour for dead ends instead of playing the stories")
+    add("--behavior", metavar="NAME", help="with --explore: another one than the one that runs")
+    add("--home", metavar="STATE", help="with --explore: the state to come back to; default: those of the beginning")
+    add("--bound", metavar="N", type=int, default=BOUND, help=f"configurations to explore (default: {BOUND:,})")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 where all is well, 1 where a story failed or something was found."""
+    folder, names = _words(options.words)
+    _check(options)
+    project = lumen.load(folder)
+    began = time.perf_counter()
+    live = options.format == "text" and options.output is None
+    rehearsals: list[Rehearsal] = []
+    coverage = Coverage(project) if options.coverage or options.fail_under is not None else None
+    if names or coverage or not options.explore:
+        for story in _stories(project, names):
+            observers = [coverage.of(story.behavior or project.behavior)] if coverage else []
+            rehearsals.append(rehearse(project, story, observers=observers))
+            if live:
+                _print(text.story(rehearsals[-1], coloured=coloured()))
+    walked = _explore(project, options) if options.explore else None
+    took = time.perf_counter() - began
+    verdict = Verdict(project.name, tuple(rehearsals), coverage, options.fail_under or 0.0, walked, took)
+    if live:
+        _print("\n".join(text.conclusion(verdict, coloured=coloured())))
+    else:
+        _deliver(FORMATS[options.format](verdict), options.output)
+    return 0 if verdict.well else 1
+
+
+def _words(words: list[str]) -> tuple[str | None, list[str]]:
+    """The project's folder where the first word is one, and the names of stories."""
+    if words and (Path(words[0]).is_dir() or Path(words[0]).name == MAIN_FILE):
+        return words[0], words[1:]
+    return None, words
+
+
+def _check(options: argparse.Namespace) -> None:
+    if options.fail_under is not None and not 0 <= options.fail_under <= 100:
+        raise UsageError("--fail-under takes a number from 0 to 100")
+    if options.bound < 1:
+        raise UsageError("--bound takes a number of configurations, at least 1")
+    if not options.explore and (options.behavior or options.home):
+        raise UsageError("--behavior and --home are for --explore")
+
+
+def _stories(project: Project, names: list[str]) -> list[Story]:
+    if not project.stories:
+        raise UsageError("there are no stories: write one into behaviors/stories/, as docs/stories.md shows")
+    stems = [Path(name).stem if name.endswith(".yaml") else name for name in names]
+    for stem in stems:
+        if stem not in project.stories:
+            hint = did_you_mean(stem, project.stories, "behaviors/stories/ has")
+            raise UsageError(f"no project or story `{stem}`: {hint}")
+    return [project.stories[stem] for stem in stems or sorted(project.stories)]
+
+
+def _explore(project: Project, options: argparse.Namespace) -> Explored:
+    behavior = options.behavior or project.behavior
+    if behavior not in project.behaviors:
+        raise UsageError(f"no behaviour `{behavior}`: {did_you_mean(behavior, project.behaviors, 'behaviors/ has')}")
+    names = [state.name for state in project.behaviors[behavior].states.values() if state.path]
+    if options.home and options.home not in names:
+        raise UsageError(f"no state `{options.home}` in `{behavior}`: {did_you_mean(options.home, names, 'it has')}")
+    return explored(project, behavior, bound=options.bound, home=options.home or "")
+
+
+def _print(shown: str) -> None:
+    print(shown.encode("utf-8", "replace").decode(), flush=True)
+
+
+def _deliver(shown: str, output: Path | None) -> None:
+    if output is None:
+        _print(shown)
+        return
+    try:
+        output.write_text(shown + "\n", encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise UsageError(f"can't write {output}: {error.strerror}") from None
+    print(f"wrote {output}", file=sys.stderr)

@@ -1,0 +1,72 @@
+"""A verdict as one JSON object, for other programs."""
+
+import json
+from typing import Any
+
+from lumen.cli.exploring import Explored
+from lumen.cli.rehearsal import Rehearsal
+from lumen.cli.verdict import Verdict
+from lumen.language.diagnostics import Place
+from lumen.runtime.coverage import Coverage
+
+
+def render(verdict: Verdict) -> str:
+    """`{"stories": […], "failed": N, "took": s}`, with `coverage` and `explore` where asked for."""
+    found: dict[str, Any] = {
+        "stories": [_story(rehearsal) for rehearsal in verdict.rehearsals],
+        "failed": verdict.failed,
+        "took": round(verdict.took, 3),
+    }
+    if verdict.coverage:
+        found["coverage"] = _coverage(verdict.coverage)
+    if verdict.explored:
+        found["explore"] = _explored(verdict.explored)
+    return json.dumps(found, indent=2, ensure_ascii=False)
+
+
+def _story(rehearsal: Rehearsal) -> dict[str, Any]:
+    story, failed = rehearsal.story, rehearsal.failed
+    found: dict[str, Any] = {
+        "name": story.name,
+        "title": story.title,
+        "passed": failed is None,
+        "time": round(rehearsal.time, 3),
+        "took": round(rehearsal.took, 3),
+    }
+    if failed is not None:
+        found["failure"] = {
+            **_place(rehearsal.place),
+            "step": failed.step,
+            "expected": failed.expected,
+            "was": failed.was,
+            "trace": [{"time": round(time, 3), "who": who, "what": what} for time, who, what in rehearsal.trace],
+        }
+    return found
+
+
+def _coverage(coverage: Coverage) -> dict[str, Any]:
+    counts = {"states": coverage.states, "transitions": coverage.transitions}
+    return {
+        "percent": round(coverage.percent, 1),
+        **{what: {"covered": some, "of": every} for what, (some, every) in counts.items()},
+        "gaps": [{**_place(gap.place), "message": gap.what} for gap in coverage.gaps()],
+    }
+
+
+def _explored(explored: Explored) -> dict[str, Any]:
+    found = explored.exploration
+    return {
+        "behavior": explored.behavior,
+        "configurations": found.configurations,
+        "steps": found.steps,
+        "complete": found.complete,
+        "took": round(explored.took, 3),
+        "findings": [
+            {**_place(f.place), "kind": f.kind, "message": f.message, "story": f.story} for f in explored.findings
+        ],
+        "unseen": [{**_place(gap.place), "message": gap.what} for gap in explored.unseen],
+    }
+
+
+def _place(place: Place | None) -> dict[str, Any]:
+    return {"file": place.file, "line": place.line, "column": place.column} if place else {}

@@ -1,0 +1,95 @@
+"""A verdict as it reads on a terminal."""
+
+from collections.abc import Iterator
+
+from lumen.cli.exploring import Explored
+from lumen.cli.performance import clock_time
+from lumen.cli.rehearsal import Rehearsal
+from lumen.cli.terminal import paint
+from lumen.cli.verdict import Verdict
+from lumen.runtime.coverage import Coverage
+
+KINDS = {
+    "dead-end": "a dead end",
+    "no-way-back": "no way back",
+    "restless": "no rest",
+}
+
+
+def render(verdict: Verdict, *, coloured: bool = False) -> str:
+    """Everything, a line for each story first."""
+    stories = [story(rehearsal, coloured=coloured) for rehearsal in verdict.rehearsals]
+    return "\n".join([*stories, *conclusion(verdict, coloured=coloured)])
+
+
+def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
+    """A line: whether it went well, its name, how long it was, its title; below it what went wrong, and before that."""
+    failed = rehearsal.failed
+    sign = paint("FAILED", "bold", "red", on=coloured) if failed else paint("ok    ", "green", on=coloured)
+    length = paint(f"{clock_time(rehearsal.time):>6}", "dim", on=coloured)
+    title = f"{sign} {length}  {paint(rehearsal.story.name, 'bold', on=coloured)}: {rehearsal.story.title}"
+    if failed is None:
+        return title
+    lines = [title, f"  {paint(str(rehearsal.place), 'bold', on=coloured)}: step {failed.step}: {failed.what}"]
+    lines += ["  What happened last:"] if rehearsal.trace else []
+    return "\n".join([*lines, *(_line(*row, coloured) for row in rehearsal.trace)])
+
+
+def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
+    """What comes after the stories: coverage, exploration, and the sum."""
+    if verdict.coverage:
+        yield from _coverage(verdict, verdict.coverage, coloured)
+    if verdict.explored:
+        yield from _explored(verdict.explored, coloured)
+    if verdict.rehearsals:
+        lived = sum(r.time for r in verdict.rehearsals)
+        sum_of = f"{count(len(verdict.rehearsals), 'story', 'stories')}, {verdict.failed} failed"
+        colour = "red" if verdict.failed else "green"
+        time = f"{clock_time(lived)} of simulated time in {verdict.took:.1f} s"
+        yield f"\n{paint(sum_of, 'bold', colour, on=coloured)}: {time}"
+
+
+def count(number: int, one: str, many: str) -> str:
+    """`1 story`, `2 stories`."""
+    return f"{number:,} {one if number == 1 else many}"
+
+
+def _line(time: float, who: str, text: str, coloured: bool) -> str:
+    minutes, tenths = divmod(int(time * 10 + 1e-6), 600)
+    return f"    {paint(f'{minutes:2d}:{tenths / 10:04.1f}', 'dim', on=coloured)}  {who:<8} {text}"
+
+
+def _coverage(verdict: Verdict, coverage: Coverage, coloured: bool) -> Iterator[str]:
+    for gap in coverage.gaps():
+        yield f"{paint(str(gap.place), 'bold', on=coloured)}: {gap.what}"
+    counted = [f"{some} of {every} {what}" for (some, every), what in _counts(coverage)]
+    percent = paint(f"{coverage.percent:.0f} %", "bold", "red" if verdict.uncovered else "green", on=coloured)
+    wanted = f", less than the {verdict.wanted:g} % wanted" if verdict.uncovered else ""
+    yield f"\nCovered: {' and '.join(counted)}: {percent}{wanted}"
+
+
+def _counts(coverage: Coverage) -> Iterator[tuple[tuple[int, int], str]]:
+    yield coverage.states, "states"
+    yield coverage.transitions, "transitions"
+
+
+def _explored(explored: Explored, coloured: bool) -> Iterator[str]:
+    found = explored.exploration
+    for finding in explored.findings:
+        kind = paint(KINDS[finding.kind], "bold", "red", on=coloured)
+        yield f"\n{paint(str(finding.place), 'bold', on=coloured)}: {kind}: {finding.message}"
+        yield "\n".join(f"    {line}".rstrip() for line in finding.story.splitlines())
+    size = count(found.configurations, "configuration", "configurations")
+    steps = count(found.steps, "step", "steps")
+    number = len(explored.findings)
+    sum_of = paint(
+        count(number, "finding", "findings") if number else "nothing found",
+        *("bold", "red" if number else "green"),
+        on=coloured,
+    )
+    if explored.unseen:
+        yield "\nNot come upon, by the data that was tried:"
+        yield from (f"  {gap.place}: {gap.what}" for gap in explored.unseen)
+    yield f"\nExplored `{explored.behavior}`: {size}, {steps} in {explored.took:.1f} s: {sum_of}" + (
+        "" if found.complete else f"; --bound ended it with {found.waiting:,} more in sight"
+    )

@@ -1,0 +1,82 @@
+"""When two snapshots count as one: what cannot make a difference is left out, and numbers have an end."""
+
+import re
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from lumen.interpreters.exploration.liveness import Liveness
+from lumen.interpreters.exploration.reading import of_state
+from lumen.interpreters.expressions.tree import Literal, walk
+from lumen.interpreters.statechart import Awaiting, Fork, Position, Snapshot, Within
+from lumen.language.machines import Machine
+
+ITEMS = 4
+"""Of a list or map in the context more is not looked at."""
+
+Key = tuple[Any, ...]
+
+
+class Abstraction:
+    """The key of a snapshot: equal keys, one configuration.
+
+    Of the context only keys that can still matter count. Of a number only whether it is one of those near the numbers
+    that the behaviour mentions, or below or above them all; of a text whether it is empty or one that is mentioned.
+    Times, ids, what has been drawn and (unless it is asked for) the language do not count.
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        self._machine = machine
+        self._liveness = Liveness(machine)
+        uses = [use for state in machine.states.values() for use in of_state(state)]
+        literals = {node.value for use in uses for node, _ in walk(use.tree) if isinstance(node, Literal)}
+        self._texts = {value for value in literals if isinstance(value, str)}
+        self._numbers = sorted({v for v in literals if isinstance(v, int | float) and not isinstance(v, bool)} | {0})
+        self._language = any(re.search(r"\bstate\.language\b", t) for t in _guards(machine))
+        self._inner = {
+            i.id: Abstraction(machine.invoked[i.behavior]) for s in machine.states.values() for i in s.invoke
+        }
+
+    def key(self, snapshot: Snapshot) -> Key:
+        live = self._liveness.of(snapshot.configuration)
+        return (
+            snapshot.configuration,
+            tuple((k, self.value(snapshot.context.get(k))) for k in sorted(live)),
+            tuple(sorted((t.event if t.kind != "wait" else "", t.state, t.kind) for t in snapshot.timers)),
+            tuple((path, _shape(position)) for path, position in sorted(snapshot.doing.items())),
+            tuple(sorted(snapshot.history.items())),
+            snapshot.language if self._language else "",
+            tuple((id, self._inner[id].key(child.snapshot)) for id, child in sorted(snapshot.invoked.items())),
+        )
+
+    def value(self, value: Any) -> Any:
+        """What of a value counts."""
+        if value is None or isinstance(value, bool):
+            return value
+        if isinstance(value, int | float):
+            return self._number(value)
+        if isinstance(value, str):
+            return value if not value or value in self._texts else "…"
+        if isinstance(value, Mapping):
+            return tuple((k, self.value(v)) for k, v in sorted(value.items())[:ITEMS])
+        return tuple(self.value(item) for item in value[:ITEMS])
+
+    def _number(self, value: float) -> tuple[int, float]:
+        least, most = self._numbers[0] - 1, self._numbers[-1] + 1
+        near = value if value == int(value) else bisect_left(self._numbers, value) - 0.5
+        return (0, near) if least <= value <= most else (-1 if value < least else 1, 0)
+
+
+def _guards(machine: Machine) -> Iterator[str]:
+    return (t.guard.source for state in machine.states.values() for t in state.transitions if t.guard)
+
+
+def _shape(position: Position | None) -> Any:
+    match position:
+        case Within(block, place, inner):
+            return (block, place, _shape(inner))
+        case Fork(branches):
+            return tuple(_shape(branch) for branch in branches)
+        case Awaiting(id):
+            return "wait" if id.startswith("w") else "command"
+    return None

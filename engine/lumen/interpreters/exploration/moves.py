@@ -1,0 +1,173 @@
+"""Everything that can happen next where a behaviour stands: events, timers that end, answers of the robot."""
+
+from collections.abc import Iterator, Mapping
+from enum import StrEnum
+from typing import Any, NamedTuple
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.exploration.reading import of_transition
+from lumen.interpreters.exploration.samples import samples
+from lumen.interpreters.expressions import Node, Scope, compile_expression, names, unparse
+from lumen.interpreters.expressions.tree import children
+from lumen.interpreters.statechart import Awaiting, Fork, Position, Snapshot, Timer, Within
+from lumen.interpreters.statechart.answers import outside
+from lumen.interpreters.statechart.program import Program, compiled
+from lumen.language.commands import BodyCommand
+from lumen.language.events import Event
+from lumen.language.machines import Machine, Transition
+
+FAILURE = "it does not work"
+
+
+class Kind(StrEnum):
+    """What a move is: an event from outside, a timer's end, a command's end, or its failure."""
+
+    EVENT = "event"
+    TIME = "time"
+    DONE = "done"
+    FAILED = "failed"
+
+
+COSTS: Mapping[Kind, int] = {Kind.DONE: 0, Kind.EVENT: 2, Kind.TIME: 2, Kind.FAILED: 7}
+"""What a move costs on the way to the shortest story: a robot that does what it should costs nothing."""
+
+IMPATIENCE = 5
+"""What it costs besides that a timer ends while a command is under way: the robot has to hang."""
+
+
+class Move(NamedTuple):
+    """Something that can happen; `event` is what the behaviour steps with.
+
+    `waited` [s] is how long it takes, `pending` what the robot is asked to do meanwhile; `command` is what is answered.
+    """
+
+    kind: Kind
+    event: Event
+    waited: float = 0.0
+    command: BodyCommand | None = None
+    pending: tuple[BodyCommand, ...] = ()
+
+    @property
+    def cost(self) -> int:
+        return COSTS[self.kind] + (IMPATIENCE if self.kind is Kind.TIME and self.pending else 0)
+
+
+class Moves:
+    """Finds the moves; `events` are those that may come from outside, each with the JSON Schema of its data."""
+
+    def __init__(self, machine: Machine, events: Mapping[str, Any]) -> None:
+        self._machine, self._events = machine, events
+        self._program = compiled(machine)
+        self._known: dict[tuple[Any, ...], tuple[Any, ...]] = {}
+
+    def of(self, snapshot: Snapshot, commands: Mapping[str, BodyCommand]) -> Iterator[Move]:
+        """The moves of a snapshot; `commands` are those started so far, by id."""
+        awaited = [id for id in _awaited(snapshot) if not _pause(id)]
+        pending = tuple(commands[id] for id in awaited if id in commands)
+        for id in awaited:
+            yield Move(Kind.DONE, Event(f"done.command.{id}", None, snapshot.at), 0.0, commands.get(id))
+        for timer in _next(snapshot):
+            at = max(timer.due, snapshot.at)
+            event = Event(timer.event, timer.data, at, timer.id)
+            hanging = () if _pause(timer.id) else pending
+            yield Move(Kind.TIME, event, at - snapshot.at, None, hanging)
+        for name in self._events:
+            yield from (Move(Kind.EVENT, Event(name, data, snapshot.at)) for data in self._data(name, snapshot))
+        for id in awaited:
+            event = Event(f"error.command.{id}", {"reason": FAILURE}, snapshot.at)
+            yield Move(Kind.FAILED, event, 0.0, commands.get(id))
+
+    def _data(self, name: str, snapshot: Snapshot) -> tuple[Any, ...]:
+        """Data of an event, one for each sort that the transitions that may hear it tell apart."""
+        heard = tuple(_heard(self._program, snapshot, name))
+        if not heard:
+            return ()
+        known = (name, *(id(transition) for _, transition in heard))
+        if known not in self._known:
+            self._known[known] = tuple(self._sorts(name, heard))
+        return self._known[known]
+
+    def _sorts(self, name: str, heard: tuple[tuple[Machine, Transition], ...]) -> Iterator[Any]:
+        trees = [(machine, use.tree) for machine, transition in heard for use in of_transition(transition)]
+        atoms = [(machine, unparse(node)) for machine, tree in trees for node in _known_of_events(tree)]
+        seen = set()
+        for machine in dict.fromkeys(id(m) for m, _ in heard):
+            about = [tree for owner, tree in trees if id(owner) == machine]
+            owner = next(m for m, _ in heard if id(m) == machine)
+            for data in samples(owner, self._events[name], about):
+                sort = tuple(_sort(m, source, name, data) for m, source in atoms)
+                if sort not in seen:
+                    seen.add(sort)
+                    yield data
+
+
+def _heard(program: Program, snapshot: Snapshot, name: str) -> Iterator[tuple[Machine, Transition]]:
+    """The transitions that an event of that name may select, here or in what is invoked."""
+    for group in program.planner.configuration(snapshot.configuration).candidates(name):
+        yield from ((program.chart.machine, rule.transition) for rule in group)
+    behaviors = {i.id: i.behavior for s in program.chart.machine.states.values() for i in s.invoke}
+    for id, child in snapshot.invoked.items():
+        yield from _heard(program.invoked[behaviors[id]], child.snapshot, name)
+
+
+def _known_of_events(tree: Node) -> Iterator[Node]:
+    """The largest parts of an expression that depend on the event's data and on nothing else but it."""
+    speaks = names(tree)
+    alone = not speaks.context and not speaks.functions & {"In", "hour"}
+    if alone and "event" in unparse(tree):
+        yield tree
+    elif not alone:
+        for child in children(tree):
+            yield from _known_of_events(child)
+
+
+def _sort(machine: Machine, source: str, name: str, data: Any) -> str:
+    """What a part of an expression says of an event, where that can be true, false, empty or something."""
+    scope = Scope(event={"name": name, "data": data}, phrases=machine.phrases, answers=machine.answers)
+    try:
+        value = compile_expression(source)(scope)
+    except ExpressionError:
+        return "fails"
+    return repr(value) if isinstance(value, bool | int | float) or not value else "something"
+
+
+def _next(snapshot: Snapshot) -> Iterator[Timer]:
+    """The timers that may be the next to end.
+
+    Nobody knows how long ago a state elsewhere was entered; but of those of a state and of the states around it, a
+    shorter one ends before a longer one.
+    """
+    for timer in snapshot.timers:
+        around = [t for t in snapshot.timers if t.kind == "after" and _within(timer.state, t.state)]
+        if timer.kind == "send" or not any(t.delay < timer.delay for t in around):
+            yield timer
+    for owner, child in snapshot.invoked.items():
+        yield from (timer._replace(id=outside(timer.id, owner)) for timer in _next(child.snapshot))
+
+
+def _within(path: str, outer: str) -> bool:
+    return not outer or path == outer or path.startswith(f"{outer}.")
+
+
+def _awaited(snapshot: Snapshot) -> Iterator[str]:
+    """The ids that a `do` waits for, as they are called outside."""
+    for position in snapshot.doing.values():
+        yield from _ids(position)
+    for owner, child in snapshot.invoked.items():
+        yield from (outside(id, owner) for id in _awaited(child.snapshot))
+
+
+def _ids(position: Position | None) -> Iterator[str]:
+    match position:
+        case Awaiting(id):
+            yield id
+        case Within(_, _, inner):
+            yield from _ids(inner)
+        case Fork(branches):
+            for branch in branches:
+                yield from _ids(branch)
+
+
+def _pause(id: str) -> bool:
+    """Whether an id is that of a `wait`, which ends with its timer."""
+    return id.startswith("w")

@@ -1,0 +1,81 @@
+"""What a behaviour reads: the expressions on which its way depends, state by state."""
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import NamedTuple
+
+from lumen.interpreters.expressions import ExpressionError, Node, names, parse_expression
+from lumen.language.actions import Assign, Expression, If, Parallel, Raise, Send, Step, Value
+from lumen.language.machines import Machine, State, Transition
+
+
+class Use(NamedTuple):
+    """An expression, and the context key that its value goes to; no key where the way itself depends on it."""
+
+    tree: Node
+    key: str = ""
+
+
+@lru_cache(maxsize=8192)
+def tree_of(source: str) -> Node | None:
+    """The tree of an expression, None where it can't be read."""
+    try:
+        return parse_expression(source)
+    except ExpressionError:
+        return None
+
+
+def of_transition(transition: Transition) -> Iterator[Use]:
+    """What a transition reads: its guard, and what its actions do."""
+    if transition.guard:
+        yield from _of(transition.guard)
+    yield from of_block(transition.actions)
+
+
+def of_state(state: State) -> Iterator[Use]:
+    """Everything that a state reads, its transitions included."""
+    for block in (state.entry, state.do, state.exit):
+        yield from of_block(block)
+    for transition in state.transitions:
+        yield from of_transition(transition)
+    for value in (state.output, *(invoke.input for invoke in state.invoke)):
+        yield from _of(value)
+
+
+def of_block(block: tuple[Step, ...]) -> Iterator[Use]:
+    """What actions read, except for texts and messages: those change nothing in the behaviour."""
+    for step in block:
+        match step.action:
+            case If(guard, then, otherwise):
+                yield from _of(guard)
+                yield from of_block(then + otherwise)
+            case Parallel(branches):
+                yield from of_block(branches)
+            case Assign(values):
+                for key, value in values.items():
+                    yield from _of(value, key)
+            case Raise(data=data) | Send(data=data):
+                yield from _of(data)
+
+
+def relevant(machine: Machine) -> frozenset[str]:
+    """The context keys on which the behaviour's way depends, directly or through others."""
+    uses = [use for state in machine.states.values() for use in of_state(state)]
+    found: set[str] = set()
+    while True:
+        read = {key for use in uses if not use.key or use.key in found for key in names(use.tree).context}
+        if read <= found:
+            return frozenset(found)
+        found |= read
+
+
+def _of(value: Value, key: str = "") -> Iterator[Use]:
+    if isinstance(value, Expression):
+        if (tree := tree_of(value.source)) is not None:
+            yield Use(tree, key)
+    elif isinstance(value, Mapping):
+        for item in value.values():
+            yield from _of(item, key)
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from _of(item, key)

@@ -1,0 +1,153 @@
+"""Data that events may carry: one of each sort that the guards tell apart, found from the guards themselves."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import product
+from math import prod
+from typing import Any
+
+from lumen.interpreters.expressions.tree import Binary, Call, Items, Literal, Node, children, path_of, walk
+from lumen.language.machines import Machine
+
+MOST = 300
+"""Combinations of fields that are tried."""
+
+NAME = "Ani"
+
+Path = tuple[str, ...]
+
+
+def samples(machine: Machine, schema: Any, trees: Iterable[Node]) -> Iterator[Any]:
+    """Data of an event with that JSON Schema, with every field that the trees read at all values they mention.
+
+    Further ones go on where a field has many values; the first is the plainest.
+    """
+    values: dict[Path, dict[Any, None]] = {}
+    for tree in trees:
+        for path, found in _mentioned(machine, tree):
+            values.setdefault(path, {}).update(dict.fromkeys(found))
+    for path, mentioned in values.items():
+        values[path] = {**dict.fromkeys(_plain(_below(schema, path))), **mentioned}
+    base = example(schema)
+    for chosen in _chosen([list(found) for found in values.values()]):
+        data = base
+        for path, value in zip(values, chosen, strict=True):
+            data = _with(data, path, value)
+        yield data
+
+
+def _chosen(columns: list[list[Any]]) -> Iterator[tuple[Any, ...]]:
+    """Every combination of a value from each column; where there are too many, every value once."""
+    if prod(map(len, columns)) <= MOST:
+        yield from product(*columns)
+        return
+    first = tuple(column[0] for column in columns)
+    for i, column in enumerate(columns):
+        yield from ((*first[:i], value, *first[i + 1 :]) for value in column)
+
+
+def example(schema: Any) -> Any:
+    """Some value that fits a JSON Schema, as plain as can be."""
+    if not isinstance(schema, Mapping):
+        return {}
+    shown = next(iter(schema.get("examples") or ()), None)
+    if schema.get("properties") or schema.get("type") == "object":
+        fields, given = schema.get("properties") or {}, shown if isinstance(shown, Mapping) else {}
+        return {k: given[k] if k in given else example(fields.get(k)) for k in schema.get("required", ())}
+    return next(iter(_plain(schema))) if shown is None else shown
+
+
+def _plain(schema: Any) -> list[Any]:
+    """A few values of a field, by its schema."""
+    if not isinstance(schema, Mapping) or not schema:
+        return [NAME, "", 0, True]
+    if "const" in schema:
+        return [schema["const"]]
+    if schema.get("enum"):
+        return list(schema["enum"])
+    declared = schema.get("type", ())
+    kinds = [declared] if isinstance(declared, str) else list(declared)
+    return [value for kind in kinds for value in _of_kind(kind, schema)] or [NAME]
+
+
+def _of_kind(kind: str, schema: Mapping[str, Any]) -> list[Any]:
+    least = schema.get("minimum", 0)
+    plain: Mapping[str, list[Any]] = {
+        "string": [NAME, ""] if not schema.get("minLength") else [NAME],
+        "integer": [least, least + 1],
+        "number": [least, least + 1],
+        "boolean": [True, False],
+    }
+    return plain.get(kind, [None])
+
+
+def _mentioned(machine: Machine, tree: Node) -> Iterator[tuple[Path, list[Any]]]:
+    """For each field of the event's data that stands in the tree, values that it is compared with."""
+    yield from ((path, []) for path in _fields(tree))
+    for node, _ in walk(tree):
+        match node:
+            case Call(function=function, arguments=(first, Literal(value=str() as text))):
+                found = _heard(machine, function, text)
+                yield from ((path, found) for path in _fields(first))
+            case Binary(left=left, right=right):
+                for one, other in ((left, right), (right, left)):
+                    sized = any(isinstance(n, Call) and n.function == "size" for n, _ in walk(one))
+                    found = _compared(other, sized=sized)
+                    yield from ((path, found) for path in _fields(one))
+
+
+def _heard(machine: Machine, function: str, text: str) -> list[Any]:
+    """Texts of which a function with that second argument says something, and others."""
+    match function:
+        case "heard":
+            return [phrase for texts in machine.phrases.get(text, {}).values() for phrase in texts]
+        case "lookup":
+            rows = machine.answers.get(text, ())
+            return [phrase for row in rows for texts in row.phrases.values() for phrase in texts[:1]]
+        case "after":
+            return [text, f"{text} {NAME}"]
+        case "contains" | "matches":
+            return [text.strip("^$")]
+    return []
+
+
+def _compared(other: Node, *, sized: bool) -> list[Any]:
+    items = other.items if isinstance(other, Items) else (other,)
+    found: list[Any] = []
+    for item in items:
+        if isinstance(item, Literal):
+            value = item.value
+            if sized and isinstance(value, int):
+                found += [" ".join([NAME] * n) for n in (value, value + 1) if 0 <= n < 50]
+            elif isinstance(value, int | float) and not isinstance(value, bool):
+                found += [value, value - 1, value + 1]
+            else:
+                found.append(value)
+    return found
+
+
+def _fields(tree: Node) -> Iterator[Path]:
+    """The fields of the event's data in a tree, each as a whole."""
+    path = _field(tree)
+    if path is not None:
+        yield path
+        return
+    for child in children(tree):
+        yield from _fields(child)
+
+
+def _field(node: Node) -> Path | None:
+    path = path_of(node)
+    return path[2:] if path and path[:2] == ("event", "data") else None
+
+
+def _below(schema: Any, path: Path) -> Any:
+    for key in path:
+        schema = (schema.get("properties") or {}).get(key) if isinstance(schema, Mapping) else None
+    return schema
+
+
+def _with(data: Any, path: Path, value: Any) -> Any:
+    if not path:
+        return value
+    fields = data if isinstance(data, Mapping) else {}
+    return {**fields, path[0]: _with(fields.get(path[0]), path[1:], value)}

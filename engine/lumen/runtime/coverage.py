@@ -1,0 +1,104 @@
+"""What a number of runs went through: states entered, transitions taken, and what is left."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from lumen.interpreters.statechart import Step
+from lumen.language.diagnostics import Path, Place
+from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.language.projects import Project
+from lumen.runtime.exhibition import Observer
+
+
+class Gap(NamedTuple):
+    """A state that was never entered, or a transition that was never taken."""
+
+    place: Place
+    what: str
+
+
+@dataclass
+class Coverage:
+    """States entered, by name, and transitions taken, by where they stand, for each behaviour that ran."""
+
+    project: Project
+    entered: dict[str, set[str]] = field(default_factory=dict)
+    taken: dict[str, set[Path]] = field(default_factory=dict)
+
+    def of(self, behavior: str) -> Observer:
+        """Who watches a run of that behaviour."""
+        return _Watcher(self, behavior)
+
+    def note(self, behavior: str, step: Step) -> None:
+        """Count a step of that behaviour, and those of the behaviours that it has invoked."""
+        self.entered.setdefault(behavior, set()).update(step.entered)
+        self.taken.setdefault(behavior, set()).update(t.where for t in step.transitions)
+        machine = self.project.behaviors[behavior]
+        invokes = {invoke.id: invoke.behavior for state in machine.states.values() for invoke in state.invoke}
+        for id, inner in step.invoked:
+            self.note(invokes[id], inner)
+
+    @property
+    def states(self) -> tuple[int, int]:
+        """How many states were entered, and how many there are."""
+        wanted = [(b, s.name) for b in self.entered for s in _states(self.project.behaviors[b])]
+        return sum(name in self.entered[b] for b, name in wanted), len(wanted)
+
+    @property
+    def transitions(self) -> tuple[int, int]:
+        """How many transitions were taken, and how many there are."""
+        wanted = [(b, t.where) for b in self.entered for t in _transitions(self.project.behaviors[b])]
+        return sum(where in self.taken[b] for b, where in wanted), len(wanted)
+
+    @property
+    def percent(self) -> float:
+        """The smaller of both, in percent."""
+        return min(100.0 * some / every if every else 100.0 for some, every in (self.states, self.transitions))
+
+    def gaps(self) -> list[Gap]:
+        """What is left, by file and line."""
+        return sorted(gap for behavior in self.entered for gap in self._gaps(behavior))
+
+    def _gaps(self, behavior: str) -> Iterator[Gap]:
+        machine, file = self.project.behaviors[behavior], f"behaviors/{behavior}.yaml"
+        for state in _states(machine):
+            if state.name not in self.entered[behavior]:
+                yield Gap(self.project.place(file, state.where), f"state `{state.name}` is never entered")
+        for transition in _transitions(machine):
+            if transition.where not in self.taken[behavior]:
+                place = self.project.place(file, transition.where)
+                yield Gap(place, f"{described(machine, transition)} is never taken")
+
+
+class _Watcher(Observer):
+    def __init__(self, coverage: Coverage, behavior: str) -> None:
+        self._coverage, self._behavior = coverage, behavior
+
+    def stepped(self, step: Step) -> None:
+        self._coverage.note(self._behavior, step)
+
+
+def described(machine: Machine, transition: Transition) -> str:
+    """`ask_name` on `heard`, as GUARD, to `offer`: a transition in words."""
+    source = machine.states[transition.source].name
+    guard = f", as {transition.guard.source}" if transition.guard else ""
+    names = ", ".join(f"`{machine.states[path].name or machine.id}`" for path in transition.targets)
+    return f"`{source or machine.id}` {trigger(transition)}{guard}" + (f", to {names}" if names else "")
+
+
+def trigger(transition: Transition) -> str:
+    """What a transition waits for, in words."""
+    if transition.delay is not None:
+        return f"after {transition.delay:g} s"
+    if transition.exact:
+        return "done" if transition.event.startswith("done.") else "failed"
+    return f"on `{transition.event}`" if transition.event else "always"
+
+
+def _states(machine: Machine) -> Iterator[State]:
+    return (s for s in machine.states.values() if s.path and s.kind is not Kind.HISTORY)
+
+
+def _transitions(machine: Machine) -> Iterator[Transition]:
+    return (t for state in machine.states.values() for t in state.transitions)

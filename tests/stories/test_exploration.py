@@ -1,0 +1,225 @@
+"""Exploring: what is found in small behaviours, what is not, and stories that lead there."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumen.cli.main import main
+from lumen.interpreters.exploration import Exploration, explore
+from lumen.statechart import Machine
+
+SAID = {"type": "object", "properties": {"text": {"type": "string"}}, "required": ["text"]}
+GO: dict[str, Any] = {"go": None, "back": None, "heard": SAID}
+
+
+def walked(
+    states: dict[str, Any], *, events: dict[str, Any] = GO, home: str = "", bound: int = 1000, **more: Any
+) -> Exploration:
+    machine = Machine.from_dict({"initial": next(iter(states)), "states": states, **more})
+    return explore(machine, events, home=home, bound=bound)
+
+
+def found(exploration: Exploration) -> list[tuple[str, str, int]]:
+    """Each finding: its kind, its state, and the moves of the way there."""
+    return [(f.kind, f.state, len(f.way) - 1) for f in exploration.findings]
+
+
+def test_a_ring_is_well() -> None:
+    assert found(walked({"a": {"on": {"go": "b"}}, "b": {"on": {"back": "a"}}})) == []
+
+
+def test_a_dead_end_by_the_shortest_way() -> None:
+    states = {
+        "a": {"on": {"go": "b", "heard": {"guard": "event.data.text == 'now'", "target": "end"}}},
+        "b": {"on": {"go": "end", "back": "a"}},
+        "end": {"on": {"go": {"actions": {"log": "no"}}}},
+    }
+    assert found(walked(states)) == [("dead-end", "end", 1)]
+
+
+def test_a_final_state_is_no_dead_end() -> None:
+    assert found(walked({"a": {"on": {"go": "end"}}, "end": {"type": "final"}})) == []
+
+
+def test_no_way_back_from_a_ring_of_its_own() -> None:
+    states = {"a": {"on": {"go": "b"}}, "b": {"on": {"go": "c"}}, "c": {"on": {"go": "b"}}}
+    assert found(walked(states)) == [("no-way-back", "b", 1), ("no-way-back", "c", 2)]
+    assert found(walked(states, home="b")) == []
+
+
+def test_what_is_awaited_ends_well_and_badly() -> None:
+    states = {
+        "a": {"on": {"go": "b"}},
+        "b": {"do": [{"say": "Hello"}, {"play": "dance"}], "onDone": "a", "onError": "stuck"},
+        "stuck": {},
+    }
+    [finding] = walked(states).findings
+    assert (finding.kind, finding.state) == ("dead-end", "stuck")
+    assert [stay.move.kind for stay in finding.way if stay.move] == ["event", "failed"]
+
+
+def test_a_do_that_nobody_awaits_the_end_of_is_a_dead_end() -> None:
+    assert found(walked({"a": {"on": {"go": "b"}}, "b": {"do": {"say": "Hello"}}})) == [("dead-end", "b", 1)]
+
+
+def test_time_leads_out() -> None:
+    assert found(walked({"a": {"on": {"go": "b"}}, "b": {"after": {"5s": "a"}}})) == []
+
+
+def test_of_two_timers_of_a_state_only_the_shorter_ends() -> None:
+    states = {"a": {"on": {"go": "b"}}, "b": {"after": {"5s": "a", "9s": "stuck"}}, "stuck": {}}
+    exploration = walked(states)
+    assert found(exploration) == []
+    assert exploration.never_entered == ("stuck",)
+    assert [t.delay for t in exploration.never_taken] == [9.0]
+
+
+def test_a_counter_has_an_end() -> None:
+    states = {
+        "a": {
+            "on": {
+                "go": [
+                    {"guard": "context.n > 3", "target": "stuck"},
+                    {"target": "a", "actions": {"assign": {"n": "context.n + 1"}}},
+                ]
+            }
+        },
+        "stuck": {},
+    }
+    exploration = walked(states, context={"n": 0, "idle": 0})
+    assert found(exploration) == [("dead-end", "stuck", 5)]
+    assert exploration.complete
+
+
+def test_a_counter_nobody_looks_at_is_not_counted() -> None:
+    states = {"a": {"on": {"go": {"target": "a", "actions": {"assign": {"n": "context.n + 1"}}}}}}
+    assert walked(states, context={"n": 0}).configurations == 1
+
+
+def test_a_key_given_a_new_value_before_it_is_read_does_not_count() -> None:
+    """The tries are forgotten on the way back to `a`: `b` after one try or two is the same."""
+    states = {
+        "a": {"entry": {"assign": {"n": 0}}, "on": {"go": "ask"}},
+        "ask": {
+            "on": {
+                "heard": [
+                    {"guard": "context.n < 2", "target": "ask", "actions": {"assign": {"n": "context.n + 1"}}},
+                    {"target": "b"},
+                ],
+                "go": "b",
+            }
+        },
+        "b": {"on": {"back": "a"}},
+    }
+    exploration = walked(states, context={"n": 0})
+    assert (exploration.configurations, exploration.never_taken) == (5, ())
+    assert found(exploration) == []
+
+
+def test_a_key_read_in_another_region_counts() -> None:
+    regions = {
+        "one": {"initial": "a", "states": {"a": {"on": {"go": {"actions": {"assign": {"on": "true"}}}}}}},
+        "two": {
+            "initial": "x",
+            "states": {"x": {"on": {"back": {"guard": "context.on", "target": "stuck"}}}, "stuck": {}},
+        },
+    }
+    machine = Machine.from_dict({"type": "parallel", "context": {"on": False}, "states": regions})
+    exploration = explore(machine, GO)
+    assert exploration.never_entered == ()
+    assert "two.stuck" in {finding.state for finding in exploration.findings}
+
+
+@pytest.mark.parametrize(
+    "guard",
+    [
+        "heard(event.data.text, 'dance')",
+        "!heard(event.data.text, 'dance')",
+        "lookup(event.data.text, 'faq') != null",
+        "after(event.data.text, 'i am') != ''",
+        "size(words(event.data.text)) > 2",
+        "event.data.text in ['x', 'y']",
+        "event.data.text != 'x' && context.on",
+        "contains(lower(event.data.text), 'robot')",
+        "event.data.text == ''",
+    ],
+)
+def test_guards_are_tried_both_ways(guard: str) -> None:
+    states = {
+        "a": {"on": {"heard": [{"guard": guard, "target": "b"}, "c"]}},
+        "b": {"on": {"go": "a"}},
+        "c": {"on": {"go": "a"}},
+    }
+    more = {
+        "context": {"on": True},
+        "phrases": {"dance": {"en": ["dance"]}},
+        "answers": {"faq": [{"phrases": {"en": ["how tall"]}, "value": "57 cm"}]},
+    }
+    assert walked(states, **more).never_taken == ()
+
+
+@pytest.mark.parametrize(
+    ("schema", "guard"),
+    [
+        ({"type": "integer"}, "event.data.n > 20"),
+        ({"type": "number"}, "event.data.n <= 0.5"),
+        ({"type": "boolean"}, "event.data.n"),
+        ({"enum": ["left", "right"]}, "event.data.n == 'right'"),
+        ({"type": ["string", "null"]}, "event.data.n == null"),
+        ({}, "event.data.n == 7"),
+    ],
+)
+def test_fields_of_every_type_are_tried(schema: dict[str, Any], guard: str) -> None:
+    events = {"go": {"type": "object", "properties": {"n": schema}, "required": ["n"]}}
+    states = {
+        "a": {"on": {"go": [{"guard": guard, "target": "b"}, "c"]}},
+        "b": {"on": {"go": "a"}},
+        "c": {"on": {"go": "a"}},
+    }
+    assert walked(states, events=events).never_taken == ()
+
+
+def test_what_the_bound_leaves_out_is_said_and_nothing_concluded_from_it() -> None:
+    states = {f"s{i}": {"on": {"go": f"s{i + 1}"}} for i in range(50)} | {"s50": {"on": {"go": "s0"}}}
+    exploration = walked(states, bound=10)
+    assert (exploration.configurations, exploration.waiting, exploration.complete) == (10, 1, False)
+    assert found(exploration) == []
+
+
+def test_no_rest_is_found() -> None:
+    states = {"a": {"on": {"go": "b"}}, "b": {"always": "c"}, "c": {"always": "b"}}
+    assert found(walked(states)) == [("restless", "a", 0)]
+
+
+def test_what_is_invoked_is_walked_too() -> None:
+    child = {
+        "initial": "x",
+        "states": {"x": {"do": {"say": "1 or 2?"}, "on": {"heard": "over"}}, "over": {"type": "final"}},
+    }
+    outer = {
+        "initial": "a",
+        "states": {"a": {"on": {"go": "b"}}, "b": {"invoke": {"behavior": "quiz", "onDone": "stuck"}}, "stuck": {}},
+    }
+    exploration = explore(Machine.from_dict(outer, behaviors={"quiz": child}), GO)
+    assert ("dead-end", "stuck", 3) in found(exploration) or ("dead-end", "stuck", 2) in found(exploration)
+
+
+def test_the_story_of_a_finding_can_be_pasted_and_leads_there(
+    story: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = story("  - wait: 1s\n")
+    door = folder / "behaviors" / "door.yaml"
+    door.write_text(
+        door.read_text("utf-8").replace("      spin: spinning\n", "").replace("20s: closed", "20s: #spun"), "utf-8"
+    )
+    text = door.read_text("utf-8").replace("20s: #spun", "20s: spinning").partition("  spinning:")[0]
+    door.write_text(text.replace(", spin: null", "") + "  spinning: {}\n", "utf-8")
+    assert main(["test", str(folder), "--explore", "--behavior", "door"]) == 1
+    told = capsys.readouterr().out
+    assert "a dead end: nothing leads out of `spinning`" in told
+    lines = told.partition("    # yaml-language-server")[2].split("\n\n")[0].splitlines()
+    pasted = "# yaml-language-server" + "\n".join([lines[0], *(line[4:] for line in lines[1:])])
+    (folder / "behaviors" / "stories" / "found.yaml").write_text(pasted + "\n", "utf-8")
+    assert main(["test", str(folder), "found"]) == 0
