@@ -58,6 +58,7 @@ def test_the_nao_has_naoqi_s_joints_in_naoqi_s_order() -> None:
         (("parts", "head"), ["HeadYaw", "HeadPitch", "LHand"], "joint-in-two-parts"),
         (("parts", "head"), ["HeadYaw"], "joint-without-part"),
         (("postures", "Stand"), {"HeadYaw": 0}, "incomplete-posture"),
+        (("postures",), {}, "missing-key"),
         (("postures", "Stand", "HeadYaw"), 400, "angle-out-of-range"),
         (("postures", "Stand", "HeadYaw"), float("nan"), "angle-out-of-range"),
         (("coupled", 0, "rows"), [[1, 0, 1], [0, 0, 1]], "unsorted-rows"),

@@ -10,6 +10,9 @@ from lumen.language.robots import Body, Camera, CoupledLimit, Joint, Ultrasound
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES, LENGTHS
 
+POSTURES = ("Stand", "Crouch")
+"""Those that every robot knows: where it begins, and where it may go limp."""
+
 SLACK = 2e-3
 """How far a posture may lie outside a limit [rad]: published postures are rounded."""
 
@@ -39,7 +42,7 @@ class _Builder:
             mjcf=data.get("mjcf", f"{name}.xml"),
             joints=self.joints,
             parts=self.parts(),
-            postures={n: self.posture(n, angles) for n, angles in (data.get("postures") or {}).items()},
+            postures=self.postures(),
             coupled=tuple(c for i, row in enumerate(data.get("coupled") or ()) if (c := self.coupled(i, row))),
             camera=self.camera(data["camera"]),
             tactile=tuple(data.get("tactile") or ()),
@@ -74,13 +77,14 @@ class _Builder:
 
     def parts(self) -> dict[str, tuple[str, ...]]:
         parts, owner = {}, dict[str, str]()
+        whole = "parts" in self.data and not any(path[0] == "parts" for path in self.report.pruned)
         for part, names in (self.data.get("parts") or {}).items():
             for i, name in enumerate(names):
                 if self.known(name, ("parts", part, i)) and owner.setdefault(name, part) != part:
                     message = f"`{name}` stands in `{owner[name]}` and in `{part}`"
                     self.report("joint-in-two-parts", ("parts", part, i), message, hint="a joint has one owner")
             parts[part] = tuple(n for n in names if owner.get(n) == part)
-        for name in self.joints.keys() - owner.keys():
+        for name in [n for n in self.joints if n not in owner and whole]:
             self.report("joint-without-part", ("joints", name), f"no part moves `{name}`", hint="name it in `parts`")
         return parts
 
@@ -102,6 +106,16 @@ class _Builder:
             return None
         scaled = tuple((a * self.unit(on), b * self.unit(joint), c * self.unit(joint)) for a, b, c in rows)
         return CoupledLimit(joint, on, scaled)
+
+    def postures(self) -> dict[str, dict[str, float]]:
+        """The postures, those of `POSTURES` among them."""
+        found = {name: self.posture(name, angles) for name, angles in (self.data.get("postures") or {}).items()}
+        for name in POSTURES:
+            if "postures" in self.data and name not in found and name not in self.report.lost:
+                message = f"the robot has no posture `{name}`"
+                hint = f"every robot has {' and '.join(f'`{n}`' for n in POSTURES)}: give the angle of each joint"
+                self.report("missing-key", ("postures",), message, hint=hint, key=True)
+        return found
 
     def posture(self, posture: str, spec: Mapping[str, float]) -> dict[str, float]:
         path: Path = ("postures", posture)

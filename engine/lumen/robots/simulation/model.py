@@ -7,6 +7,7 @@ from dm_control import mjcf
 
 from lumen.errors import RobotError
 from lumen.language.robots import Body
+from lumen.robots.simulation.needs import lacks_of_body, lacks_of_hall, lacks_of_robot
 
 ROBOT = "nao"
 """What the names of the robot's elements begin with in the hall: `nao/HeadYaw`."""
@@ -24,19 +25,34 @@ class Variation:
 
 
 def load(body: Body, models: Path, hall: str, variation: Variation | None = None) -> mjcf.RootElement:
-    """The hall with the robot on its stage, free to fall; raises RobotError where a file is no such model."""
+    """The hall with the robot on its stage, free to fall.
+
+    Raises RobotError where a file is no MJCF, or lacks what the simulation needs of it: all of that is listed.
+    """
+    _complain("the description of the robot's body", lacks_of_body(body))
     robot, world = _read(models / body.mjcf), _read(models / hall)
-    known = {joint.name for joint in robot.find_all("joint")}
-    if lost := [name for name in body.joints if name not in known]:
-        raise RobotError(f"{body.mjcf} lacks the joints {', '.join(lost)}, which the body's description names")
+    _complain(body.mjcf, lacks_of_robot(robot, body))
+    _complain(hall, lacks_of_hall(world))
     stage = world.find("site", STAGE)
-    if stage is None:
-        raise RobotError(f"{hall} has no site `{STAGE}` for the robot to stand on")
     robot.model = ROBOT
     stage.attach(robot).add("freejoint")
     if variation:
         _vary(world, variation)
     return world
+
+
+def compiled(world: mjcf.RootElement) -> mjcf.Physics:
+    """The world to be lived in; raises RobotError where MuJoCo can't make one of it."""
+    try:
+        return mjcf.Physics.from_mjcf_model(world)
+    except Exception as error:  # the compiler raises whatever it stumbles over
+        reason = " ".join(str(error).split())
+        raise RobotError(f"MuJoCo can't build the robot in its hall: {reason}") from error
+
+
+def _complain(what: str, lacks: list[str]) -> None:
+    if lacks:
+        raise RobotError(f"{what} lacks what the simulation needs: {', '.join(lacks)}")
 
 
 def _read(path: Path) -> mjcf.RootElement:

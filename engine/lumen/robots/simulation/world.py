@@ -6,12 +6,11 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-from dm_control import mjcf
 from numpy.typing import NDArray
 
 from lumen.language.robots import Body
 from lumen.robots.simulation.limits import Angles
-from lumen.robots.simulation.model import ROBOT, Variation, load
+from lumen.robots.simulation.model import ROBOT, Variation, compiled, load
 
 PERIOD = 0.01
 """Time between two commands to the joints [s]."""
@@ -27,7 +26,7 @@ class World:
 
     def __init__(self, body: Body, models: Path, hall: str, variation: Variation | None = None) -> None:
         self.body = body
-        self.physics = mjcf.Physics.from_mjcf_model(load(body, models, hall, variation))
+        self.physics = compiled(load(body, models, hall, variation))
         self.model: mujoco.MjModel = self.physics.model.ptr
         self.data: mujoco.MjData = self.physics.data.ptr
         joints = [self.model.joint(f"{ROBOT}/{name}") for name in body.joints]

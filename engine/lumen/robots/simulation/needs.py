@@ -1,0 +1,53 @@
+"""What the simulation asks of a robot's and a hall's MJCF."""
+
+from collections.abc import Iterator
+
+from dm_control import mjcf
+
+from lumen.language.robots import Body
+
+STEPS = 0.01
+"""The longest timestep [s]: the joints are told where to go as often."""
+
+_HEAD = ("HeadYaw", "HeadPitch")
+_LEG = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
+JOINTS = (*_HEAD, *(side + name for side in "LR" for name in _LEG))
+"""Those that looking, standing and walking name."""
+
+_ROBOT = (("body", "Torso"), ("site", "LSole"), ("site", "RSole"), ("sensor", "gyro"), ("camera", "CameraTop"))
+_EARS = (("site", "LSonar"), ("site", "RSonar"))
+_HALL = (("site", "stage"), ("body", "visitor"), ("site", "visitor_face"))
+
+
+def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
+    """What a robot's MJCF does not have, in words."""
+    driven = [name for name in body.joints if name not in body.shared]
+    needs = [*_ROBOT, *(_EARS if body.sonar else ())]
+    needs += [("joint", name) for name in dict.fromkeys((*JOINTS, *body.joints))]
+    needs += [("actuator", name) for name in driven]
+    return list(_lacks(robot, needs))
+
+
+def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
+    """What a hall's MJCF does not have, in words."""
+    found = list(_lacks(hall, _HALL))
+    visitor = hall.find("body", "visitor")
+    if visitor is not None and not visitor.mocap:
+        found.append('mocap="true" at its body `visitor`')
+    if visitor is not None and not visitor.geom:
+        found.append("a geom in its body `visitor`")
+    if (hall.option.timestep or 0.0) > STEPS:
+        found.append(f"a timestep of at most {STEPS:g} s")
+    return found
+
+
+def lacks_of_body(body: Body) -> list[str]:
+    """What a body's description does not have, in words."""
+    lost = [f"the joint `{name}`" for name in JOINTS if name not in body.joints]
+    return lost + [f"the posture `{name}`" for name in ("Stand", "Crouch") if name not in body.postures]
+
+
+def _lacks(root: mjcf.RootElement, needs: list[tuple[str, str]] | tuple[tuple[str, str], ...]) -> Iterator[str]:
+    for kind, name in needs:
+        if root.find(kind, name) is None:
+            yield f"the {kind} `{name}`"

@@ -1,0 +1,69 @@
+"""Models that the simulation can't use: one error that lists all that is missing, never a traceback."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from lumen.errors import RobotError
+from lumen.language.robots import Body
+from lumen.robots.simulation import SimulatedRobot
+from tests.simulation.conftest import MODELS
+
+
+@pytest.fixture(scope="module")
+def models(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return Path(shutil.copytree(MODELS, tmp_path_factory.mktemp("project") / "models"))
+
+
+def changed(models: Path, file: str, *edits: tuple[str, str]) -> str:
+    """The name of a copy of a model with these edits."""
+    text = (models / file).read_text()
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new)
+    (models / f"other_{file}").write_text(text)
+    return f"other_{file}"
+
+
+def trouble(body: Body, models: Path, hall: str = "hall.xml") -> str:
+    with pytest.raises(RobotError) as raised:
+        SimulatedRobot(body, models, hall)
+    return str(raised.value)
+
+
+def test_a_robot_without_camera_and_sole_is_told_both(body: Body, models: Path) -> None:
+    mjcf = changed(models, "nao.xml", ("CameraTop", "CameraFront"), ('"LSole"', '"LeftSole"'))
+    reason = trouble(replace(body, mjcf=mjcf), models)
+    assert reason.startswith("other_nao.xml lacks what the simulation needs: ")
+    assert "the camera `CameraTop`" in reason
+    assert "the site `LSole`" in reason
+
+
+def test_a_hall_without_stage_and_visitor_is_told_both(body: Body, models: Path) -> None:
+    hall = changed(models, "hall.xml", ('name="visitor"', 'name="guest"'), ('name="stage"', 'name="floor"'))
+    reason = trouble(body, models, hall)
+    assert "other_hall.xml lacks what the simulation needs: the site `stage`, the body `visitor`" in reason
+
+
+def test_a_visitor_who_can_not_be_moved_is_told(body: Body, models: Path) -> None:
+    hall = changed(models, "hall.xml", ('name="visitor" mocap="true"', 'name="visitor"'))
+    assert 'mocap="true"' in trouble(body, models, hall)
+
+
+@pytest.mark.parametrize("edit", [("</mujoco>", ""), ('type="ellipsoid" size="0.118 0.16 0.3"', 'type="ellipsoid"')])
+def test_a_broken_hall_is_told(body: Body, models: Path, edit: tuple[str, str]) -> None:
+    assert "hall" in trouble(body, models, changed(models, "hall.xml", edit))
+
+
+def test_a_body_without_postures_and_joints_is_told_what_it_lacks(body: Body, models: Path) -> None:
+    postures = {name: angles for name, angles in body.postures.items() if name != "Stand"}
+    joints = {name: joint for name, joint in body.joints.items() if name != "HeadYaw"}
+    reason = trouble(replace(body, postures=postures, joints=joints), models)
+    assert "the joint `HeadYaw`, the posture `Stand`" in reason
+
+
+def test_a_timestep_longer_than_the_time_between_two_commands_is_told(body: Body, models: Path) -> None:
+    hall = changed(models, "hall.xml", ('timestep="0.002"', 'timestep="0.05"'))
+    assert "a timestep of at most 0.01 s" in trouble(body, models, hall)
