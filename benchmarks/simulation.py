@@ -14,8 +14,9 @@ from time import perf_counter, process_time
 import mujoco
 
 import lumen
+from lumen.language.commands import Walk
 from lumen.language.stories import Visitor
-from lumen.ports import Image, Perform, Sense
+from lumen.ports import Image, Perform, RobotCommand, Sense
 from lumen.robots.simulation import SimulatedRobot, available
 
 ROOT = Path(__file__).parent.parent
@@ -45,12 +46,13 @@ def sensing(robot: SimulatedRobot) -> None:
             robot.face()
 
 
-def dancing(robot: SimulatedRobot, project: lumen.Project) -> float:
-    """Simulated seconds per second of CPU time through the dance."""
-    robot.start("dance", Perform(project.motions["dance"]))
+def performing(robot: SimulatedRobot, command: RobotCommand) -> float:
+    """Simulated seconds per second of CPU time through a command."""
+    robot.start("it", command)
     begin, start = process_time(), robot.time
-    while not any(event.name == "done.command.dance" for event in robot.poll()):
+    while not (answers := [event.name for event in robot.poll() if event.name.endswith(".command.it")]):
         robot.advance(0.02)
+    assert answers == ["done.command.it"]
     return (robot.time - start) / (process_time() - begin)
 
 
@@ -79,7 +81,8 @@ def main() -> None:
     bare = factor(lambda: mujoco.mj_step(model, data, steps))
     alone = factor(lambda: robot.advance(SECONDS))
     sensed = factor(lambda: sensing(robot))
-    danced = dancing(robot, project)
+    danced = performing(robot, Perform(project.motions["dance"]))
+    walked = performing(robot, Walk(0.2))
     print(
         f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, MuJoCo {mujoco.__version__}"
     )
@@ -88,6 +91,7 @@ def main() -> None:
     print(f"robot, standing          {alone:6.1f} x   {alone / bare:.2f} of bare")
     print(f"robot, senses, visitor   {sensed:6.1f} x   {sensed / bare:.2f} of bare")
     print(f"robot, dancing           {danced:6.1f} x   {danced / bare:.2f} of bare")
+    print(f"robot, walking           {walked:6.1f} x   {walked / bare:.2f} of bare")
     reason = available()
     print(f"camera image             {reason or f'{1000 * frame(robot):6.1f} ms at 320 x 240'}")
     robot.close()

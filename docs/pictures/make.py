@@ -1,10 +1,10 @@
 """Makes every picture of the documentation from the shipped project, at honest physics.
 
-    python docs/pictures/make.py [tour] [head] [motions]
+    python docs/pictures/make.py [tour] [head] [motions] [walk]
 
 `tour` is the README's picture, mid-dance in the shipped story. `head` is the paper's Fig. 13 and 14: the top camera's
 image when the visitor's face is first seen, and once the head has turned to it; a cross marks the image's centre, a
-ring the face. `motions` is a strip of each motion.
+ring the face. `motions` is a strip of each motion. `walk` is a strip of `walk: {x: 0.2}`.
 """
 
 import argparse
@@ -19,7 +19,7 @@ import lumen
 from lumen.cli.cast import Cast
 from lumen.cli.show import Show
 from lumen.clocks.simulated import SimulatedClock
-from lumen.language.commands import Posture
+from lumen.language.commands import Posture, Walk
 from lumen.language.projects import Project
 from lumen.ports import Image as Frame
 from lumen.ports import Perform, Sense
@@ -29,10 +29,11 @@ from lumen.robots.simulation.rendering import Quality, Scene, Studio
 HERE = Path(__file__).parent
 MID_DANCE = 7.0
 STRIP = 8
+WALK = 5.4
 
 
 def robot_of(project: Project) -> SimulatedRobot:
-    return SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
+    return SimulatedRobot(project.body, Path(project.root) / "models", project.hall, stage=project.stage)
 
 
 def picture(robot: SimulatedRobot, camera: str, width: int, height: int) -> Image.Image:
@@ -118,7 +119,21 @@ def motions(project: Project) -> None:
         robot.close()
 
 
-PICTURES = {"tour": tour, "head": head, "motions": motions}
+def walk(project: Project) -> None:
+    width, height = 200, 260
+    robot = robot_of(project)
+    strip = Image.new("RGB", (width * STRIP, height))
+    robot.start("c1", Walk(-0.15))
+    robot.advance(WALK)
+    robot.start("c2", Walk(0.2))
+    for i in range(STRIP):
+        strip.paste(picture(robot, "close", width, height), (width * i, 0))
+        robot.advance(WALK / (STRIP - 1))
+    strip.save(HERE / "walk.png", optimize=True)
+    robot.close()
+
+
+PICTURES = {"tour": tour, "head": head, "motions": motions, "walk": walk}
 
 
 def main() -> None:

@@ -93,7 +93,7 @@ def test_stop_halts_a_change_of_posture_on_its_feet(robot: SimulatedRobot) -> No
         (Posture("Handstand"), "it knows Stand, StandInit, StandZero, Crouch"),
         (Posture("Stand", nan), "a speed lies above 0"),
         (Posture("Stand", 0.0), "a speed lies above 0"),
-        (Walk(0.2), "walking is not there yet"),
+        (Walk(nan), "there is no way to (nan, 0.0, 0.0)"),
         (Look(nan, 0.0), "`HeadYaw` can't be moved to nan"),
         (Perform(Motion("m", 1.0, {"Nose": (Key(1.0, 0.0),)})), "`Nose` is not a joint"),
         (Perform(Motion("m", 1.0, {"HeadYaw": (Key(1.0, nan),)})), "no number"),

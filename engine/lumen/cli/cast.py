@@ -33,7 +33,7 @@ def cast(kind: str, project: Project, speed: str, story: Story | None = None) ->
     if kind == "simulation":
         from lumen.robots.simulation import SimulatedRobot, available
 
-        simulated = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
+        simulated = SimulatedRobot(project.body, Path(project.root) / "models", project.hall, stage=project.stage)
         return Cast(simulated, SimulatedClock(simulated.advance, pace), simulated, available() or "")
     if kind == "recording":
         from lumen.robots.recording import RecordingRobot

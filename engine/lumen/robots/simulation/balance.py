@@ -4,7 +4,6 @@ import numpy as np
 
 from lumen.robots.simulation.limits import Angles
 from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.world import World
 
 GAIN = 0.05
 """Ankle angle for each unit of the torso's turning speed [rad per rad/s]: the toes press where it falls to."""
@@ -14,19 +13,23 @@ _SMOOTHING = 0.5
 
 
 class Balance:
-    """Turns what the gyrometer feels into a trim of both ankles."""
+    """Turns what the gyrometer feels into a trim of both ankles, but of the foot that is `lifted` (`L` or `R`)."""
 
     def __init__(self, motors: Motors) -> None:
-        names = ("LAnkleRoll", "RAnkleRoll", "LAnklePitch", "RAnklePitch")
-        self._ankles = [motors.index[name] for name in names]
+        self._ankles = [[(s, motors.index[s + name]) for s in "LR"] for name in ("AnkleRoll", "AnklePitch")]
         self._trim = np.zeros(len(motors.names))
         self._felt = [0.0, 0.0]
+        self.lifted: str | None = None
 
-    def trim(self, world: World) -> Angles:
-        """What to add to the joints' goals now [rad]; valid until the next call."""
-        for axis, rate in enumerate(world.gyro):
+    def trim(self, gyro: tuple[float, float]) -> Angles:
+        """What to add to the joints' goals [rad] while the torso rolls and pitches like this [rad/s].
+
+        Valid until called again; `lifted` is for this once.
+        """
+        for axis, rate in enumerate(gyro):
             felt = self._felt[axis] = _SMOOTHING * self._felt[axis] + (1 - _SMOOTHING) * rate
             angle = min(max(GAIN * felt, -MOST), MOST)
-            for i in self._ankles[2 * axis : 2 * axis + 2]:
-                self._trim[i] = angle
+            for side, i in self._ankles[axis]:
+                self._trim[i] = 0.0 if side == self.lifted else angle
+        self.lifted = None
         return self._trim

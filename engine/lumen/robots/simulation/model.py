@@ -18,10 +18,14 @@ STAGE = "stage"
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """How this robot and its hall differ from the model: factors of all masses and of the ground's friction."""
+    """How this robot and its hall differ from the model: factors of all masses and of the ground's friction.
+
+    `noise` is that of encoders and gyrometer: 1 what such sensors have, 0 none.
+    """
 
     mass: float = 1.0
     friction: float = 1.0
+    noise: float = 0.0
 
 
 def load(body: Body, models: Path, hall: str, variation: Variation | None = None) -> mjcf.RootElement:

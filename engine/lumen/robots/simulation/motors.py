@@ -31,6 +31,7 @@ class Motors:
         self.stiffness = np.ones(len(self.names))
         self.goal: Angles = world.angles.copy()
         self.command: Angles = self.goal.copy()
+        self._sway = np.zeros(len(self.names))
 
     def aim(self, targets: Mapping[str, float]) -> None:
         """Want these joints there, or at their limit where it lies before.
@@ -63,6 +64,11 @@ class Motors:
         """The goals of these joints."""
         return {name: float(self.goal[self.index[name]]) for name in names}
 
+    def sway(self, offsets: Mapping[str, float]) -> None:
+        """Add that [rad] to the goals of these joints in the next period, and in that alone."""
+        for name, angle in offsets.items():
+            self._sway[self.index[name]] = angle
+
     def stiffen(self, stiffness: float) -> None:
         """Let all motors give at most that part (0..1) of their torque; what was limp starts from where it is."""
         if self.stiffness.max() < LIMP:
@@ -73,5 +79,6 @@ class Motors:
 
     def drive(self, trim: Angles, dt: float) -> None:
         """Tell the servos where to be `dt` [s] from now; `trim` [rad] is added to the goal, not kept."""
-        self.command = self.envelope.step(self.command, self.goal + trim, dt)
+        self.command = self.envelope.step(self.command, self.goal + trim + self._sway, dt)
+        self._sway[:] = 0.0
         self._world.data.ctrl[self._world.actuators] = self.command[self._world.driven]

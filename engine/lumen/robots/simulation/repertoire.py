@@ -11,6 +11,7 @@ from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.performance import Performance, Speech
 from lumen.robots.simulation.transition import Transition, duration
+from lumen.robots.simulation.walking import Walker
 from lumen.robots.simulation.world import World
 
 POSTURES = ("Stand", "StandInit", "StandZero", "Crouch")
@@ -28,8 +29,8 @@ _UPRIGHT = pi / 9
 class Repertoire:
     """Begins activities; knows whether the motors are on and whether the robot has fallen."""
 
-    def __init__(self, world: World, motors: Motors, lights: Lights) -> None:
-        self._world, self._motors, self._lights = world, motors, lights
+    def __init__(self, world: World, motors: Motors, lights: Lights, walker: Walker) -> None:
+        self._world, self._motors, self._lights, self._walker = world, motors, lights, walker
         self._postures = world.body.postures
         self._part = {name: part for part, names in world.body.parts.items() for name in names}
         self.awake, self.fallen = True, False
@@ -45,8 +46,10 @@ class Repertoire:
                 voiced = {VOICE} if "say" in kinds else set()
                 standing = {ARMS, LEGS} if motion.start else set()
                 return frozenset({self._part[n] for n in motion.tracks if n in self._part} | lit | voiced | standing)
-            case Posture() | Walk() | Rest() | Wake():
+            case Posture() | Rest() | Wake():
                 return _BODY
+            case Walk():
+                return frozenset((LEGS,))
             case Look():
                 return frozenset((HEAD,))
             case Stop() | Aim():
@@ -76,7 +79,7 @@ class Repertoire:
             case Wake():
                 return self._wake(now)
             case Walk():
-                raise RobotError("walking is not there yet: this robot stands, gestures and looks")
+                return self._walker.begin(command, now)
             case Stop() | Aim():
                 raise RobotError(f"{type(command).__name__} does not last")
             case _:

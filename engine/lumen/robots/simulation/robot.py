@@ -8,20 +8,26 @@ from pathlib import Path
 from lumen.errors import RobotError, UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
+from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.executor import Executor
+from lumen.robots.simulation.anatomy import Anatomy
 from lumen.robots.simulation.balance import Balance
 from lumen.robots.simulation.camera import TopCamera
 from lumen.robots.simulation.condition import Condition
 from lumen.robots.simulation.figure import Figure
+from lumen.robots.simulation.hazards import Hazards
+from lumen.robots.simulation.instruments import Instruments
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.model import Variation
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.repertoire import Repertoire
 from lumen.robots.simulation.sonar import Sonars
 from lumen.robots.simulation.steering import Steering
+from lumen.robots.simulation.walking import Walker
+from lumen.robots.simulation.whereabouts import Whereabouts
 from lumen.robots.simulation.world import FALLEN, PERIOD, World
 
 _log = logging.getLogger(__name__)
@@ -34,7 +40,7 @@ class SimulatedRobot:
     """A NAO that stands on its stage and lives when `advance` is called, by the thread that calls it.
 
     `models` is the folder of the MJCF files and `hall` the name of one. The same seed and the same calls give the same
-    run. Raises RobotError where the models can't be used.
+    run. `stage` bounds where its feet may go. Raises RobotError where the models can't be used.
     """
 
     def __init__(
@@ -46,6 +52,7 @@ class SimulatedRobot:
         seed: int = 0,
         posture: str = "Stand",
         variation: Variation | None = None,
+        stage: Stage | None = None,
     ) -> None:
         self.body = body
         self.world = World(body, Path(models), hall, variation)
@@ -56,12 +63,22 @@ class SimulatedRobot:
         self.greatest_tilt = 0.0
         self._balance = Balance(self.motors)
         self._steering = Steering(self.motors)
-        self._repertoire = Repertoire(self.world, self.motors, self.lights)
+        self._instruments = Instruments(self.world, variation.noise if variation else 0.0, seed)
+        self._pressed = dict.fromkeys(body.tactile, False)
+        self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
+        walker = Walker(
+            self.motors,
+            self._balance,
+            self._instruments,
+            Whereabouts(stage),
+            Anatomy(body, Path(models)),
+            Hazards(self._sonars, self._pressed),
+            self._free,
+        )
+        self._repertoire = Repertoire(self.world, self.motors, self.lights, walker)
         self._executor = Executor(self._repertoire.begin, self._repertoire.parts)
         self._figure = Figure(self.world.model, self.world.data)
         self._camera = TopCamera(self.world, body.camera)
-        self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
-        self._pressed = dict.fromkeys(body.tactile, False)
         self._events: list[Event] = []
         self._ticks = 0
         self._until = 0.0
@@ -140,8 +157,9 @@ class SimulatedRobot:
         now = self.time
         self._events += self._executor.advance(now)
         self._steering.advance(PERIOD, self._free)
+        self._instruments.feel()
         if self.awake:
-            self.motors.drive(self._balance.trim(self.world), PERIOD)
+            self.motors.drive(self._balance.trim(self._instruments.gyro), PERIOD)
         self.world.step()
         self._ticks += 1
         self._watch(self.time)

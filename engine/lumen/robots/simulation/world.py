@@ -67,9 +67,10 @@ class World:
         return torques
 
     @property
-    def gyro(self) -> tuple[float, float]:
-        """How fast the torso rolls to the right and pitches forward [rad/s]."""
-        return float(self.data.sensordata[self._gyro]), float(self.data.sensordata[self._gyro + 1])
+    def gyro(self) -> tuple[float, float, float]:
+        """How fast the torso rolls to the right, pitches forward and turns to the left [rad/s]."""
+        roll, pitch, yaw = self.data.sensordata[self._gyro : self._gyro + 3].tolist()
+        return roll, pitch, yaw
 
     @property
     def tilt(self) -> float:

@@ -1,0 +1,170 @@
+"""A walk to a place, tick by tick: planned anew from each foot that has landed."""
+
+from collections.abc import Callable, Mapping
+from math import atan2, hypot
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.interpreters.gait.footsteps import Feet, Step, first_side, footsteps, middle
+from lumen.interpreters.gait.legs import Placed, Side, Stance, foot_from, other, sign, sole, stand, torso_rotation
+from lumen.interpreters.gait.pace import Pace
+from lumen.interpreters.gait.pendulum import Pendulum
+from lumen.interpreters.gait.planning import Phase, Planner, between
+from lumen.interpreters.gait.poses import Pose, wrap
+
+CentreOfMass = Callable[[Mapping[str, float]], NDArray[np.float64]]
+"""The centre of mass (3,) [m] in the torso's frame, of the robot with its legs bent like this [rad]."""
+
+NEAR, STRAIGHT = 0.008, 0.02
+"""How far from its goal the robot may stop [m], [rad]."""
+
+SLIP = 0.015
+"""A foot has slipped where encoders and gyrometer disagree by more than this [rad] in a step: both err by less."""
+
+_SIDE_BY_SIDE = Pose(0.015, 0.015, 0.06)
+_FORESIGHT, _MORE, _LATEST = 3, 8, 0.5
+_TORSO_TO_MASS = (0.01, 0.0, -0.05)
+
+
+class Tick(NamedTuple):
+    """What the legs do next: their angles [rad], the foot in the air, and how far the left foot leads [m]."""
+
+    angles: Mapping[str, float]
+    lifted: Side | None
+    stride: float
+
+
+class Gait:
+    """Steps until the robot stands at `goal`; `feet` and `goal` stand in the same frame, any frame on the ground.
+
+    `angles` begin the walk: what the legs do on these feet before the first step. Then `tick` says every `dt` [s] what
+    they do next, and `heading` is the torso's [rad], as planned. It knows where the feet are from the legs' measured
+    angles, and from the torso's measured heading whether the bearing foot slipped around.
+    """
+
+    def __init__(self, feet: Feet, goal: Pose, com: CentreOfMass, pace: Pace | None = None, dt: float = 0.01) -> None:
+        self.feet, self.goal, self.pace, self.steps = feet, goal, pace or Pace(), 0
+        self._com = com
+        self._side = first_side(goal.seen_from(middle(feet)))
+        self._most = len(self.coming) + _MORE
+        self._stopping = False
+        self._north: float | None = None
+        self._mass = self._dcm = self._zmp = between(feet, self.pace)
+        self.heading, self._offset = middle(feet).theta, np.array(_TORSO_TO_MASS)
+        for _ in range(4):
+            stance = self._stand({side: Placed(pose) for side, pose in feet.items()})
+        self.angles: Mapping[str, float] = stance.angles
+        self._pendulum = Pendulum(self.pace.torso + float(self._offset[2]), dt)
+        self._planner = Planner(self.pace, self._pendulum, dt)
+        self._phase = self._rest() if self._arrived(feet) else self._step(standing=True)
+
+    @property
+    def left(self) -> tuple[float, float]:
+        """How far the robot believes to be from its goal [m], [rad]."""
+        way = self.goal.seen_from(middle(self.feet))
+        return hypot(way.x, way.y), abs(way.theta)
+
+    @property
+    def coming(self) -> list[Step]:
+        """The steps that are left, as planned now."""
+        return footsteps(self.feet, self.goal, self._side, self.pace)
+
+    def tick(self, measured: Mapping[str, float], heading: float) -> Tick | None:
+        """What the legs do next; None once the robot stands.
+
+        `measured` are the legs' angles now, `heading` the torso's, from wherever it is counted [rad].
+        """
+        if self._north is None:
+            self._north = heading - self._heading(measured)
+        if self._phase.over and not self._go_on(measured, heading):
+            return None
+        phase = self._phase
+        feet = {side: Placed(pose) for side, pose in self.feet.items()}
+        lifted = phase.lifted
+        if phase.swing and lifted:
+            feet[lifted] = phase.swing.at(phase.part)
+        self._zmp = phase.zmp[phase.tick]
+        self._mass, self._dcm = self._pendulum.fall(self._mass, self._dcm, self._zmp)
+        phase.tick += 1
+        stride = feet["L"].pose.seen_from(feet["R"].pose).x
+        return Tick(self._stand(feet).angles, lifted, stride)
+
+    def stop(self) -> None:
+        """End as soon as balance allows: a foot that has just left comes to the other one, a later one lands first."""
+        phase, stopping = self._phase, self._stopping
+        self._stopping = True
+        if stopping or phase.swing is None:
+            return
+        if self.steps == 0 and not phase.lifted:
+            self._phase = self._rest()
+        elif not phase.lifted or phase.part < _LATEST:
+            self._planner.divert(phase, self.feet, self._closing().pose, self._dcm)
+
+    def _go_on(self, measured: Mapping[str, float], heading: float) -> bool:
+        """Begin the next phase; false where there is none."""
+        last = self._phase.last
+        if self._phase.swing:
+            self._land(self._phase.swing.goal, measured, heading)
+            self._phase = self._rest() if last else self._step(standing=False)
+        elif self._stopping or self._arrived(self.feet) or self.steps >= self._most:
+            return False
+        else:
+            self._phase = self._step(standing=True)
+        return True
+
+    def _land(self, planned: Pose, measured: Mapping[str, float], heading: float) -> None:
+        """Believe the joints where the foot has landed, and keep all plans as seen from it."""
+        side, bearing = self._side, other(self._side)
+        slipped = wrap(heading - (self._north or 0.0) - self._heading(measured))
+        stood = self.feet[bearing].then(Pose(0.0, 0.0, slipped if abs(slipped) > SLIP else 0.0))
+        landed = stood.then(foot_from(bearing, measured))
+        self.feet = {bearing: stood, side: landed}
+
+        def moved(point: complex) -> complex:
+            return landed.place + (point - planned.place) * (landed.ahead / planned.ahead)
+
+        self._mass, self._dcm, self._zmp = moved(self._mass), moved(self._dcm), moved(self._zmp)
+        self.heading += landed.theta - planned.theta
+        self._side, self.steps = bearing, self.steps + 1
+        self._north = heading - self._heading(measured)
+
+    def _heading(self, measured: Mapping[str, float]) -> float:
+        """The torso's heading [rad], if the bearing foot has not slipped."""
+        bearing = other(self._side)
+        turned, _ = sole(bearing, measured)
+        return self.feet[bearing].theta - atan2(turned[1, 0], turned[0, 0])
+
+    def _arrived(self, feet: Feet) -> bool:
+        way, seen = self.goal.seen_from(middle(feet)), feet["L"].seen_from(feet["R"])
+        together = (seen.x, seen.y - self.pace.apart, seen.theta)
+        side_by_side = all(abs(a) < b for a, b in zip(together, _SIDE_BY_SIDE, strict=True))
+        return hypot(way.x, way.y) < NEAR and abs(way.theta) < STRAIGHT and side_by_side
+
+    def _step(self, *, standing: bool) -> Phase:
+        return self._planner.step(self.feet, self._next(), self._dcm, self._zmp, standing=standing)
+
+    def _rest(self) -> Phase:
+        return self._planner.settle(self.feet, self._dcm, self._zmp)
+
+    def _next(self) -> list[Step]:
+        """The next steps; one alone is the last."""
+        if self._stopping:
+            return [self._closing()]
+        steps = self.coming[:_FORESIGHT]
+        ends = self.steps >= self._most or self._arrived({**self.feet, self._side: steps[0].pose})
+        return steps[:1] if ends else steps
+
+    def _closing(self) -> Step:
+        """The foot that comes next, beside the other one."""
+        return Step(self._side, self.feet[other(self._side)].then(Pose(0.0, sign(self._side) * self.pace.apart)))
+
+    def _stand(self, feet: Mapping[Side, Placed]) -> Stance:
+        """The joints that bring the centre of mass where the plan wants it."""
+        pace = self.pace
+        torso = self._mass - complex(self._offset[0], self._offset[1])
+        stance = stand(torso, pace.torso, pace.lean, self.heading, feet)
+        self.heading = stance.yaw
+        self._offset = torso_rotation(stance.yaw, pace.lean) @ self._com(stance.angles)
+        return stance

@@ -1,0 +1,26 @@
+"""How the robot walks: the few numbers that a gait is made of."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """Times in [s], lengths in [m], angles in [rad]. Found in simulation: this pace walked with every mass and floor.
+
+    A step takes `double` on both feet and `single` on one. With each step the body goes at most `forward`, `sideways`
+    and `turn`. Feet stand `apart`, their ankles' middle lines. `ahead` is where the weight rests, in front of the
+    ankles. `shift` is how long the first step waits for the weight to move, `settle` the end of a walk.
+    """
+
+    double: float = 0.10
+    single: float = 0.35
+    forward: float = 0.065
+    sideways: float = 0.04
+    turn: float = 0.25
+    lift: float = 0.025
+    torso: float = 0.315
+    lean: float = 0.05
+    apart: float = 0.1
+    ahead: float = 0.02
+    shift: float = 0.35
+    settle: float = 0.35

@@ -1,0 +1,113 @@
+"""Where the weight rests during a step, so that the body arrives where the next one begins."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from lumen.interpreters.gait.footsteps import Feet, Step
+from lumen.interpreters.gait.legs import Side, other
+from lumen.interpreters.gait.pace import Pace
+from lumen.interpreters.gait.pendulum import Pendulum
+from lumen.interpreters.gait.poses import Pose
+from lumen.interpreters.gait.swing import Swing
+
+SOLE_AHEAD, SOLE_ASIDE = 0.035, 0.015
+"""How far the weight may be shifted on one sole from where a plan wants it [m]."""
+
+
+@dataclass(slots=True)
+class Phase:
+    """A step, or the settling after the last: where the weight rests at each tick, and the foot that moves.
+
+    The foot leaves the ground at the tick `lifts`; after the `last` step the weight is between the feet.
+    """
+
+    zmp: list[complex]
+    swing: Swing | None = None
+    lifts: int = 0
+    last: bool = False
+    tick: int = 0
+
+    @property
+    def over(self) -> bool:
+        return self.tick == len(self.zmp)
+
+    @property
+    def part(self) -> float:
+        """How much of the way the foot in the air will have done after this tick."""
+        return (self.tick + 1 - self.lifts) / max(1, len(self.zmp) - self.lifts)
+
+    @property
+    def lifted(self) -> Side | None:
+        """The foot in the air."""
+        return self.swing.side if self.swing and self.tick >= self.lifts else None
+
+
+class Planner:
+    """Plans phases in ticks of `dt` [s]; points are x + iy [m]."""
+
+    def __init__(self, pace: Pace, pendulum: Pendulum, dt: float) -> None:
+        self._pace, self._pendulum = pace, pendulum
+        self._double, self._single = round(pace.double / dt), round(pace.single / dt)
+        self._shift, self._settle = round(pace.shift / dt), round(pace.settle / dt)
+
+    def step(self, feet: Feet, steps: Sequence[Step], dcm: complex, zmp: complex, *, standing: bool) -> Phase:
+        """The first of these steps, seen that the others follow; one alone is the last.
+
+        A robot that was `standing` takes its time to shift its weight.
+        """
+        side, goal = steps[0]
+        wait = self._shift if standing else 0
+        rests = rest(feet[other(side)], self._pace)
+        weight = [zmp] * wait + _ramp(zmp, rests, self._double) + [rests] * self._single
+        swing = Swing(side, feet[side], goal, self._pace.lift)
+        weight = self._shifted(weight, dcm, self._end(feet, steps), feet[other(side)], SOLE_ASIDE)
+        return Phase(weight, swing, wait + self._double, len(steps) == 1)
+
+    def settle(self, feet: Feet, dcm: complex, zmp: complex) -> Phase:
+        """Both feet stay, the weight comes to rest between them."""
+        end = between(feet, self._pace)
+        weight = _ramp(zmp, end, self._double) + [end] * (self._settle - self._double)
+        return Phase(self._shifted(weight, dcm, end, feet["L"], self._pace.apart / 2))
+
+    def divert(self, phase: Phase, feet: Feet, goal: Pose, dcm: complex) -> None:
+        """Let the foot that moves go there, as the last step."""
+        assert phase.swing
+        side = phase.swing.side
+        phase.swing.turn(max(phase.part, 0.0), goal)
+        end = self._end(feet, [Step(side, goal)])
+        weight = phase.zmp[phase.tick :]
+        phase.zmp[phase.tick :] = self._shifted(weight, dcm, end, feet[other(side)], SOLE_ASIDE)
+        phase.last = True
+
+    def _end(self, feet: Feet, steps: Sequence[Step]) -> complex:
+        """The DCM at the end of the first of these steps."""
+        pace, feet = self._pace, {**feet, steps[0].side: steps[0].pose}
+        last, weight = rest(feet[other(steps[0].side)], pace), list[complex]()
+        for side, pose in steps[1:]:
+            rests = rest(feet[other(side)], pace)
+            weight += _ramp(last, rests, self._double) + [rests] * self._single
+            feet, last = {**feet, side: pose}, rests
+        end = between(feet, pace)
+        return self._pendulum.backward(weight + _ramp(last, end, self._double), end)
+
+    def _shifted(self, zmp: list[complex], dcm: complex, end: complex, foot: Pose, aside: float) -> list[complex]:
+        """These points, shifted so that the body gets from `dcm` to `end`, as far as the sole of `foot` reaches."""
+        shift = self._pendulum.shift(dcm, zmp, end) / foot.ahead
+        x = min(max(shift.real, -SOLE_AHEAD), SOLE_AHEAD)
+        y = min(max(shift.imag, -aside), aside)
+        return [point + complex(x, y) * foot.ahead for point in zmp]
+
+
+def rest(foot: Pose, pace: Pace) -> complex:
+    """Where the weight rests on that foot."""
+    return foot.place + pace.ahead * foot.ahead
+
+
+def between(feet: Feet, pace: Pace) -> complex:
+    """Where the weight rests on both feet."""
+    return (rest(feet["L"], pace) + rest(feet["R"], pace)) / 2
+
+
+def _ramp(start: complex, end: complex, ticks: int) -> list[complex]:
+    """From one point to another, the end included."""
+    return [start + (end - start) * (k + 1) / ticks for k in range(ticks)]

@@ -1,0 +1,159 @@
+"""What the robot does while it walks to a place: NAOqi's `moveTo`."""
+
+from collections.abc import Callable, Mapping
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.errors import RobotError
+from lumen.interpreters.gait import JOINTS, SIDES, Gait, Pose, middle
+from lumen.language.commands import Walk
+from lumen.robots.simulation.anatomy import Anatomy
+from lumen.robots.simulation.balance import Balance
+from lumen.robots.simulation.hazards import Hazards
+from lumen.robots.simulation.instruments import Instruments
+from lumen.robots.simulation.motors import Motors
+from lumen.robots.simulation.transition import Transition
+from lumen.robots.simulation.whereabouts import Whereabouts
+
+FARTHEST = 10.0
+"""A walk farther than this [m] is a mistake."""
+
+DRIFT = 0.02
+"""How far beyond the stage a step may be planned on the way [m]: each landed foot is a little off its plan."""
+
+SHORT, TURNED = 0.02, 0.05
+"""A walk that ends farther than this from where it should [m], [rad] has failed."""
+
+INIT, STEADY = 0.8, 0.2
+"""How long it takes to get into the walk's posture, and to come to rest there [s]."""
+
+LOOK_EVERY = 0.1
+"""Time between two looks at what may be in the way [s]."""
+
+SWING, MOST, HANGING = 2.5, 0.35, 1.0
+"""Arms swing that far for each metre between the feet [rad/m], at most so far [rad]; those below this pitch [rad]."""
+
+
+class Walker:
+    """What walking takes; `begin` makes the activity of a command. `free` tells whether nothing else moves a joint."""
+
+    def __init__(
+        self,
+        motors: Motors,
+        balance: Balance,
+        instruments: Instruments,
+        whereabouts: Whereabouts,
+        anatomy: Anatomy,
+        hazards: Hazards,
+        free: Callable[[str], bool],
+    ) -> None:
+        self.motors, self.balance, self.instruments = motors, balance, instruments
+        self.whereabouts, self.hazards = whereabouts, hazards
+        self._anatomy, self._free = anatomy, free
+        legs = {side + name for side in SIDES for name in JOINTS}
+        self._legs = [(name, i) for name, i in motors.index.items() if name in legs]
+        self._others = [name for name in motors.names if name not in legs]
+
+    def begin(self, command: Walk, now: float) -> "Walking":
+        """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""
+        x, y, theta = command.x, command.y, command.theta
+        if not all(map(isfinite, (x, y, theta))):
+            raise RobotError(f"there is no way to ({x}, {y}, {theta})")
+        if abs(complex(x, y)) > FARTHEST:
+            raise RobotError(f"({x:g}, {y:g}) is too far: a walk goes {FARTHEST:g} m at most")
+        if reason := self.hazards.danger():
+            raise RobotError(f"{reason}: the robot did not set out")
+        feet = self.whereabouts.feel(self.measured())
+        gait = Gait(feet, middle(feet).then(Pose(x, y, theta)), self._centre_of_mass)
+        self.whereabouts.check(gait.coming)
+        return Walking(self, gait, now)
+
+    def measured(self) -> dict[str, float]:
+        """Where the encoders say the legs' joints are [rad]."""
+        angles = self.instruments.angles
+        return {name: float(angles[i]) for name, i in self._legs}
+
+    def swing(self, stride: float) -> None:
+        """Swing the arms that hang and do nothing else, against the legs; `stride`: the left foot's lead [m]."""
+        angle = min(max(SWING * stride, -MOST), MOST)
+        arms = {"LShoulderPitch": angle, "RShoulderPitch": -angle}
+        hanging = self.motors.wanted(arms)
+        self.motors.sway({n: a for n, a in arms.items() if hanging[n] > HANGING and self._free(n)})
+
+    def _centre_of_mass(self, legs: Mapping[str, float]) -> NDArray[np.float64]:
+        return self._anatomy.centre_of_mass({**self.motors.wanted(self._others), **legs})
+
+
+class Walking:
+    """A walk: into its posture, step by step to the place, and to rest.
+
+    What gets in the way ends it, as `cancel` does, within the step in the air and one that brings the feet together.
+    """
+
+    def __init__(self, walker: Walker, gait: Gait, now: float) -> None:
+        self._walker, self._gait, self._now = walker, gait, now
+        self._rising: Transition | None = Transition(walker.motors, gait.angles, now, INIT)
+        self._steady = now
+        self._look = now + LOOK_EVERY
+        self._landed = 0
+        self._reason = ""
+        self._cancelled = False
+
+    def advance(self, now: float) -> bool:
+        self._now = now
+        self._watch(now)
+        if self._rising:
+            return self._rise(self._rising, now)
+        if now < self._steady:
+            return False
+        return self._go()
+
+    def cancel(self) -> None:
+        self._cancelled = True
+        if self._rising:
+            self._rising.cancel()
+        else:
+            self._gait.stop()
+
+    def _rise(self, rising: Transition, now: float) -> bool:
+        if rising.advance(now):
+            self._rising, self._steady = None, now + STEADY
+            return self._cancelled and self._end()
+        return False
+
+    def _go(self) -> bool:
+        walker = self._walker
+        tick = self._gait.tick(walker.measured(), walker.instruments.heading)
+        if tick is None:
+            return self._end()
+        walker.motors.aim(tick.angles)
+        walker.swing(tick.stride)
+        walker.balance.lifted = tick.lifted
+        return False
+
+    def _watch(self, now: float) -> None:
+        """End where something is in the way, or where the way leads off the stage by now."""
+        if self._cancelled:
+            return
+        if now >= self._look:
+            self._look += LOOK_EVERY
+            self._reason = self._walker.hazards.danger()
+        if self._gait.steps > self._landed and not self._reason:
+            self._landed = self._gait.steps
+            try:
+                self._walker.whereabouts.check(self._gait.coming, DRIFT)
+            except RobotError as error:
+                self._reason = str(error)
+        if self._reason:
+            self.cancel()
+
+    def _end(self) -> bool:
+        self._walker.whereabouts.land(self._gait.feet)
+        if self._reason:
+            raise RobotError(f"{self._reason}: the walk was ended")
+        far, turned = self._gait.left
+        if not self._cancelled and (far > SHORT or turned > TURNED):
+            raise RobotError(f"the robot did not get there: {100 * far:.0f} cm and {turned:.2f} rad are left")
+        return True

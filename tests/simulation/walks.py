@@ -1,0 +1,119 @@
+"""Walks on a floor with room for them, and how true they end."""
+
+from dataclasses import dataclass
+from functools import cache
+from math import atan2, cos, degrees, hypot, pi, sin
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from lumen.interpreters.gait import Pose, middle
+from lumen.language.commands import Walk
+from lumen.language.events import Event
+from lumen.language.robots import Body
+from lumen.robots.simulation import SimulatedRobot
+from lumen.robots.simulation.model import Variation
+from tests.simulation.conftest import MODELS, answer
+
+START = (3.0, -3.0)
+"""Where on the hall's floor these robots stand [m], with two metres around them."""
+
+TARGETS = (Walk(0.2), Walk(0.5), Walk(0.0, 0.2), Walk(0.0, 0.0, pi / 2), Walk(0.3, 0.2, pi / 4))
+NEAR, STRAIGHT = 2.0, 3.0
+"""How true a walk has to end [cm], [degrees]."""
+
+
+@dataclass
+class Walked:
+    """How a walk ended: its answer, how far from where it should [cm, degrees], the greatest tilt [degrees]."""
+
+    answer: str
+    events: list[Event]
+    seconds: float
+    off: float
+    turned: float
+    tilt: float
+
+    @property
+    def true(self) -> bool:
+        return self.answer == "done" and self.off < NEAR and abs(self.turned) < STRAIGHT
+
+    @property
+    def upright(self) -> bool:
+        return self.answer == "done" and self.tilt < 45
+
+
+@cache
+def floor() -> str:
+    """The shipped hall, its robot on the floor."""
+    folder = Path(mkdtemp())
+    (folder / "hall").symlink_to(MODELS / "hall")
+    text = (MODELS / "hall.xml").read_text("utf-8")
+    moved = text.replace('name="stage" pos="0 0 0.5"', f'name="stage" pos="{START[0]} {START[1]} 0"')
+    assert moved != text
+    (folder / "floor.xml").write_text(moved, "utf-8")
+    return str(folder / "floor.xml")
+
+
+def on_the_floor(body: Body, **options: Any) -> SimulatedRobot:
+    return SimulatedRobot(body, MODELS, floor(), **options)
+
+
+def any_robot(body: Body, seed: int, posture: str = "Stand") -> SimulatedRobot:
+    """A robot whose links are up to 10 % lighter or heavier, each by its own, on a floor of friction 0.5 to 1.0."""
+    draw = np.random.default_rng(seed)
+    variation = Variation(friction=draw.uniform(0.5, 1.0) / 0.8, noise=1.0)
+    robot = on_the_floor(body, seed=seed, posture=posture, variation=variation)
+    model = robot.world.model
+    for i in range(model.nbody):
+        if model.body(i).name.startswith("nao/"):
+            factor = draw.uniform(0.9, 1.1)
+            model.body_mass[i] *= factor
+            model.body_inertia[i] *= factor
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    robot.advance(0.3)
+    return robot
+
+
+def truth(robot: SimulatedRobot) -> Pose:
+    """Where the robot really stands, between its feet, from where it began."""
+    feet = {}
+    for side in ("L", "R"):
+        site = robot.world.data.site(f"nao/{side}Sole")
+        axes = site.xmat.reshape(3, 3)
+        feet[side] = Pose(site.xpos[0] - START[0], site.xpos[1] - START[1], atan2(axes[1, 0], axes[0, 0]))
+    return middle(feet)
+
+
+@dataclass
+class Push:
+    """That many newtons for 0.1 s, `at` seconds after the walk began, towards `to` [rad]."""
+
+    newton: float = 0.0
+    at: float = 0.0
+    to: float = 0.0
+
+    def act(self, robot: SimulatedRobot, now: float) -> None:
+        on = self.newton if self.at <= now < self.at + 0.1 else 0.0
+        robot.world.data.xfrc_applied[robot.world.torso][:2] = on * cos(self.to), on * sin(self.to)
+
+
+def walk(robot: SimulatedRobot, command: Walk, push: Push | None = None) -> Walked:
+    """A walk to its answer, and a moment more."""
+    goal, begin = truth(robot).then(Pose(command.x, command.y, command.theta)), robot.time
+    robot.start("walk", command)
+    events: list[Event] = []
+    while not answer(events, "walk") and robot.time < begin + 60:
+        if push:
+            push.act(robot, robot.time - begin)
+        robot.advance(0.01)
+        events += robot.poll()
+    took = robot.time - begin
+    robot.advance(0.5)
+    off = truth(robot).seen_from(goal)
+    return Walked(
+        answer(events, "walk"), events, took, 100 * hypot(off.x, off.y), degrees(off.theta), robot.greatest_tilt
+    )
