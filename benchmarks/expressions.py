@@ -1,0 +1,86 @@
+"""What an evaluation costs: guards, an assignment's value and a text, in µs of CPU time. Medians of several runs.
+
+    python benchmarks/expressions.py
+
+Beside them the same written as a Python function over the same data, and, where Google's `cel-expr-python` is
+installed, its evaluation.
+"""
+
+import platform
+from collections.abc import Callable
+from typing import Any
+
+from fuzzy import processor
+from timing import rate
+
+from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
+
+SCOPE = Scope(
+    context={"asked": 1, "visitor": "Ada", "list": [1, 2, 3]},
+    event={"name": "heard", "data": {"result": "Can you dance for me, please?", "x": 120.0}},
+    state={"path": "talk.ask", "language": "en"},
+    configuration=frozenset({"talk", "talk.ask"}).__contains__,
+    phrases={"dance": {"en": ("dance", "can you dance"), "id": ("menari", "joget")}},
+)
+GUARDS: dict[str, Callable[[Scope], Any] | None] = {
+    "context.asked < 3": lambda s: s[0]["asked"] < 3,
+    "context.asked < 3 && event.data.x > 100": lambda s: s[0]["asked"] < 3 and s[1]["data"]["x"] > 100,
+    "has(event.data.x) && event.data.x > 100": lambda s: "x" in s[1]["data"] and s[1]["data"]["x"] > 100,
+    "context.visitor == 'Ada'": lambda s: s[0]["visitor"] == "Ada",
+    "In('talk')": lambda s: s[3]("talk"),
+    "heard(event.data.result, 'dance')": None,
+}
+VALUES: dict[str, Callable[[Scope], Any]] = {
+    "context.asked + 1": lambda s: s[0]["asked"] + 1,
+    "{'x': event.data.x, 'list': context.list + [4]}": lambda s: {"x": s[1]["data"]["x"], "list": [*s[0]["list"], 4]},
+}
+TEXT = "Hello {{ context.visitor }}, you asked {{ context.asked }} times."
+
+
+def cost(function: Callable[[Scope], Any]) -> float:
+    """µs of one call."""
+
+    def work(count: int) -> int:
+        for _ in range(count):
+            function(SCOPE)
+        return count
+
+    return 1e6 / rate(work)
+
+
+def cel_costs() -> Callable[[str], str]:
+    """What gives the cost of an expression in CEL, as text; nothing where it is not installed or not known there."""
+    try:
+        from cel_expr_python import cel
+    except ImportError:
+        return lambda source: ""
+    environment = cel.NewEnv(variables=dict.fromkeys(("context", "event", "state"), cel.Type.DYN))
+    data = {"context": SCOPE.context, "event": SCOPE.event, "state": SCOPE.state}
+
+    def measure(source: str) -> str:
+        try:
+            program = environment.compile(source, disable_check=True)
+        except RuntimeError:
+            return ""
+        if program.eval(data=data).type().name() == "ERROR":
+            return ""
+        return f"{cost(lambda _: program.eval(data=data)):10.2f}"
+
+    return measure
+
+
+def main() -> None:
+    in_cel = cel_costs()
+    print(f"Python {platform.python_version()}, {platform.machine()}, {processor()}; µs of CPU time, an empty loop off")
+    print(f"{'':66}{'Lumen':>8}{'Python':>8}{'CEL':>10}")
+    empty = cost(lambda _: None)
+    for source, python in GUARDS.items():
+        by_hand = f"{cost(python) - empty:8.2f}" if python else f"{'':8}"
+        print(f"{source:66}{cost(compile_guard(source)) - empty:8.2f}{by_hand}{in_cel(source)}")
+    for source, python in VALUES.items():
+        print(f"{source:66}{cost(compile_expression(source)) - empty:8.2f}{cost(python) - empty:8.2f}{in_cel(source)}")
+    print(f"{TEXT:66}{cost(compile_template(TEXT)) - empty:8.2f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,192 @@
+"""The same two machines in other statechart libraries, as their documentation writes them.
+
+Each `work(count)` starts anew, sends that many events and returns the context value that every event assigns.
+"""
+
+import json
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+Work = Callable[[int], int]
+MOST = 1_000_000_000
+
+
+class Model:
+    """What `transitions` moves: a guard and an assignment as methods."""
+
+    n = 0
+
+    def below(self) -> bool:
+        return self.n < MOST
+
+    def plus(self) -> None:
+        self.n += 1
+
+
+def transitions_ring(size: int) -> Work:
+    from transitions import Machine
+
+    names = [f"s{i}" for i in range(size)]
+    rows = [["go", name, names[(i + 1) % size], "below", None, "plus"] for i, name in enumerate(names)]
+    return _transitions(Machine, names, rows, "s0")
+
+
+def transitions_regions() -> Work:
+    from transitions.extensions import HierarchicalMachine
+
+    regions = [{"name": side, "children": ["a", "b"], "initial": "a"} for side in ("left", "right")]
+    states = [{"name": "both", "parallel": regions}]
+    turns = (("a", "b"), ("b", "a"))
+    rows = [["go", f"both_left_{one}", f"both_left_{other}", "below", None, "plus"] for one, other in turns]
+    rows += [["go", f"both_right_{one}", f"both_right_{other}"] for one, other in turns]
+    return _transitions(HierarchicalMachine, states, rows, "both")
+
+
+def _transitions(kind: Any, states: Any, rows: Any, start: str) -> Work:
+    model = Model()
+    machine = kind(model, states=states, transitions=rows, initial=start, auto_transitions=False)
+
+    def work(count: int) -> int:
+        model.n = 0
+        machine.set_state(start if kind.__name__ == "Machine" else ["both_left_a", "both_right_a"])
+        for _ in range(count):
+            model.go()  # type: ignore[attr-defined]
+        return model.n
+
+    return work
+
+
+def statemachine_ring(size: int) -> Work:
+    states: dict[str, Any] = {f"s{i}": {"on": {"go": [_turn(f"s{(i + 1) % size}")]}} for i in range(size)}
+    return _statemachine(states, "s0")
+
+
+def statemachine_regions() -> Work:
+    left = {"la": {"initial": True, "on": {"go": [_turn("lb")]}}, "lb": {"on": {"go": [_turn("la")]}}}
+    right = {"ra": {"initial": True, "on": {"go": [{"target": "rb"}]}}, "rb": {"on": {"go": [{"target": "ra"}]}}}
+    states: dict[str, Any] = {
+        "both": {"parallel": True, "states": {"left": {"states": left}, "right": {"states": right}}}
+    }
+    return _statemachine(states, "both")
+
+
+def _turn(target: str) -> dict[str, str]:
+    return {"target": target, "cond": "below", "on": "plus"}
+
+
+def _statemachine(states: dict[str, Any], start: str) -> Work:
+    from statemachine.io import create_machine_class_from_definition
+
+    states[start]["initial"] = True
+    made: Any = create_machine_class_from_definition("Made", states=states)
+
+    def work(count: int) -> int:
+        model = Model()
+        machine = made(model=model)
+        for _ in range(count):
+            machine.send("go")
+        return model.n
+
+    return work
+
+
+def sismic_ring(size: int) -> Work:
+    states = [{"name": f"s{i}", "transitions": [_guarded(f"s{(i + 1) % size}")]} for i in range(size)]
+    return _sismic({"name": "root", "initial": "s0", "states": states})
+
+
+def sismic_regions() -> Work:
+    left = [{"name": "la", "transitions": [_guarded("lb")]}, {"name": "lb", "transitions": [_guarded("la")]}]
+    right = [
+        {"name": one, "transitions": [{"event": "go", "target": other}]} for one, other in (("ra", "rb"), ("rb", "ra"))
+    ]
+    regions = [{"name": "left", "initial": "la", "states": left}, {"name": "right", "initial": "ra", "states": right}]
+    return _sismic({"name": "root", "initial": "both", "states": [{"name": "both", "parallel states": regions}]})
+
+
+def _guarded(target: str) -> dict[str, str]:
+    return {"event": "go", "target": target, "guard": f"n < {MOST}", "action": "n = n + 1"}
+
+
+def _sismic(root: dict[str, Any]) -> Work:
+    from sismic.interpreter import Interpreter
+    from sismic.io.datadict import import_from_dict
+
+    chart = import_from_dict({"statechart": {"name": "made", "preamble": "n = 0", "root state": root}})
+
+    def work(count: int) -> int:
+        interpreter = Interpreter(chart)
+        interpreter.execute()
+        for _ in range(count):
+            interpreter.queue("go").execute_once()
+        return int(interpreter.context["n"])
+
+    return work
+
+
+def port_ring(size: int) -> Work:
+    states = {f"s{i}": {"on": {"GO": _named(f"s{(i + 1) % size}")}} for i in range(size)}
+    return _port({"initial": "s0", "states": states})
+
+
+def port_regions() -> Work:
+    left = {"a": {"on": {"GO": _named("b")}}, "b": {"on": {"GO": _named("a")}}}
+    right = {"a": {"on": {"GO": "b"}}, "b": {"on": {"GO": "a"}}}
+    regions = {"left": {"initial": "a", "states": left}, "right": {"initial": "a", "states": right}}
+    return _port({"initial": "both", "states": {"both": {"type": "parallel", "states": regions}}})
+
+
+def _named(target: str) -> dict[str, Any]:
+    return {"target": target, "guard": "below", "actions": ["plus"]}
+
+
+def _port(config: dict[str, Any]) -> Work:
+    from xstate_statemachine import MachineLogic, SyncInterpreter, create_machine
+
+    def plus(_: Any, context: dict[str, int], *__: Any) -> None:
+        context["n"] += 1
+
+    logic: Any = MachineLogic(guards={"below": lambda context, _: context["n"] < MOST}, actions={"plus": plus})
+    machine = create_machine({"id": "made", "context": {"n": 0}, **config}, logic=logic)
+
+    def work(count: int) -> int:
+        service = SyncInterpreter(machine).start()
+        for _ in range(count):
+            service.send("GO")
+        return int(service.context["n"])
+
+    return work
+
+
+PEERS: list[tuple[str, str, Callable[[int], Work], Callable[[], Work]]] = [
+    ("transitions", "transitions", transitions_ring, transitions_regions),
+    ("python-statemachine", "python-statemachine", statemachine_ring, statemachine_regions),
+    ("sismic", "sismic", sismic_ring, sismic_regions),
+    ("xstate-statemachine", "xstate-statemachine", port_ring, port_regions),
+]
+"""Name, package, and the makers of the two machines."""
+
+
+def xstate(sizes: Sequence[int]) -> list[tuple[str, dict[str, float] | str]]:
+    """XState's rates on Node: through its pure transition function, and through an actor."""
+    pure, actor = "XState, pure", "XState, actor"
+    if not (shutil.which("node") and shutil.which("npm")):
+        return [(pure, "not measured: there is no Node here"), (actor, "not measured")]
+    with tempfile.TemporaryDirectory() as folder:
+        script = Path(folder) / "xstate.mjs"
+        script.write_text(Path(__file__).with_name("xstate.mjs").read_text())
+        try:
+            for command in (["npm", "init", "-y"], ["npm", "install", "--no-audit", "--no-fund", "xstate@5"]):
+                subprocess.run(command, cwd=folder, check=True, capture_output=True, timeout=120)
+            arguments = ["node", script.name, *map(str, sizes)]
+            said = subprocess.run(arguments, cwd=folder, check=True, capture_output=True, timeout=600, text=True).stdout
+        except (subprocess.SubprocessError, OSError) as error:
+            reason = f"not measured: {type(error).__name__} of {error.cmd[0] if hasattr(error, 'cmd') else 'npm'}"
+            return [(pure, reason), (actor, reason)]
+    found = json.loads(said)
+    where = f"{found['version']}, Node {found['node']}"
+    return [(f"{pure} {where}", found["pure"]), (f"{actor} {where}", found["actor"])]

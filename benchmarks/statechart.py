@@ -1,0 +1,125 @@
+"""How many events per second statecharts take: ours, XState's and Python's others, and a plain dict. CPU time, medians.
+
+    pip install transitions python-statemachine sismic xstate-statemachine
+    python benchmarks/statechart.py
+
+None of the peers is needed by Lumen; one that is missing is reported as not measured. XState runs on Node; npm fetches
+its package into a temporary folder. Machine (a) is a ring of 15, 150 or 1,500 states, of which each event enters the
+next; (b) is three levels deep, and each event moves both regions of its parallel state. Each event checks a guard and
+assigns one context value: in Lumen the guard is an expression of the YAML, and every event gives a Step, with the
+snapshot before it unchanged, as XState's pure transition function does. `growth` is the time of one event at 1,500
+states over that at 15.
+"""
+
+import platform
+from collections.abc import Callable
+from importlib.metadata import version
+from typing import Any
+
+from fuzzy import processor
+from peers import PEERS, Work, xstate
+from timing import rate
+
+from lumen.statechart import Event, Machine, initial, step
+
+SIZES = (15, 150, 1500)
+GUARD, COUNT = "context.n < 1000000000", {"assign": {"n": "context.n + 1"}}
+Rates = dict[str, float]
+
+
+def lumen(data: dict[str, Any]) -> Work:
+    """Ours through the pure `step`."""
+    machine = Machine.from_dict({"context": {"n": 0}, **data})
+    go = Event("go")
+
+    def work(count: int) -> int:
+        snapshot = initial(machine).snapshot
+        for _ in range(count):
+            taken = step(machine, snapshot, go)
+            snapshot = taken.snapshot
+        return int(snapshot.context["n"])
+
+    return work
+
+
+def lumen_ring(size: int) -> Work:
+    states = {f"s{i}": {"on": {"go": _row(f"s{(i + 1) % size}")}} for i in range(size)}
+    return lumen({"states": states})
+
+
+def lumen_regions() -> Work:
+    left = {"a": {"on": {"go": _row("b")}}, "b": {"on": {"go": _row("a")}}}
+    right = {"a": {"on": {"go": "b"}}, "b": {"on": {"go": "a"}}}
+    both = {"type": "parallel", "states": {"left": {"states": left}, "right": {"states": right}}}
+    return lumen({"states": {"both": both}})
+
+
+def _row(target: str) -> dict[str, Any]:
+    return {"target": target, "guard": GUARD, "actions": COUNT}
+
+
+def dict_ring(size: int) -> Work:
+    """The limit: a table from state and event to a guard, an assignment and the next state."""
+    table = {(f"s{i}", "go"): (_below, _plus, f"s{(i + 1) % size}") for i in range(size)}
+
+    def work(count: int) -> int:
+        state, context = "s0", {"n": 0}
+        for _ in range(count):
+            guard, assign, target = table[state, "go"]
+            if guard(context):
+                state, context = target, assign(context)
+        return context["n"]
+
+    return work
+
+
+def _below(context: dict[str, int]) -> bool:
+    return context["n"] < 1_000_000_000
+
+
+def _plus(context: dict[str, int]) -> dict[str, int]:
+    return {**context, "n": context["n"] + 1}
+
+
+def measured(ring: Callable[[int], Work], regions: Callable[[], Work] | None) -> Rates:
+    rates = {f"{size:,} states": rate(ring(size)) for size in SIZES}
+    if regions:
+        rates["regions"] = rate(regions())
+    return rates
+
+
+def main() -> None:
+    """Print the table; a peer that can't be measured says why."""
+    rows: list[tuple[str, Rates | str]] = [("Lumen, pure step", measured(lumen_ring, lumen_regions))]
+    rows += xstate(SIZES)
+    for name, package, ring, regions in PEERS:
+        try:
+            rows.append((f"{name} {version(package)}", measured(ring, regions)))
+        except ImportError:
+            rows.append((name, f"not measured: pip install {package}"))
+    rows.append(("plain dict (no regions)", measured(dict_ring, None)))
+    print(f"Python {platform.python_version()}, {platform.machine()}, {processor()}; thousands of events per second")
+    show(rows)
+
+
+def show(rows: list[tuple[str, Rates | str]]) -> None:
+    """Print the rates, then each of them over those of XState."""
+    columns = [*(f"{size:,} states" for size in SIZES), "regions"]
+    print(f"{'':36}" + "".join(f"{column:>13}" for column in columns) + f"{'growth':>10}")
+    for name, rates in rows:
+        if isinstance(rates, str):
+            print(f"{name:36} {rates}")
+        else:
+            cells = "".join(f"{rates[column] / 1e3:13,.1f}" if column in rates else f"{'-':>13}" for column in columns)
+            print(f"{name:36}{cells}{rates[columns[0]] / rates[columns[2]]:10.2f}")
+    for base, theirs in rows:
+        if base.startswith("XState") and not isinstance(theirs, str):
+            print(f"\ntimes {base}")
+            for name, rates in rows:
+                if name != base and not isinstance(rates, str):
+                    ratios = (f"{rates[column] / theirs[column]:13.2f}" for column in columns if column in rates)
+                    print(f"{name:36}" + "".join(ratios))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,30 @@
+"""Events per second of CPU time."""
+
+import gc
+from collections.abc import Callable
+from statistics import median
+from time import process_time
+
+RUNS, SECONDS = 7, 0.25
+
+
+def rate(work: Callable[[int], int]) -> float:
+    """Events per second: the median of several runs of about 0.25 s each, after one to warm up.
+
+    `work` lets so many events happen and returns how many assignments it made, which has to be the same number.
+    """
+    count = 100
+    while (spent := _time(work, count)) < SECONDS / 5:
+        count *= 4
+    count = max(count, int(count * SECONDS / spent))
+    gc.collect()
+    return count / median(_time(work, count) for _ in range(RUNS))
+
+
+def _time(work: Callable[[int], int], count: int) -> float:
+    start = process_time()
+    done = work(count)
+    spent = process_time() - start
+    if done != count:
+        raise AssertionError(f"{count} events made {done} assignments")
+    return spent
