@@ -10,9 +10,17 @@ from lumen.statechart import Machine
 Data = dict[str, Any]
 Event = tuple[str, Any]
 
-EVENTS = ["a", "b", "b.c", "b.c.d", "x.y"]
+EVENTS = ["a", "b", "b.c", "b.c.d", "bc", "x.y"]
 DESCRIPTORS = ["a", "b", "b.*", "b.c", "b.c.*", "x", "x.y", "*", "error", "error.execution", "done.state"]
-GUARDS = ["context.n < 4", "context.n % 2 == 0", "event.data.k > 1", "has(event.data.k)", "context.t == 'x'", "In(S)"]
+GUARDS = [
+    "context.n < 4",
+    "context.n % 2 == 0",
+    "event.data.k > 1",
+    "has(event.data.k)",
+    "context.t == 'x'",
+    "In(S)",
+    "size(state.path) > 2",
+]
 ACTIONS: list[Data] = [
     {"assign": {"n": "context.n + 1"}},
     {"assign": {"n": "context.n + event.data.k"}},
@@ -26,7 +34,7 @@ ACTIONS: list[Data] = [
     {"send": {"event": "a", "delay": "300ms", "id": "one"}},
     {"cancel": "one"},
     {"play": "wave"},
-    {"log": "{{ context.n }}"},
+    {"log": "{{ context.n }} in {{ state.path }}"},
 ]
 DEEDS: list[Data] = [
     *ACTIONS,
@@ -161,7 +169,8 @@ class Making:
         ]
 
     def target(self) -> Any:
-        path = self.pick(list(self.states))
+        histories = [path for path, state in self.states.items() if state.get("type") == "history"]
+        path = self.pick(histories if histories and self.chance(30) else list(self.states))
         if not path:
             return "#root"
         together = [other for other in self.states if other and self.meet(path, other)]

@@ -121,13 +121,14 @@ def test_three_hundred_machines(machine: Machine, events: list[Happening | None]
 @pytest.mark.soak
 def test_twenty_thousand_machines() -> None:
     tally = Counter[str]()
+    for thousand in range(20):
 
-    @seed(1987)
-    @settings(BUSY, max_examples=20_000)
-    @given(machines(), happenings)
-    def everyone(machine: Machine, events: list[Happening | None]) -> None:
-        compare(machine, events, tally)
+        @seed(thousand)
+        @settings(BUSY, max_examples=1_000)
+        @given(machines(), happenings)
+        def everyone(machine: Machine, events: list[Happening | None]) -> None:
+            compare(machine, events, tally)
 
-    everyone()
+        everyone()
     print("\nthe same:", ", ".join(f"{count:,} {what}" for what, count in tally.items()))  # noqa: T201
     assert tally["machines"] >= 20_000
