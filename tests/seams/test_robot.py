@@ -132,6 +132,29 @@ def test_an_aim_moves_the_head_and_is_not_answered(robot: Body) -> None:
     assert joints.angles[joints.names.index("HeadYaw")] == pytest.approx(0.4, abs=0.03)
 
 
+def test_an_aim_leaves_alone_what_a_command_owns(robot: Body) -> None:
+    robot.start("look", Look(0.3, 0.0))
+    live(robot, 0.1)
+    robot.start("", Aim({"HeadYaw": -0.5}, 0.5))
+    assert names(live(robot, 2.0)) == ["done.command.look"]
+    joints = robot.read(Sense.JOINT)
+    assert isinstance(joints, Joints)
+    assert joints.angles[joints.names.index("HeadYaw")] == pytest.approx(0.3, abs=0.03)
+
+
+def test_a_motion_owns_what_it_moves_and_nothing_else(robot: Body, project: Project) -> None:
+    motion = project.motions["photo"]
+    assert "HeadYaw" not in motion.tracks
+    robot.start("photo", Perform(motion))
+    robot.start("say", Say("Smile"))
+    robot.start("look", Look(0.3, 0.0))
+    assert live(robot, 0.1) == []
+    robot.start("stand", Posture("Stand"))
+    answers = names(live(robot, motion.duration + 6.0))
+    assert set(answers[:2]) == {"done.command.say", "done.command.look"}
+    assert answers[2:] == ["done.command.photo", "done.command.stand"]
+
+
 @pytest.mark.parametrize("angle", [9.0, -9.0])
 def test_no_aim_leaves_the_limits(robot: Body, project: Project, angle: float) -> None:
     robot.start("", Aim({"HeadPitch": angle}, 1.0))

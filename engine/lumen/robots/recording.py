@@ -6,26 +6,18 @@ from math import hypot, isfinite
 
 from lumen.errors import RobotError, UsageError
 from lumen.interpreters.projection import seen
-from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Look, Posture, Rest, Say, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.executor import ARMS, HEAD, LEDS, LEGS, VOICE, Executor
+from lumen.robots.executor import Executor
+from lumen.robots.parts import part_of, parts
 
 _VERBS: Mapping[type, str] = {
     Say: "say", Perform: "play", Posture: "posture", Walk: "walk", Look: "look", Rest: "rest", Wake: "wake",
 }  # fmt: skip
-_PARTS: Mapping[type, frozenset[str]] = {
-    Say: frozenset((VOICE,)),
-    Walk: frozenset((LEGS,)),
-    Look: frozenset((HEAD,)),
-    Stop: frozenset(),
-    Perform: frozenset((HEAD, ARMS, LEGS, LEDS)),
-}
-_WHOLE = frozenset((HEAD, ARMS, LEGS))
-
 
 TORSO = 0.333
 """Where a standing NAO's torso is above its soles [m]."""
@@ -66,11 +58,12 @@ class RecordingRobot:
         self._pressed: set[str] = set()
         self._visitor: Visitor | None = None
         self._noticed: list[Event] = []
-        self._executor = Executor(self._begin, lambda command: _PARTS.get(type(command), _WHOLE))
+        self._executor = Executor(self._begin, lambda command: parts(command, body))
+        self._part = part_of(body)
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Aim):
-            self._turn(command.angles)
+            self._turn({n: a for n, a in command.angles.items() if self._free(n)})
         else:
             self._executor.start(id, command)
 
@@ -114,7 +107,7 @@ class RecordingRobot:
             return None
         visitor = self._visitor
         place = (visitor.x, visitor.y, visitor.height * FACE - PODIUM - TORSO)
-        return seen(place, self.body.camera, self._angles["HeadYaw"], self._angles["HeadPitch"])
+        return seen(place, self.body.camera, self._angles.get("HeadYaw", 0.0), self._angles.get("HeadPitch", 0.0))
 
     def touch(self, sensor: str, pressed: bool) -> None:
         """Press or release a tactile sensor. Raises UsageError for one that the robot does not have."""
@@ -136,6 +129,10 @@ class RecordingRobot:
         elif isinstance(command, Look):
             self._turn({"HeadYaw": command.yaw, "HeadPitch": command.pitch})
         return _Lasting(float("inf") if behaves == "hangs" else now + _duration(command, behaves))
+
+    def _free(self, joint: str) -> bool:
+        """Whether no command owns that joint, or the robot has none of that name."""
+        return not self._executor.owner(self._part.get(joint, ""))
 
     def _turn(self, angles: Mapping[str, float]) -> None:
         joints = self.body.joints

@@ -6,7 +6,8 @@ from typing import assert_never
 from lumen.errors import RobotError
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.ports import Aim, Perform, RobotCommand
-from lumen.robots.executor import ARMS, HEAD, LEDS, LEGS, VOICE, Activity
+from lumen.robots.executor import Activity
+from lumen.robots.parts import part_of, parts
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.performance import Performance, Speech
@@ -20,7 +21,6 @@ POSTURES = ("Stand", "StandInit", "StandZero", "Crouch")
 SOFT = 0.1
 """Stiffness of a robot that has fallen."""
 
-_BODY = frozenset((HEAD, ARMS, LEGS))
 _LOOK_SPEED = 1.5
 _REST_TIME = 2.0
 _UPRIGHT = pi / 9
@@ -32,30 +32,12 @@ class Repertoire:
     def __init__(self, world: World, motors: Motors, lights: Lights, walker: Walker) -> None:
         self._world, self._motors, self._lights, self._walker = world, motors, lights, walker
         self._postures = world.body.postures
-        self._part = {name: part for part, names in world.body.parts.items() for name in names}
+        self._part = part_of(world.body)
         self.awake, self.fallen = True, False
 
     def parts(self, command: RobotCommand) -> frozenset[str]:
         """Which parts of the body a command owns."""
-        match command:
-            case Say():
-                return frozenset((VOICE,))
-            case Perform(motion):
-                kinds = {cue.kind for cue in motion.cues}
-                lit = {LEDS} if "leds" in kinds else set()
-                voiced = {VOICE} if "say" in kinds else set()
-                standing = {ARMS, LEGS} if motion.start else set()
-                return frozenset({self._part[n] for n in motion.tracks if n in self._part} | lit | voiced | standing)
-            case Posture() | Rest() | Wake():
-                return _BODY
-            case Walk():
-                return frozenset((LEGS,))
-            case Look():
-                return frozenset((HEAD,))
-            case Stop() | Aim():
-                return frozenset()
-            case _:
-                assert_never(command)
+        return parts(command, self._world.body)
 
     def part(self, joint: str) -> str:
         """The part of the body that a joint belongs to."""
