@@ -22,6 +22,7 @@ THIGH, TIBIA, FOOT = 0.1, 0.1029, 0.04511
 """Hip to knee, knee to ankle, ankle to sole [m]."""
 
 STRETCHED = THIGH + TIBIA - 1e-4
+_SLOPE = 2.7
 _YAW_STEP, _YAW_ERROR, _ROUNDS = 0.2, 1e-4, 6
 
 Matrix = NDArray[np.float64]
@@ -92,17 +93,18 @@ def stand(torso: complex, height: float, lean: float, yaw: float, feet: Mapping[
     """The joints that carry the torso over `torso` at `height` [m], leant forward by `lean` [rad].
 
     Both hips share one yaw pitch motor, so that the torso's heading follows from the feet: it is sought from `yaw` on,
-    by Newton's method, until both legs want the same of it.
+    along secants, until both legs want the same of it.
     """
-    bent = _bend_both(torso, height, lean, yaw, feet)
+    bent, slope = _bend_both(torso, height, lean, yaw, feet), _SLOPE
+    apart = bent["L"][0] - bent["R"][0]
     for _ in range(_ROUNDS):
-        apart = bent["L"][0] - bent["R"][0]
         if abs(apart) < _YAW_ERROR:
             break
-        near = _bend_both(torso, height, lean, yaw + 1e-4, feet)
-        slope = (near["L"][0] - near["R"][0] - apart) / 1e-4
-        yaw -= min(max(apart / slope, -_YAW_STEP), _YAW_STEP) if abs(slope) > 0.1 else 0.0
+        step = min(max(-apart / slope, -_YAW_STEP), _YAW_STEP)
+        yaw, before = yaw + step, apart
         bent = _bend_both(torso, height, lean, yaw, feet)
+        apart = bent["L"][0] - bent["R"][0]
+        slope = min(max((apart - before) / step, _SLOPE / 2), 2 * _SLOPE)
     angles = {side + name: angle for side in SIDES for name, angle in zip(JOINTS, bent[side], strict=True)}
     return Stance(angles, yaw)
 
