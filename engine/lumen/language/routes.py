@@ -1,9 +1,25 @@
 """Which messages the exhibition knows, and how each is carried."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 from lumen.language.diagnostics import Path
+
+IMAGE, JOINT, SONAR, TACTILE, BATTERY = "image", "joint", "sonar", "tactile", "battery"
+FACE, HEARD, COMMAND = "face", "heard", "command"
+
+MEANINGS: Mapping[str, str] = {
+    IMAGE: "what the robot's camera sees",
+    JOINT: "where its joints stand; `track` follows nothing without it",
+    SONAR: "how far away the nearest echoes are",
+    TACTILE: "which of its sensors are pressed",
+    BATTERY: "how full its battery is",
+    FACE: "where a visitor's face stands in the camera's image; simulated visitors are seen on it",
+    HEARD: "what a visitor said; what is typed, and what a story's visitor says, comes on it",
+    COMMAND: "what other modules ask of the robot",
+}
+"""The routes whose names mean something to Lumen itself, and what each is for; all others are the exhibition's own."""
 
 
 class Direction(StrEnum):

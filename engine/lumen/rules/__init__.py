@@ -10,6 +10,7 @@ from lumen.loading.packaged import find_project
 from lumen.loading.project import assemble, draft, read_files
 from lumen.rules import (
     controllers,
+    effects,
     events,
     expressions,
     motions,
@@ -21,7 +22,19 @@ from lumen.rules import (
     stories,
 )
 
-FAMILIES = (schemas, references, expressions, events, routes, speech, controllers, motions, statecharts, stories)
+FAMILIES = (
+    schemas,
+    references,
+    expressions,
+    events,
+    routes,
+    speech,
+    controllers,
+    motions,
+    statecharts,
+    stories,
+    effects,
+)
 """The rules, in the order they look: what is unused or never reached is looked for where nothing else is wrong."""
 
 

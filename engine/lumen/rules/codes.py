@@ -70,6 +70,7 @@ CODES: Mapping[str, Code] = {
     "shadowed-transition": Code(WARNING, "a transition is never taken, because one before it always is"),
     "unreachable-state": Code(WARNING, "no transition leads to a state"),
     "unsupported": Code(ERROR, "something that can't be run yet"),
+    "no-effect": Code(WARNING, "something that is read, and has no effect yet"),
     "unused-event": Code(WARNING, "an event is raised that nothing waits for"),
     # expressions
     "expression-syntax": Code(ERROR, "an expression can't be read"),
@@ -128,6 +129,7 @@ CODES: Mapping[str, Code] = {
     "duplicate-route": Code(ERROR, "two routes carry the same key to different events"),
     "endless-reference": Code(ERROR, "a reference in a message schema leads back to itself"),
     "foreign-reference": Code(ERROR, "a message schema refers to something outside itself"),
+    "missing-route": Code(WARNING, "a route is missing that something the behaviour does needs"),
     "route-key": Code(ERROR, "a routing key has a form that no message could have"),
     "unused-route": Code(WARNING, "the messages of a route become an event that nothing waits for"),
 }

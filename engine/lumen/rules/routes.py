@@ -1,13 +1,16 @@
 """The route table: keys, schemas, events."""
 
 import re
+from collections.abc import Mapping
 
+from lumen.language.commands import Track
 from lumen.language.diagnostics import did_you_mean, has_errors
-from lumen.language.routes import Direction, Route
+from lumen.language.routes import HEARD, JOINT, MEANINGS, Direction, Route
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.events import descriptors, hears
 from lumen.rules.finding import References, find
+from lumen.rules.walk import sites
 
 PREFIXES = ("avatar", "lumen")
 MAX_BYTES = 255
@@ -21,6 +24,7 @@ def check(draft: Draft) -> None:
     settings, report = draft.settings, draft.main
     if settings is None or report is None:
         return
+    _missing(draft, settings.routes, report)
     references = References(draft)
     events: dict[tuple[str, str], str] = {}
     for name, route in settings.routes.items():
@@ -34,6 +38,19 @@ def check(draft: Draft) -> None:
             if other != name:
                 message = f"`{other}` has the same key and becomes the same event"
                 find(report, "duplicate-route", (*route.where, "key"), message, "delete one of them")
+
+
+def _missing(draft: Draft, routes: Mapping[str, Route], report: Report) -> None:
+    """Routes that a behaviour counts on without naming them."""
+    if has_errors(draft.diagnostics):
+        return
+    for behavior, machine in draft.behaviors.items():
+        tracks = any(isinstance(site.step.action, Track) for site in sites(machine))
+        waits = any(d != "*" and hears(d, HEARD) for d in descriptors(machine))
+        for name, needed, what in ((JOINT, tracks, "uses `track`"), (HEARD, waits, "waits for `heard`")):
+            if needed and name not in routes and name not in report.lost:
+                message = f"`{behavior}` {what}, and there is no route `{name}`: {MEANINGS[name]}"
+                find(report, "missing-route", ("routes",), message, f"write a row `{name}:`", key=True)
 
 
 def _key(report: Report, route: Route) -> bool:
