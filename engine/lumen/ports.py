@@ -167,7 +167,12 @@ class Bus(Protocol):
     def publish(
         self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
     ) -> None:
-        """Send a body (JSON data); safe from any thread, never waits for a handler. Raises BusError once closed."""
+        """Send a body (JSON data); safe from any thread. Raises BusError once closed, or for what is not JSON data.
+
+        It never waits for a handler that runs on another thread, nor for the network. Where the bus has no thread of
+        its own (`memory://`), who finds nobody delivering delivers: a handler may run inside `publish`, so it should
+        do no more than enqueue.
+        """
         ...
 
     def reply(self, message: Message, body: Any) -> None:

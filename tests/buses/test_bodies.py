@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from lumen.buses.bodies import MAX_BYTES, copied, decode, encode
 from lumen.errors import BusError
 
-SCALARS = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text()
+INTEGERS = st.integers(-(2**63), 2**63)
+SCALARS = st.none() | st.booleans() | INTEGERS | st.floats(allow_nan=False, allow_infinity=False) | st.text()
 BODIES = st.recursive(SCALARS, lambda b: st.lists(b, max_size=4) | st.dictionaries(st.text(), b, max_size=4))
 
 
@@ -57,6 +58,34 @@ def test_relatives_of_json_types_become_json(body: Any, plain: Any) -> None:
     assert type(copied(body)) is type(plain)
 
 
+NO_NUMBERS = [float("inf"), float("-inf"), float("nan"), 2**63 + 1, -(2**63) - 1, 10**400, True + 2**64]
+INSIDE = [lambda n: n, lambda n: {"time": n}, lambda n: [n], lambda n: (0.5, n), lambda n: [1, n], lambda n: ["a", [n]]]
+
+
+@pytest.mark.parametrize("inside", INSIDE)
+@pytest.mark.parametrize("number", NO_NUMBERS)
+def test_a_number_that_is_no_finite_float_is_never_sent(number: float, inside: Any) -> None:
+    with pytest.raises(BusError, match=r"not a number that JSON has|between -2\*\*63 and 2\*\*63"):
+        copied(inside(number))
+
+
+class Huge(int):
+    """A relative of a number."""
+
+
+def test_a_relative_of_a_number_has_the_same_bounds() -> None:
+    with pytest.raises(BusError, match="between"):
+        copied(Huge(10**400))
+    with pytest.raises(BusError, match="JSON"):
+        copied({"x": np.float64("nan")})
+
+
+@pytest.mark.parametrize("number", [2**63, -(2**63), 1e308, -1e308, 5e-324])
+def test_the_greatest_numbers_are_sent(number: float) -> None:
+    assert copied([number, {"x": number}, [number, number]]) == [number, {"x": number}, [number, number]]
+    assert decode(encode([number, {"x": number}])) == [number, {"x": number}]
+
+
 @pytest.mark.parametrize("body", [np.float32(0.5), np.zeros(2), {None: 1}, {"x": float("-inf")}, "\ud800"])
 def test_what_json_has_not_is_refused_with_a_reason(body: Any) -> None:
     with pytest.raises(BusError, match=r"JSON|keys|Unicode"):
@@ -80,6 +109,12 @@ def test_too_many_bytes_are_refused_on_both_sides() -> None:
         (b"[" * 10_000 + b"]" * 10_000, "nested"),
         (b"[" * 100 + b"]" * 100, "nested"),
         (b'{"a":' * 100 + b"1" + b"}" * 100, "nested"),
+        (b'{"time": 1e999}', "number that JSON has"),
+        (b"[0.5, -1e999]", "number that JSON has"),
+        (b'{"x": 1' + b"0" * 400 + b"}", r"between -2\*\*63 and 2\*\*63"),
+        (b"[9223372036854775809]", "between"),
+        (b'{"x": 1' + b"0" * 5000 + b"}", "thousands of digits"),
+        (b"-Infinity", "Infinity"),
     ],
 )
 def test_bytes_that_are_no_body_are_refused_with_a_reason(data: bytes, reason: str) -> None:

@@ -2,8 +2,10 @@
 
 import threading
 
-from lumen.bus import Message, connect
-from tests.waiting import Collector
+import pytest
+
+from lumen.bus import Bus, Message, connect
+from tests.waiting import Collector, until
 
 
 def test_everything_is_delivered_when_publish_returns() -> None:
@@ -68,6 +70,68 @@ def test_buses_without_a_name_are_strangers_and_a_name_is_shared() -> None:
     connect("memory://").publish("lumen.a", "private")
     other.publish("lumen.a", "shared")
     assert seen.bodies == ["shared"]
+
+
+def flooded(bus: Bus, count: int) -> None:
+    """Publish so many numbers while a subscriber on another thread holds up the bus; return when it has gone on."""
+    inside, release = threading.Event(), threading.Event()
+
+    def slow(message: Message) -> None:
+        inside.set()
+        assert release.wait(60)
+
+    undo = bus.subscribe("lumen.slow", slow)
+    thread = threading.Thread(target=bus.publish, args=("lumen.slow", None))
+    thread.start()
+    assert inside.wait(20)
+    for i in range(count):
+        bus.publish("lumen.a", i)
+    release.set()
+    thread.join()
+    undo()
+
+
+def test_what_waits_is_bounded_and_the_newest_stay(caplog: pytest.LogCaptureFixture) -> None:
+    bus, seen = connect("memory://"), Collector()
+    bus.subscribe("lumen.a", seen)
+    flooded(bus, 100_025)
+    assert seen.bodies == list(range(25, 100_025))
+    assert [r.getMessage() for r in caplog.records] == [
+        "100000 messages wait for a subscriber: the oldest are dropped",
+        "25 messages were dropped: a subscriber was too slow",
+    ]
+    bus.publish("lumen.a", "after")
+    assert seen.bodies[-1] == "after"
+
+
+def test_closing_is_not_dropped_with_what_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lumen.buses.memory.WAITING", 10)
+    one, other, seen = connect("memory://full"), connect("memory://full"), Collector()
+    one.subscribe("lumen.a", seen)
+    ended, inside = threading.Thread(target=one.close), threading.Event()
+
+    def slow(message: Message) -> None:
+        ended.start()
+        until(lambda: other._hub.queue)  # type: ignore[attr-defined]
+        for i in range(50):
+            other.publish("lumen.a", i)
+        inside.set()
+
+    other.subscribe("lumen.slow", slow)
+    other.publish("lumen.slow", None)
+    ended.join(20)
+    assert not ended.is_alive()
+    assert inside.is_set()
+    assert seen.bodies == list(range(41, 50))
+    assert not one._mine  # type: ignore[attr-defined]
+
+
+def test_coming_and_going_leaves_nothing_behind() -> None:
+    bus = connect("memory://")
+    for _ in range(100):
+        bus.subscribe("lumen.a", Collector())()
+    assert not bus._mine  # type: ignore[attr-defined]
+    assert not bus._hub.subscriptions  # type: ignore[attr-defined]
 
 
 def test_a_flood_of_keys_fills_no_memory() -> None:

@@ -207,7 +207,20 @@ def _nested(depth: int) -> Any:
 
 
 @pytest.mark.parametrize(
-    "body", [object(), {1: "x"}, float("nan"), float("inf"), [{"x": {1, 2}}], b"bytes", _nested(70), _nested(100_000)]
+    "body",
+    [
+        object(),
+        {1: "x"},
+        float("nan"),
+        float("inf"),
+        {"time": float("inf")},
+        {"x": 10**400},
+        [2**64],
+        [{"x": {1, 2}}],
+        b"bytes",
+        _nested(70),
+        _nested(100_000),
+    ],
 )
 def test_what_is_not_json_is_refused(bus: Bus, body: Any) -> None:
     with pytest.raises(BusError):

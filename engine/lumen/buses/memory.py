@@ -3,6 +3,9 @@
 `publish` appends to a queue and, where nobody is delivering yet, delivers until the queue is empty. So messages reach
 their subscribers in the order published, one at a time, whoever publishes from wherever, a handler included; in a
 program of one thread everything has been delivered when the outermost `publish` returns.
+
+What waits is bounded, as in the queues of a broker: when it is full, the oldest message gives way. The newest says how
+things are now, and a `rest` is not refused because of a flood before it.
 """
 
 import logging
@@ -19,6 +22,7 @@ from lumen.ports import Handler, Message
 
 CLOSING = 5.0
 REMEMBERED = 4_096
+WAITING = 100_000
 
 _log = logging.getLogger(__name__)
 
@@ -43,6 +47,7 @@ class _Hub:
         self.queue: deque[_Delivery | Callable[[], None]] = deque()
         self.delivering = threading.Lock()
         self.deliverer = 0
+        self.dropped = 0
         self.changing = threading.Lock()
 
     def change(self, *, add: _Subscription | None = None, drop: tuple[_Subscription, ...] = ()) -> None:
@@ -61,6 +66,18 @@ class _Hub:
             self.listeners[key] = found
             return found
 
+    def shed(self) -> None:
+        """Let the oldest message go; who waits for his leave (`close`) goes on waiting, behind the newest."""
+        with self.changing:
+            while len(self.queue) > WAITING:
+                item = self.queue.popleft()
+                if type(item) is tuple:
+                    self.dropped += 1
+                    if self.dropped == 1:
+                        _log.warning("%d messages wait for a subscriber: the oldest are dropped", WAITING)
+                else:
+                    self.queue.append(item)
+
     def deliver(self) -> None:
         """Empty the queue, unless somebody is at it already.
 
@@ -76,6 +93,9 @@ class _Hub:
                         _hand_over(*item)
                     else:
                         item()  # type: ignore[operator]
+                if self.dropped:
+                    _log.warning("%d messages were dropped: a subscriber was too slow", self.dropped)
+                    self.dropped = 0
             finally:
                 self.deliverer = 0
                 delivering.release()
@@ -105,18 +125,19 @@ class MemoryBus:
 
     def __init__(self, name: str = "") -> None:
         self._hub = _shared.setdefault(name, _Hub()) if name else _Hub()
-        self._mine: list[_Subscription] = []
+        self._mine: dict[_Subscription, None] = {}
         self._closed = False
 
     def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
         if self._closed:
             raise BusError("the bus is closed: nobody can subscribe any more")
         subscription = _Subscription(pattern, handler)
-        self._mine.append(subscription)
+        self._mine[subscription] = None
         self._hub.change(add=subscription)
 
         def undo() -> None:
             subscription.active = False
+            self._mine.pop(subscription, None)
             self._hub.change(drop=(subscription,))
 
         return undo
@@ -133,6 +154,8 @@ class MemoryBus:
             listeners = hub.find(key)
         if listeners:
             hub.queue.append((listeners, Message(key, own, reply_to, correlation_id)))
+            if len(hub.queue) > WAITING:
+                hub.shed()
             hub.deliver()
 
     def reply(self, message: Message, body: Any) -> None:
@@ -151,7 +174,9 @@ class MemoryBus:
             _log.warning("the bus was closed while a subscriber still works, after %g s", CLOSING)
 
     def _leave(self, gone: threading.Event) -> None:
-        for subscription in self._mine:
+        mine = tuple(self._mine)
+        self._mine.clear()
+        for subscription in mine:
             subscription.active = False
-        self._hub.change(drop=tuple(self._mine))
+        self._hub.change(drop=mine)
         gone.set()
