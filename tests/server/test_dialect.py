@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from lumen.errors import RobotError
 from lumen.language.commands import Language, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.motions import Motion
 from lumen.ports import Aim, Perform
 from lumen.robots.dialect import command_from
 from tests.exhibits import project
@@ -56,6 +57,42 @@ def test_methods(body: dict[str, Any], command: object) -> None:
 )  # fmt: skip
 def test_the_papers_names_and_the_sources_names_play_the_motion(method: str, motion: str) -> None:
     assert command_from({"method": method}, PROJECT) == Perform(PROJECT.motions[motion])
+
+
+def test_a_motion_hides_no_method_and_an_alias_hides_no_motion() -> None:
+    names = ("rest", "StopMove", "dancing", "dance", "Wave", "PhotoPose")
+    motions = {name: Motion(name, 1.0, {}) for name in names}
+    other = project(motions=motions)
+    assert command_from({"method": "rest"}, other) == Rest()
+    assert command_from({"method": "stopmove"}, other) == Stop()
+    assert command_from({"method": "dancing"}, other) == Perform(motions["dancing"])
+    assert command_from({"method": "dance"}, other) == Perform(motions["dance"])
+    assert command_from({"method": "photopose"}, other) == Perform(motions["PhotoPose"])
+    for method in ("Wave", "wave", " WAVE "):
+        assert command_from({"method": method}, other) == Perform(motions["Wave"])
+
+
+@pytest.mark.parametrize("number", [10**400, float("inf"), float("nan"), -(2**64)])
+def test_a_number_beyond_all_bounds_is_refused(number: float) -> None:
+    for body in (order("moveto", x=number), order("setangles", jointNames="HeadYaw", angles=number)):
+        with pytest.raises(RobotError, match="has to be a number"):
+            command_from(body, PROJECT)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        order("a\nb"),
+        order("gotoposture", postureName="a\nb"),
+        order("say", text="", language="a\nb"),
+        order("setangles", jointNames="a\nb", angles=1),
+        order("setangles", jointNames="HeadYaw\n", angles=""),
+    ],
+)
+def test_what_a_stranger_wrote_stays_in_one_line(body: Any) -> None:
+    with pytest.raises(RobotError) as caught:
+        command_from(body, PROJECT)
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -12,13 +12,15 @@ import numpy as np
 import pytest
 from PIL import Image as Picture
 
-from lumen.bus import connect
+from lumen.bus import Bus, connect
 from lumen.buses.checking import SchemaCheck
-from lumen.errors import RobotError
+from lumen.buses.validated import validated
+from lumen.errors import BusError, RobotError
 from lumen.language.commands import Posture, Rest, Say
 from lumen.language.events import Event
 from lumen.language.motions import Motion
-from lumen.ports import Aim, Battery, Image, Joints, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.language.projects import Project
+from lumen.ports import Aim, Battery, Image, Joints, Message, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.server import Server
 from tests.exhibits import JOINTS, TACTILE, messages, project
 from tests.waiting import Collector, until
@@ -26,6 +28,7 @@ from tests.waiting import Collector, until
 PROJECT = project()
 NAMES = tuple(JOINTS)
 FRAME = np.zeros((240, 320, 3), np.uint8)
+PATIENT = 20.0
 DATE = "2015-06-01T09:30:00.000+00:00"
 
 
@@ -66,16 +69,17 @@ class Puppet:
 class Stand:
     """A server with its puppet, its bus, and all that is said on it."""
 
-    def __init__(self, **changes: Any) -> None:
-        self.robot, self.bus, self.heard = Puppet(), connect("memory://"), Collector()
+    def __init__(self, bus: Bus | None = None, **changes: Any) -> None:
+        self.robot, self.bus, self.heard = Puppet(), bus or connect("memory://"), Collector()
         self.bus.subscribe("avatar.NAO.data.#", self.heard)
-        self.server = Server(project(**changes), self.robot, self.bus, date=lambda: DATE)
+        self.clock = 0.0
+        self.server = Server(project(**changes), self.robot, self.bus, date=lambda: DATE, clock=lambda: self.clock)
 
     def live(self, seconds: float, tick: float = 0.02) -> None:
         for i in range(round(seconds / tick)):
             self.robot.now = i * tick
             self.server.sample(self.robot.now)
-            assert self.server.settle()
+            assert self.server.settle(PATIENT)
 
     def of(self, sense: str) -> list[Any]:
         return [m.body for m in list(self.heard.messages) if m.key == f"avatar.NAO.data.{sense}"]
@@ -165,7 +169,7 @@ def test_a_camera_that_is_slow_keeps_nobody_waiting_and_the_newest_frame_wins() 
     for i in range(1, 50):
         stand.robot.now = i * 0.02
         stand.server.sample(stand.robot.now)
-        assert stand.server.settle()
+        assert stand.server.settle(PATIENT)
     release.set()
     stand.server.close()
     count = stand.server.counts["image"]
@@ -190,6 +194,106 @@ def test_without_opengl_the_camera_is_switched_off_with_one_line(caplog: pytest.
         "the sense `image` is switched off: there is no OpenGL: install libegl1"
     ]
     assert len(stand.of("joint")) == 17
+
+
+def test_another_bundle_gives_the_camera_another_chance() -> None:
+    stand = Stand()
+
+    def blind() -> np.ndarray:
+        raise RobotError("there is no OpenGL")
+
+    stand.robot.pixels = blind
+    stand.server.sample(0.0)
+    until(lambda: stand.server.counts["image"].off)
+    stand.robot.pixels = lambda: FRAME
+    stand.server.use(project())
+    stand.server.sample(0.1)
+    until(lambda: stand.server.counts["image"].published == 1)
+    assert stand.server.counts["image"].off == ""
+    before = threading.active_count()
+    stand.server.close()
+    assert threading.active_count() == before - 5
+
+
+def wrong(sense: str) -> Project:
+    """A project whose message schema does not fit the bodies of that sense."""
+    return project(messages={**PROJECT.messages, sense: {"required": ["nobody has this"]}})
+
+
+def test_a_refused_body_costs_that_body_alone_and_a_repaired_schema_is_enough(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    bus = validated(connect("memory://"), wrong("joint"))
+    stand = Stand(bus=bus, **without("image"))
+    stand.live(0.6)
+    counts = stand.server.counts
+    assert (counts["joint"].published, counts["joint"].refused, counts["joint"].off) == (0, 10, "")
+    assert counts["sonar"].published == 6
+    assert [r.getMessage() for r in caplog.records] == [
+        "a reading of the sense `joint` was refused: a message on `avatar.NAO.data.joint` can't be sent:"
+        " 'nobody has this' is a required property"
+    ]
+    bus.use(PROJECT)
+    for i in range(30, 60):
+        stand.server.sample(i * 0.02)
+        assert stand.server.settle(PATIENT)
+    assert (counts["joint"].published, counts["joint"].refused) == (10, 10)
+    stand.server.close()
+
+
+def test_the_numbers_in_a_reason_make_no_new_one(caplog: pytest.LogCaptureFixture) -> None:
+    bus = connect("memory://")
+    stand = Stand(bus=bus, **without("image", "sonar", "tactile", "battery"))
+
+    def refuse(key: str, body: Any, **_: Any) -> None:
+        raise BusError(f"{body['time']} is too late")
+
+    bus.publish = refuse  # type: ignore[method-assign]
+    stand.live(0.6)
+    assert len(caplog.records) == 1
+    stand.server.use(project(**without("image", "sonar", "tactile", "battery")))
+    stand.server.sample(1.0)
+    assert stand.server.settle(PATIENT)
+    stand.server.close()
+    assert len(caplog.records) == 2
+
+
+def test_a_slow_subscriber_keeps_the_loop_waiting_for_a_tick_at_most() -> None:
+    stand, inside, release = Stand(**without("image")), threading.Event(), threading.Event()
+
+    def slow(message: Message) -> None:
+        inside.set()
+        assert release.wait(20)
+
+    stand.bus.subscribe("avatar.NAO.data.joint", slow)
+    stand.server.sample(0.0)
+    assert inside.wait(20)
+    began, processor = time.monotonic(), time.process_time()
+    assert not any(stand.server.settle() for _ in range(50))
+    assert time.monotonic() - began < 0.5
+    assert time.process_time() - processor < 0.5
+    for i in range(1, 50):
+        stand.server.sample(i * 0.02)
+    assert len(stand.server._leaving) <= 8
+    release.set()
+    assert stand.server.settle(PATIENT)
+    stand.server.close()
+
+
+def test_a_thread_that_the_machine_holds_back_is_waited_for() -> None:
+    stand, release = Stand(**without("image", "sonar", "tactile", "battery")), threading.Event()
+    encode = stand.server._broadcasts[Sense.JOINT]._encode
+
+    def held(reading: Reading) -> dict[str, Any]:
+        assert release.wait(20)
+        return encode(reading)
+
+    stand.server._broadcasts[Sense.JOINT]._encode = held
+    stand.server.sample(0.0)
+    threading.Timer(0.1, release.set).start()
+    assert stand.server.settle()
+    assert len(stand.of("joint")) == 1
+    stand.server.close()
 
 
 def test_a_robot_without_a_sense_is_no_trouble() -> None:
@@ -302,6 +406,98 @@ def test_a_flood_of_commands_is_bounded_and_stopping_is_not_part_of_it() -> None
     stand.server.close()
 
 
+def test_everybody_in_a_flood_gets_an_answer(caplog: pytest.LogCaptureFixture) -> None:
+    stand = Stand()
+    caller = Caller(stand)
+    for i in range(1500):
+        caller.order("say", str(i), text="hello")
+    assert {text for _, text in caller.told} == {"command failed: 1000 commands are waiting already"}
+    stand.server.sample(0.0)
+    assert caller.told[-1] == ("999", "command failed: 100 commands are waiting already")
+    for i in range(1, 101):
+        stand.server.answer(Event(f"done.command.m{i}"))
+    assert sorted(int(id) for id, _ in caller.told) == list(range(1500))
+    assert caplog.text.count("500 commands were refused: too many came at once") == 1
+    stand.server.close()
+
+
+def test_who_comes_just_before_the_end_gets_an_answer() -> None:
+    stand = Stand()
+    caller = Caller(stand)
+    for i in range(5):
+        caller.order("dance", str(i))
+    receive = stand.server._orders._receive
+    stand.server.close()
+    receive(Message("avatar.NAO.command", {"method": "rest"}, "lumen.me", "late"))
+    assert caller.told == [(id, "command failed: the robot takes no more commands") for id in [*"01234", "late"]]
+    assert stand.robot.started == []
+
+
+def routed(**changes: Any) -> dict[str, Any]:
+    """The project's routes, that of commands otherwise."""
+    return {"routes": {**PROJECT.routes, "command": replace(PROJECT.routes["command"], **changes)}}
+
+
+def test_a_command_that_waited_too_long_is_not_performed_but_stopping_is() -> None:
+    stand = Stand(**routed(ttl=2.0))
+    caller = Caller(stand)
+    for id, method in [("1", "dance"), ("2", "rest"), ("3", "stopMove")]:
+        caller.order(method, id)
+    stand.clock = 1.5
+    caller.order("sing", "4")
+    stand.clock = 2.1
+    stand.server.sample(0.0)
+    assert caller.told == [("1", "command failed: it came too late")]
+    assert [type(c).__name__ for _, c in stand.robot.started] == ["Rest", "Stop", "Perform"]
+    stand.server.close()
+
+
+def test_no_more_commands_wait_than_the_route_keeps_but_stopping_is_never_one_too_many() -> None:
+    stand = Stand(**routed(keep=3))
+    caller = Caller(stand)
+    for i in range(5):
+        caller.order("dance", str(i))
+    caller.order("rest", "stop")
+    told = [(i, "command failed: 3 commands are waiting already") for i in "34"]
+    assert caller.told == told
+    stand.server.sample(0.0)
+    assert [type(c).__name__ for _, c in stand.robot.started] == ["Perform"] * 3 + ["Rest"]
+    caller.order("dance", "5")
+    stand.server.sample(0.02)
+    assert len(stand.robot.started) == 5
+    assert caller.told == told
+    stand.server.close()
+
+
+def test_another_bundle_brings_its_own_key_for_commands() -> None:
+    stand = Stand()
+    stand.bus.publish("avatar.NAO.command", {"method": "wakeup"})
+    stand.server.use(project(**routed(key="avatar.{robot}.please")))
+    stand.bus.publish("avatar.NAO.command", {"method": "dance"})
+    stand.bus.publish("avatar.NAO.please", {"method": "rest"})
+    stand.server.sample(0.0)
+    assert [type(c).__name__ for _, c in stand.robot.started] == ["Wake", "Rest"]
+    stand.server.close()
+    assert len(stand.bus._mine) == 1  # type: ignore[attr-defined]
+
+
+def test_where_the_bus_refuses_the_new_key_the_old_one_stays(caplog: pytest.LogCaptureFixture) -> None:
+    stand = Stand()
+    subscribe = stand.bus.subscribe
+
+    def refuse(pattern: str, handler: Any) -> Any:
+        raise BusError("you may not read that")
+
+    stand.bus.subscribe = refuse  # type: ignore[method-assign]
+    stand.server.use(project(**routed(key="avatar.{robot}.please")))
+    stand.bus.subscribe = subscribe  # type: ignore[method-assign]
+    stand.bus.publish("avatar.NAO.command", {"method": "rest"})
+    stand.server.sample(0.0)
+    assert stand.robot.started == [("m1", Rest())]
+    assert "commands are still taken under `avatar.NAO.command`: you may not read that" in caplog.text
+    stand.server.close()
+
+
 def test_who_waits_for_an_answer_gets_one_when_the_server_closes() -> None:
     stand = Stand()
     caller = Caller(stand)
@@ -320,7 +516,7 @@ def test_another_bundle_brings_its_own_periods_and_motions() -> None:
     stand.server.use(project(routes=routes, motions={"wave": wave}))
     for i in range(30, 60):
         stand.server.sample(i * 0.02)
-        assert stand.server.settle()
+        assert stand.server.settle(PATIENT)
     assert {s: c.published for s, c in stand.server.counts.items()} == {"joint": 12, "sonar": 6}
     stand.bus.publish("avatar.NAO.command", {"method": "wave"})
     stand.server.sample(1.2)

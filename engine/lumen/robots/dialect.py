@@ -1,11 +1,11 @@
 """Commands as the modules of 2015 wrote them, misspellings included, as what our robots understand.
 
 A body is `{"type": …, "method": …, "parameter": {…}}`; the C# modules wrote `Method`. Names of keys and methods compare
-case-insensitively. A method is known by its own name, whatever its type; those that are the name of a motion play it.
+case-insensitively. A method is known by its own name, whatever its type; what is none may be the name of a motion, and
+else one of the names that the motions of 2015 had. So a motion called `rest` does not keep the robot from resting.
 """
 
 from collections.abc import Callable, Mapping
-from math import isfinite
 from typing import Any
 
 from lumen.errors import RobotError
@@ -17,6 +17,8 @@ from lumen.ports import Aim, Perform, RobotCommand
 SPEED = 0.3
 POSTURE_SPEED = 0.5
 MOTIONS = {"dancing": "dance", "singing": "sing", "photopose": "photo"}
+STOPPING = ("rest", "stopmove")
+LARGEST = 2.0**63
 LANGUAGES = {"english": "en", "indonesian": "id", "bahasa": "id"}
 NOT_HERE = ("setstiffnesses", "setwalkarmsenabled", "sendremotebuffertooutput", "record")
 
@@ -37,6 +39,12 @@ def command_from(body: Any, project: Project, angles: Angles = dict) -> RobotCom
     return _Order(method.strip().lower(), order.get("parameter"), project, angles).command()
 
 
+def stops(body: Any) -> bool:
+    """Whether a body asks the robot to rest or to stop, which nothing may hold up."""
+    method = _lowered(body, "a command").get("method") if isinstance(body, Mapping) else None
+    return isinstance(method, str) and method.strip().lower() in STOPPING
+
+
 class _Order:
     """One command under translation."""
 
@@ -45,15 +53,15 @@ class _Order:
         self.parameter = {} if parameter is None else _lowered(parameter, "the `parameter` of a command")
 
     def command(self) -> RobotCommand | Language:
-        motion = MOTIONS.get(self.method, self.method)
-        if motion in self.project.motions:
-            return Perform(self.project.motions[motion])
         if method := _METHODS.get(self.method):
             return method(self)
+        motions = {name.lower(): motion for name, motion in self.project.motions.items()}
+        if motion := motions.get(self.method) or motions.get(MOTIONS.get(self.method, "")):
+            return Perform(motion)
         if self.method in NOT_HERE:
             raise RobotError(f"`{self.method}` can't be done with this robot")
         known = [*_METHODS, *MOTIONS, *self.project.motions]
-        raise RobotError(f"there is no method `{self.method[:40]}`: {did_you_mean(self.method[:40], known)}")
+        raise RobotError(f"there is no method `{_shown(self.method)}`: {did_you_mean(_shown(self.method), known)}")
 
     def number(self, name: str, default: float | None = None) -> float:
         value = self.parameter.get(name)
@@ -79,7 +87,7 @@ class _Order:
         code = LANGUAGES.get(given, given)
         if code and code not in self.project.languages:
             raise RobotError(
-                f"the language `{given[:40]}` is not spoken here: {did_you_mean(code, self.project.languages)}"
+                f"the language `{_shown(given)}` is not spoken here: {did_you_mean(code, self.project.languages)}"
             )
         return code
 
@@ -97,13 +105,16 @@ class _Order:
         names, values = _listed(self.parameter.get("jointnames")), _listed(self.parameter.get("angles"))
         if not names or len(names) != len(values):
             raise RobotError(f"`{self.method}` needs as many `angles` as `jointNames`, and at least one")
-        return {self.joint(n): _number(v, f"the angle of `{n}`") for n, v in zip(names, values, strict=True)}
+        joints = [self.joint(name) for name in names]
+        return {n: _number(v, f"the angle of `{n}`") for n, v in zip(joints, values, strict=True)}
 
     def joint(self, name: object) -> str:
         """The joint that is meant: `"LHipPitch "` and `LAngklePitch` were how they were spelt."""
         meant = str(name).strip().replace("Angkle", "Ankle")
         if meant not in self.project.body.joints:
-            raise RobotError(f"there is no joint `{meant[:40]}`: {did_you_mean(meant[:40], self.project.body.joints)}")
+            raise RobotError(
+                f"there is no joint `{_shown(meant)}`: {did_you_mean(_shown(meant), self.project.body.joints)}"
+            )
         return meant
 
     def aim(self, angles: Mapping[str, float]) -> Aim:
@@ -129,7 +140,7 @@ class _Order:
         name = self.text("posturename")
         postures = {p.lower(): p for p in self.project.body.postures}
         if name.lower() not in postures:
-            raise RobotError(f"there is no posture `{name[:40]}`: {did_you_mean(name[:40], postures.values())}")
+            raise RobotError(f"there is no posture `{_shown(name)}`: {did_you_mean(_shown(name), postures.values())}")
         return Posture(postures[name.lower()], self.fraction("speed", POSTURE_SPEED))
 
 
@@ -155,11 +166,16 @@ def _lowered(data: Any, what: str) -> dict[str, Any]:
     return {str(key).lower(): value for key, value in data.items()}
 
 
+def _shown(text: str) -> str:
+    """A stranger's text in a message of ours: short, and in one line."""
+    return "".join(c if c.isprintable() else " " for c in text[:40])
+
+
 def _listed(value: Any) -> list[Any]:
     return value if isinstance(value, list) else [] if value is None else [value]
 
 
 def _number(value: Any, what: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST:
         raise RobotError(f"{what} has to be a number")
     return float(value)

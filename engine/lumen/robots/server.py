@@ -19,6 +19,8 @@ from lumen.robots.orders import Orders
 PERIOD = 0.1
 CLOSING = 5.0
 SOON = 1e-9
+PATIENCE = 0.02
+STARVED = 1.0
 
 _log = logging.getLogger(__name__)
 
@@ -32,19 +34,28 @@ class Server:
 
     Whoever owns the clock calls `sample` at each tick; that reads the senses that are due and begins the commands that
     have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
-    one seed says the same things in the same order; `settle` waits until they have. `date` is what images are dated.
+    one seed says the same things in the same order; `settle` waits until they have. `date` is what images are dated;
+    `clock` [s] tells how long a command has waited: time as modules live through it, whatever the robot's clock says.
     """
 
-    def __init__(self, project: Project, robot: Robot, bus: Bus, *, date: Callable[[], str] = _date) -> None:
+    def __init__(
+        self,
+        project: Project,
+        robot: Robot,
+        bus: Bus,
+        *,
+        date: Callable[[], str] = _date,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._robot, self._bus = robot, bus
         self._frames, self._date = count(), date
         self._project = project
         self._routes: dict[Sense, Route] = {}
         self._next: dict[Sense, float] = {}
         self._broadcasts: dict[Sense, Broadcast] = {}
-        self._last: Handed | None = None
+        self._leaving: list[Handed] = []
         self._listen(project)
-        self._orders = Orders(project, robot, bus)
+        self._orders = Orders(project, robot, bus, clock)
         self._closed = False
 
     @property
@@ -61,13 +72,30 @@ class Server:
         self._orders.begin()
 
     def use(self, project: Project) -> None:
-        """Go on with another bundle: its routes and periods from the next sample on, its motions for new commands."""
+        """Go on with another bundle: its routes and periods from the next sample on, its motions for new commands.
+
+        A sense that was switched off gets another chance.
+        """
         self._listen(project)
+        for broadcast in self._broadcasts.values():
+            broadcast.arm()
         self._orders.use(project)
 
-    def settle(self, timeout: float = 1.0) -> bool:
-        """Wait until every reading but images has been published; whether it was within `timeout` [s]."""
-        return self._last is None or self._last.done.wait(timeout)
+    def settle(self, patience: float = PATIENCE) -> bool:
+        """Wait until every reading but images has been published; whether that is so.
+
+        Publishing may take `patience` [s]; it takes longer where a subscriber is slow, who keeps nobody waiting. A
+        thread that the machine has not yet let begin is waited for, for what is said in which order would else depend
+        on what else the machine does.
+        """
+        for handed in self._leaving:
+            if not handed.begun.wait(STARVED):
+                return False
+            arrived = time.monotonic()
+            if not handed.done.wait(max(0.0, min(patience, handed.began + patience - arrived))):
+                return False
+            patience -= time.monotonic() - arrived
+        return True
 
     def answer(self, event: Event) -> bool:
         """Pass on what the robot says about a command that came from the bus; whether the event was about one."""
@@ -98,9 +126,10 @@ class Server:
         if isinstance(reading, Image):
             self._broadcasts[sense].hand(Handed(reading))
             return
-        after = self._last if self._last and not self._last.done.is_set() else None
-        self._last = Handed(reading, after)
-        self._broadcasts[sense].hand(self._last)
+        self._leaving = [handed for handed in self._leaving if not handed.done.is_set()]
+        handed = Handed(reading, self._leaving[-1] if self._leaving else None)
+        self._leaving.append(handed)
+        self._broadcasts[sense].hand(handed)
 
     def _listen(self, project: Project) -> None:
         """Give every sense that has a route its thread."""
