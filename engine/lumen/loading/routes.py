@@ -21,6 +21,14 @@ def build_routes(data: Mapping[str, Any], report: Report, where: Path = ("routes
 def build_route(name: str, data: Mapping[str, Any], report: Report, where: Path) -> Route:
     """One row; a duration that can't be read is reported and left out."""
     latency = duration(data, "latency", report, where)
+    if data.get("must_arrive"):
+        report(
+            "unsupported",
+            (*where, "must_arrive"),
+            f"nothing makes sure yet that the messages of `{name}` arrive",
+            hint="delete `must_arrive`, and let who sends them wait for an answer",
+            key=True,
+        )
     return Route(
         name=name,
         key=data["key"],
