@@ -129,6 +129,10 @@ class Hall(Protocol):
         """Press or release a tactile sensor."""
         ...
 
+    def plug(self, plugged: bool) -> None:
+        """Put the charger into the robot, or take it out."""
+        ...
+
 
 class Clock(Protocol):
     """The exhibition's time."""

@@ -194,6 +194,16 @@ def test_senses_in_their_order_and_units(robot: Body, project: Project) -> None:
     assert 0 <= battery.percentage <= 100
 
 
+def test_a_charger_is_felt(robot: Body) -> None:
+    robot.plug(True)
+    plugged = robot.read(Sense.BATTERY)
+    robot.plug(False)
+    alone = robot.read(Sense.BATTERY)
+    assert isinstance(plugged, Battery)
+    assert isinstance(alone, Battery)
+    assert (plugged.plugged, plugged.charging, alone.plugged) == (True, False, False), "it was full"
+
+
 def test_a_touch_is_noticed_once(robot: Body) -> None:
     robot.touch("FrontTactil", True)
     robot.touch("FrontTactil", True)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from lumen.errors import UsageError
-from lumen.language.commands import Look
+from lumen.language.commands import Look, Say, Wake
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Battery, Joints, Sense, Sonar, Tactile
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.condition import Condition
-from tests.simulation.conftest import Do, look_at_face
+from tests.simulation.conftest import Do, answer, look_at_face, until_answered
 
 
 @pytest.mark.parametrize("visitor", [Visitor(), Visitor(1.5, 0.5), Visitor(1.2, -0.4, 1.1)])
@@ -99,3 +99,39 @@ def test_a_low_battery_and_hot_motors_speak_up_once() -> None:
     assert events[0].data == {"percentage": 20}
     assert events[1].data["joint"] == "knee"
     assert events[1].data["temperature"] >= 75.0
+
+
+def test_a_charger_fills_the_battery_and_it_may_speak_up_again() -> None:
+    condition, torques = Condition(("knee",), (3.0,), charge=0.206), np.zeros(1)
+
+    def live(seconds: int) -> list[str]:
+        return [e.name for t in range(seconds) for e in condition.live(torques, torques, 1.0, float(t))]
+
+    assert live(300) == ["battery.low"]
+    condition.plugged = True
+    assert live(600) == []
+    assert condition.charging
+    assert condition.percentage > 30
+    condition.plugged = False
+    assert live(1500) == ["battery.low"]
+    condition.plugged = True
+    live(4000)
+    assert condition.percentage == 100
+    assert not condition.charging
+
+
+def test_an_empty_battery_lets_the_robot_rest_until_it_is_plugged_in(robot: SimulatedRobot, do: Do) -> None:
+    robot.condition = Condition(tuple(robot.body.joints), [j.effort for j in robot.body.joints.values()], charge=3e-5)
+    robot.start("say", Say("x" * 2000))
+    events = until_answered(robot, "say")
+    assert answer(events, "say") == "cancelled"
+    assert do(Wake()) == "error: the battery is empty: plug the robot in"
+    robot.advance(3.0)
+    assert not robot.awake
+    assert not robot.fallen
+    assert robot.motors.stiffness.max() == 0.0
+    assert robot.world.tilt < 0.5
+    assert not any("battery" in event.name and "command" in event.name for event in robot.poll())
+    robot.plug(True)
+    robot.advance(1.0)
+    assert do(Wake()) == "done"

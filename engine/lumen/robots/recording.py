@@ -56,6 +56,7 @@ class RecordingRobot:
         self._behaves = behaves or {}
         self._angles = dict(body.postures["Stand"])
         self._pressed: set[str] = set()
+        self._plugged = False
         self._visitor: Visitor | None = None
         self._noticed: list[Event] = []
         self._executor = Executor(self._begin, lambda command: parts(command, body))
@@ -92,7 +93,7 @@ class RecordingRobot:
                 names = self.body.tactile
                 return Tactile(self.time, names, tuple(int(name in self._pressed) for name in names))
             case Sense.BATTERY:
-                return Battery(self.time, 100, plugged=False, charging=False)
+                return Battery(self.time, 100, plugged=self._plugged, charging=False)
             case Sense.IMAGE:
                 return None
 
@@ -116,6 +117,9 @@ class RecordingRobot:
         if pressed != (sensor in self._pressed):
             self._pressed ^= {sensor}
             self._noticed.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time))
+
+    def plug(self, plugged: bool) -> None:
+        self._plugged = plugged
 
     def _begin(self, command: RobotCommand, now: float) -> _Lasting:
         self.performed.append((now, command))

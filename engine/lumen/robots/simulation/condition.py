@@ -13,23 +13,36 @@ CAPACITY = 48.6 * 3600
 IDLE_POWER = 30.0
 """What computer and sensors take [W]; so that a charge lasts a good hour and a half of standing and talking."""
 
+CHARGING_POWER = 50.0
+"""What the charger gives [W]; so that an empty battery is full after an hour, if the robot rests. Chosen, not measured.
+
+While plugged in, the robot lives on the charger, and motors that take more take the rest from the battery.
+"""
+
 LOSS = 6.0
 """What a motor takes [W] to give its greatest torque without moving."""
 
-LOW, HOT, COOLED = 20, 75.0, 70.0
-"""Charge [%] and temperatures [degrees Celsius] at which the robot speaks up, and may do so again."""
+LOW, RECHARGED = 20, 25
+"""Charge [%] at which the robot speaks up, and may do so again."""
+
+HOT, COOLED = 75.0, 70.0
+"""Temperatures [degrees Celsius] at which the robot speaks up, and may do so again."""
 
 AMBIENT, RISE, TIME_CONSTANT = 38.0, 300.0, 600.0
 """Where motors begin, how far they heat up at their greatest torque, in what time [s]. Chosen, not measured."""
 
 
 class Condition:
-    """Integrates what the motors do; `temperatures` [degrees Celsius] in the order of the joints."""
+    """Integrates what the motors do; `temperatures` [degrees Celsius] in the order of the joints.
+
+    `plugged` is whether the charger is in.
+    """
 
     def __init__(self, names: Sequence[str], efforts: Sequence[float], charge: float = 1.0) -> None:
         self._names = names
         self._efforts = np.array(efforts)
         self._energy = charge * CAPACITY
+        self.plugged = False
         self._low = False
         self._hot: set[int] = set()
         self.temperatures: NDArray[np.float64] = np.full(len(names), AMBIENT)
@@ -38,15 +51,27 @@ class Condition:
     def percentage(self) -> int:
         return max(0, round(100 * self._energy / CAPACITY))
 
+    @property
+    def charging(self) -> bool:
+        """Whether the charger is in and the battery takes more."""
+        return self.plugged and self._energy < CAPACITY
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is nothing left for the motors."""
+        return self._energy <= 0.0
+
     def live(self, torques: NDArray[np.float64], speeds: NDArray[np.float64], dt: float, now: float) -> list[Event]:
         """Spend energy and heat up for `dt` [s] of such torques [N m] and speeds [rad/s]; the events of it."""
         load = np.square(torques / self._efforts)
         power = IDLE_POWER + LOSS * float(load.sum()) + float(np.abs(torques * speeds).sum())
-        self._energy = max(0.0, self._energy - power * dt)
+        given = IDLE_POWER + CHARGING_POWER if self.plugged else 0.0
+        self._energy = min(max(0.0, self._energy + (given - power) * dt), CAPACITY)
         self.temperatures += (AMBIENT + RISE * load - self.temperatures) * (dt / TIME_CONSTANT)
         return [*self._battery(now), *self._motors(now)]
 
     def _battery(self, now: float) -> list[Event]:
+        self._low = self._low and self.percentage < RECHARGED
         if self._low or self.percentage > LOW:
             return []
         self._low = True

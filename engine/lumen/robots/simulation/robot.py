@@ -6,13 +6,14 @@ from math import degrees
 from pathlib import Path
 
 from lumen.errors import RobotError, UsageError
+from lumen.language.commands import Rest
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Reading, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.executor import Executor
+from lumen.robots.executor import Activity, Executor
 from lumen.robots.simulation.anatomy import Anatomy
 from lumen.robots.simulation.balance import Balance
 from lumen.robots.simulation.camera import TopCamera
@@ -31,6 +32,9 @@ from lumen.robots.simulation.whereabouts import Whereabouts
 from lumen.robots.simulation.world import FALLEN, PERIOD, World
 
 _log = logging.getLogger(__name__)
+
+_EMPTY = "battery-empty"
+"""The id of the rest that an empty battery takes."""
 
 _CONDITION_EVERY = 10
 """Control periods between two looks at battery and heat."""
@@ -76,10 +80,11 @@ class SimulatedRobot:
             self._free,
         )
         self._repertoire = Repertoire(self.world, self.motors, self.lights, walker)
-        self._executor = Executor(self._repertoire.begin, self._repertoire.parts)
+        self._executor = Executor(self._begin, self._repertoire.parts)
         self._figure = Figure(self.world.model, self.world.data)
         self._camera = TopCamera(self.world, body.camera)
         self._events: list[Event] = []
+        self._exhausted = False
         self._ticks = 0
         self._until = 0.0
 
@@ -133,7 +138,7 @@ class SimulatedRobot:
             case Sense.TACTILE:
                 return Tactile(now, tuple(self._pressed), tuple(map(int, self._pressed.values())))
             case Sense.BATTERY:
-                return Battery(now, self.condition.percentage, plugged=False, charging=False)
+                return Battery(now, self.condition.percentage, self.condition.plugged, self.condition.charging)
 
     def close(self) -> None:
         self._camera.close()
@@ -153,9 +158,17 @@ class SimulatedRobot:
             self._pressed[sensor] = pressed
             self._events.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time))
 
+    def plug(self, plugged: bool) -> None:
+        self.condition.plugged = plugged
+
+    def _begin(self, command: RobotCommand, now: float) -> Activity:
+        if self.condition.empty and not isinstance(command, Rest):
+            raise RobotError("the battery is empty: plug the robot in")
+        return self._repertoire.begin(command, now)
+
     def _tick(self) -> None:
         now = self.time
-        self._events += self._executor.advance(now)
+        self._events += [e for e in self._executor.advance(now) if not e.name.endswith(f".command.{_EMPTY}")]
         self._steering.advance(PERIOD, self._free)
         self._instruments.feel()
         if self.awake:
@@ -179,3 +192,10 @@ class SimulatedRobot:
         if self._ticks % _CONDITION_EVERY == 0:
             world = self.world
             self._events += self.condition.live(world.torques, world.speeds, _CONDITION_EVERY * PERIOD, now)
+            self._exhaust()
+
+    def _exhaust(self) -> None:
+        """With an empty battery, rest at once: what is left is enough for the way to Crouch."""
+        if self.condition.empty and self.awake and not self._exhausted:
+            self._executor.start(_EMPTY, Rest())
+        self._exhausted = self.condition.empty
