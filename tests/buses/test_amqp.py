@@ -100,7 +100,16 @@ def test_a_module_of_2015_gets_its_answer_in_its_queue_as_plain_text(bus: Bus, s
     assert answers[-1][1].correlation_id == "abc"
 
 
-POISON = [b"\xff\xfe", b"", b"{", b"[NaN]", b"[" * 10_000 + b"]" * 10_000, b'"' + b"x" * 10_000_000 + b'"']
+POISON = [
+    b"\xff\xfe",
+    b"",
+    b"{",
+    b"[NaN]",
+    b'{"time": 1e999}',
+    b"[1" + b"0" * 400 + b"]",
+    b"[" * 10_000 + b"]" * 10_000,
+    b'"' + b"x" * 10_000_000 + b'"',
+]
 
 
 def test_poison_is_dropped_with_a_warning_and_harms_nobody(
