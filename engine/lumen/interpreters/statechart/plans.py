@@ -1,11 +1,12 @@
 """What a microstep does, worked out once for each configuration and set of transitions, and kept."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from typing import Any, NamedTuple
 
 from lumen.interpreters.statechart.chart import Chart, Node, Rule
 from lumen.interpreters.statechart.entering import History, Topology, in_final
+from lumen.interpreters.statechart.moments import Moment
 from lumen.language.machines import Kind, Transition
 
 KEPT = 4096
@@ -19,7 +20,7 @@ class Stop(NamedTuple):
     """
 
     node: Node
-    active: frozenset[str]
+    active: Container[str]
     done: tuple[Node, ...] = ()
 
 
@@ -142,22 +143,25 @@ def known(nodes: AbstractSet[Node]) -> frozenset[str]:
 
 
 def _ways_out(way: Sequence[Node], active: set[Node]) -> tuple[Stop, ...]:
-    stops = []
-    for node in way:
-        if node.exit or node.busy:
-            stops.append(Stop(node, known(active)))
-        active.remove(node)
+    before, passed = known(active), _places(way)
+    stops = [Stop(node, Moment(before, passed, i, False)) for i, node in enumerate(way) if node.exit or node.busy]
+    active.difference_update(way)
     return tuple(stops)
 
 
 def _ways_in(way: Sequence[Node], active: set[Node]) -> tuple[Stop, ...]:
+    before, passed = known(active), _places(way)
     stops = []
-    for node in way:
+    for place, node in enumerate(way):
         active.add(node)
         done = _done(node, active)
         if node.entry or node.busy or done:
-            stops.append(Stop(node, known(active), done))
+            stops.append(Stop(node, Moment(before, passed, place, True), done))
     return tuple(stops)
+
+
+def _places(way: Sequence[Node]) -> dict[str, int]:
+    return {name: place for place, node in enumerate(way) for name in (node.path, node.name) if name}
 
 
 def _done(node: Node, active: AbstractSet[Node]) -> tuple[Node, ...]:

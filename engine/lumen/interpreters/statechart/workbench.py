@@ -1,7 +1,7 @@
 """A snapshot while it is moved on: what actions ask for, and what expressions see."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import Any
 
 from lumen.interpreters.expressions import ExpressionError, Scope
@@ -47,7 +47,7 @@ class Workbench:
             self.generator, self.epoch, self.invoked,
         ) = before  # fmt: skip
         self.configuration: Configuration = self.planner.configuration(names)
-        self.active = self.configuration.known
+        self.active: Container[str] = self.configuration.known
         self.here = self.chart.root
 
     def perform(self, block: Block, node: Node) -> None:
