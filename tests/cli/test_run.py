@@ -8,7 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from lumen.cli.cast import Cast
 from lumen.cli.main import main
+from lumen.cli.show import Show
+from lumen.clocks.simulated import SimulatedClock
+from lumen.language.projects import Project
+from lumen.ports import Perform
+from lumen.robots.recording import RecordingRobot
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
 
@@ -92,10 +98,23 @@ def test_the_tour_in_indonesian(copy: Path, capsys: pytest.CaptureFixture[str]) 
 
 
 @pytest.mark.xdist_group("rabbitmq")
-def test_the_same_tour_through_rabbitmq(copy: Path, capsys: pytest.CaptureFixture[str], broker: RabbitMQ) -> None:
-    run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--bus", broker.url]
-    assert main(run) == 0
-    assert "motions: dance, sing, photo, goodbye" in capsys.readouterr().out
+def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> None:
+    """At ten times real time, for a broker does not hurry when simulated time does."""
+    story = project.stories["visitor"]
+    robot = RecordingRobot(project.body)
+    show = Show(project, Cast(robot, SimulatedClock(robot.advance, 10.0), robot), broker.url, story)
+    show.start()
+    assert show.player
+    while not show.player.finished:
+        show.tick()
+    show.close()
+    assert show.player.failure == ""
+    assert [c.motion.name for _, c in robot.performed if isinstance(c, Perform)] == [
+        "dance",
+        "sing",
+        "photo",
+        "goodbye",
+    ]
 
 
 def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:

@@ -7,6 +7,7 @@ import os
 import sys
 import time
 from collections.abc import Sequence
+from io import TextIOWrapper
 
 import lumen
 from lumen.errors import LumenError, ProjectError
@@ -20,12 +21,19 @@ VERBS = {
     "test": "play the stories, and say which of them end badly",
     "play": "show a motion on the simulated robot",
     "graph": "draw a behaviour (Mermaid)",
+    "import": "turn a statechart of another tool into a behaviour file",
+    "export": "write a behaviour as SCXML, for XState, or as a diagram",
 }
+MODULES = {"import": "importing", "export": "exporting"}
+"""Modules of verbs that are words of Python."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `lumen` with these arguments: 0 all well, 1 findings or a failed story, 2 could not run."""
     logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.WARNING)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
     arguments = sys.argv[1:] if argv is None else list(argv)
     parser = argparse.ArgumentParser(
         prog="lumen", description="Give a humanoid robot its behaviour in YAML.", epilog="lumen VERB --help says more."
@@ -35,7 +43,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for verb, summary in VERBS.items():
         command = verbs.add_parser(verb, help=summary, description=summary[0].upper() + summary[1:] + ".")
         if verb in arguments[:1]:
-            module = importlib.import_module(f"lumen.cli.{verb}")
+            module = importlib.import_module(f"lumen.cli.{MODULES.get(verb, verb)}")
             module.configure(command)
             command.set_defaults(run=module.run)
     options = parser.parse_args(arguments)

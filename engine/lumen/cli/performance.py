@@ -14,6 +14,7 @@ from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
+from lumen.loading.packaged import shipped_root
 from lumen.robots.broadcast import Count
 
 FAREWELL = 5.0
@@ -33,9 +34,9 @@ class Performance:
         self._show.exhibition.parts.append(self._rest)
         self._face: float | None = None
 
-    def interrupt(self) -> None:
+    def interrupt(self, times: int = 1) -> None:
         """Ctrl-C: once rests the robot, twice ends."""
-        self._interrupts += 1
+        self._interrupts += times
 
     def _rest(self, now: float) -> None:
         """What the first Ctrl-C asks for, at the tick after it."""
@@ -70,6 +71,8 @@ class Performance:
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")
         ready = time.monotonic() - STARTED
         print(f"{project.name}: {project.robot} performs `{project.behavior}` {pace}, ready after {ready:.1f} s.")
+        if Path(project.root) == shipped_root() != Path.cwd():
+            print(f"There is no lumen.yaml here: this is the shipped project, {project.root}.")
         if self._blind:
             print(f"It runs without camera images: {self._blind}.")
         if self._story:

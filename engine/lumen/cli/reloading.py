@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from lumen.cli.show import Show
@@ -11,6 +12,9 @@ from lumen.language.projects import Project
 from lumen.runtime.watcher import Watcher
 
 PATIENCE = 60.0
+
+FIXED = ("robot", "body", "hall", "stage", "bus")
+"""What of a project can't change while it runs."""
 
 
 class Reloading:
@@ -41,9 +45,14 @@ class Reloading:
             self._apply(self._staged)
 
     def _apply(self, project: Project) -> None:
-        reason = self._show.reload(project)
+        running = self._show.exhibition.project
+        fixed = {name: getattr(running, name) for name in FIXED}
+        waiting = [name for name, value in fixed.items() if getattr(project, name) != value]
+        reason = self._show.reload(replace(project, **fixed))
         if not reason:
             self._transcript.line("reload", "the saved files are in force")
+            if waiting:
+                self._transcript.line("reload", f"what changed in {', '.join(waiting)} needs a restart")
         elif time.monotonic() - self._since < PATIENCE:
             if reason != self._waiting:
                 self._transcript.line("reload", f"waiting: {reason}")

@@ -44,6 +44,7 @@ def run(options: argparse.Namespace) -> int:
         story,
     )
     signal.signal(signal.SIGINT, lambda *_: performance.interrupt())
+    signal.signal(signal.SIGTERM, lambda *_: performance.interrupt(2))
     return performance.run(options.speed, period, language, video, watch=options.reload == "auto")
 
 
@@ -78,6 +79,8 @@ def film_path(path: Path | None, robot: str) -> Path | None:
         return None
     if robot != "simulation":
         raise UsageError("--video films the simulation: leave out --robot")
-    if path.suffix != ".mp4" or not path.parent.is_dir():
-        raise UsageError(f"can't write a film to {path}: name an .mp4 file in a folder that is there")
+    if path.suffix != ".mp4" or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
+        raise UsageError(
+            f"can't write a film to {path}: name an .mp4 file in a folder that is there and yours to write"
+        )
     return path

@@ -110,7 +110,8 @@ class Transcript(Observer):
 
 
 def _wrapped(text: str) -> str:
-    """The text in lines that fit beside time and name."""
+    """The text in lines that fit beside time and name; signs that would steer the terminal are replaced."""
+    text = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)
     width = max(shutil.get_terminal_size((120, 24)).columns - INDENT, 30)
     lines = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
     return ("\n" + " " * INDENT).join(lines)

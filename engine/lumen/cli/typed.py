@@ -11,7 +11,10 @@ from lumen.runtime.visitor import Walker
 
 
 class TypedSpeech:
-    """Reads lines on a thread of its own; at the end of input the visitor walks away."""
+    """Reads lines on a thread of its own; at the end of input the visitor walks away.
+
+    Where there is no terminal and nothing ever comes, nobody types: the visitor stays, and the show goes on.
+    """
 
     def __init__(self, walker: Walker, tell: Callable[[Deed], None]) -> None:
         self._walker, self._tell = walker, tell
@@ -38,6 +41,9 @@ class TypedSpeech:
     def _read(self) -> None:
         if isinstance(sys.stdin, TextIOWrapper):
             sys.stdin.reconfigure(errors="replace")
-        for line in sys.stdin:
+        typed = sys.stdin is not None and sys.stdin.isatty()
+        for line in sys.stdin or ():
+            typed = True
             self._lines.put(line.strip())
-        self._lines.put(None)
+        if typed:
+            self._lines.put(None)

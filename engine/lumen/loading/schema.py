@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from lumen.errors import LumenError
 from lumen.language.diagnostics import Path
 from lumen.loading.complaints import Complaint, complaints
 from lumen.loading.packaged import schema_folder
@@ -47,7 +48,11 @@ def check_schema(document: Document, kind: str, report: Report) -> Any:
 
 def load_schema(kind: str) -> Any:
     """The JSON Schema of a kind of file, as data."""
-    return json.loads((schema_folder() / f"{kind}.schema.json").read_bytes())
+    file = schema_folder() / f"{kind}.schema.json"
+    try:
+        return json.loads(file.read_bytes())
+    except (OSError, ValueError) as error:
+        raise LumenError(f"Lumen's own {file} can't be read ({error}): install it anew, or restore the file") from None
 
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:

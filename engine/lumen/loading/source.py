@@ -28,6 +28,8 @@ _INF = re.compile(r"([-+]?)\.(inf|Inf|INF)")
 _QUOTED = re.compile(r"(?<=[`.#])[^`.#]+(?=[`.])")
 _LOOK = "look at the indentation, a missing colon, quote or bracket here or in the line above"
 _HINTS = {
+    "mapping values are not allowed": "put quotes around a text that holds a colon and a blank",
+    "cannot start any token": "put quotes around a text that begins with `@`, `%`, a backquote or a quote",
     "another document": "a file holds one document: delete the line `---`",
     "undefined alias": "put quotes around a text that begins with `*`",
     "duplicate anchor": "give each anchor `&` a name of its own",
@@ -222,6 +224,12 @@ def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         return Diagnostic("yaml-syntax", "the file holds a character that YAML does not allow", place, "delete it")
     if conflict := merge_conflict(file, text):
         return conflict
+    context = getattr(error, "context", None) or ""
+    if "quoted scalar" in context:
+        start = error.context_mark  # type: ignore[attr-defined]
+        place = Place(file, start.line + 1, start.column + 1, start.line + 1, start.column + 2)
+        hint = "close it with the same sign; a quote inside the text needs the other kind of quotes around it"
+        return Diagnostic("yaml-syntax", "a quoted text begins here and is not closed where it should be", place, hint)
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     if mark is None:
         return Diagnostic("too-large", "the file is nested too deeply to be read", Place(file), "use fewer levels")
@@ -233,7 +241,6 @@ def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         place = Place(file, mark.line + 1, column, mark.line + 1, column + 1)
         return Diagnostic("tab", "a tab stands in the indentation", place, "YAML is indented with spaces: use two")
     problem = " ".join(str(getattr(error, "problem", error)).split())
-    context = getattr(error, "context", None)
     detail = f"{problem} {context}" if context else problem
     hint = next((words for sign, words in _HINTS.items() if sign in problem), _LOOK)
     return Diagnostic("yaml-syntax", f"this is not YAML: {detail}", place, hint)

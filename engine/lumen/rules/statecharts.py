@@ -16,6 +16,7 @@ def check(draft: Draft) -> None:
         if not report.diagnostics:
             _unreachable(machine, report)
             _shadowed(machine, report)
+            _endless(machine, report)
 
 
 def reachable(machine: Machine, begin: str = "") -> set[str]:
@@ -63,6 +64,33 @@ def _shadowed(machine: Machine, report: Report) -> None:
                 find(report, "shadowed-transition", transition.where, message, "give that one a `guard`, or swap them")
             if transition.guard is None:
                 always.append(transition)
+
+
+def _endless(machine: Machine, report: Report) -> None:
+    """States that lead back to themselves by `always` alone, nothing asked on the way."""
+    onward = {path: found for path in machine.states if (found := _at_once(machine, path))}
+    said: set[str] = set()
+    for path in onward:
+        way = [path]
+        while (following := onward.get(way[-1])) and following[1] not in way:
+            way.append(following[1])
+        if following and following[1] == path and path not in said:
+            said.update(way)
+            hint = "give one of them a `guard`, or let an event lead on"
+            names = " → ".join(f"`{machine.states[p].name}`" for p in (*way, path))
+            find(report, "endless-always", onward[path][0].where, f"this never comes to rest: {names}", hint)
+
+
+def _at_once(machine: Machine, path: str) -> tuple[Transition, str] | None:
+    """The transition that an atomic state takes as soon as it is entered, and the atomic state that it leads to."""
+    state = machine.states[path]
+    always = next((t for t in state.transitions if not t.event), None)
+    if state.kind is not Kind.ATOMIC or always is None or always.guard or len(always.targets) != 1:
+        return None
+    target = machine.states[always.targets[0]]
+    while target.kind is Kind.COMPOUND and len(target.initial) == 1:
+        target = machine.states[target.initial[0]]
+    return (always, target.path) if target.kind is Kind.ATOMIC else None
 
 
 def _covers(earlier: Transition, later: Transition) -> bool:

@@ -112,6 +112,7 @@ class StoryPlayer(Observer):
         self._exhibition, self._hall, self._walker = exhibition, hall, walker
         self._tell = tell
         self._witness = Witness()
+        self._missed: Lack | None = None
         self._since = 0.0
 
     @property
@@ -182,9 +183,14 @@ class StoryPlayer(Observer):
         lacking = self._witness.lacks(expected)
         if not lacking:
             self._witness.forget()
-        elif now >= self._since + expected.within:
+            self._missed = None
+            return True
+        if self._witness.states.issuperset(expected.states):
+            self._missed = lacking
+        if now >= self._since + expected.within:
+            lacking = self._missed or lacking
             self.fail(lacking._replace(expected=f"within {expected.within:g} s {lacking.expected}"))
-        return not lacking
+        return False
 
     def fail(self, lack: Lack) -> None:
         """End the story at the step it stands at; where it has failed already, that counts."""
