@@ -60,7 +60,7 @@ class Configuration:
         """For each active atomic state the transitions that an event of that name selects, the innermost first."""
         found = self._by_name.get(name)
         if found is None:
-            _bound(self._by_name)
+            bound(self._by_name)
             found = self._by_name[name] = self._select(lambda rule: rule.matches(name))
         return found
 
@@ -89,7 +89,7 @@ class Planner:
         found = self._by_names.get(names)
         if found is None:
             nodes = {self.chart.by_name[name] for name in names} | {self.chart.root}
-            _bound(self._by_names)
+            bound(self._by_names)
             found = self._by_names[names] = Configuration(frozenset(nodes))
         return found
 
@@ -106,7 +106,7 @@ class Planner:
         key = (enabled, *history.items()) if self.chart.has_history else enabled
         found = start.plans.get(key)
         if found is None:
-            _bound(start.plans)
+            bound(start.plans)
             topology = Topology(self.chart, history)
             rules = _without_conflicts(topology, enabled, start)
             left = topology.exit_set(rules, start.nodes)
@@ -206,6 +206,8 @@ def _without_conflicts(topology: Topology, enabled: Sequence[Rule], start: Confi
     return tuple(kept)
 
 
-def _bound(cache: dict[Any, Any]) -> None:
+def bound(cache: dict[Any, Any]) -> None:
+    """Empty a cache that is full."""
+    """Empty a cache that is full."""
     if len(cache) >= KEPT:
         cache.clear()

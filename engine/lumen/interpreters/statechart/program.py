@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from lumen.interpreters.statechart.chart import Chart
 from lumen.interpreters.statechart.plans import Planner
+from lumen.interpreters.statechart.shortcuts import Shortcuts
 from lumen.language.machines import Machine
 
 
@@ -13,6 +14,7 @@ class Program(NamedTuple):
 
     chart: Chart
     planner: Planner
+    shortcuts: Shortcuts
     invoked: "Mapping[str, Program]"
 
 
@@ -22,6 +24,7 @@ def compiled(machine: Machine) -> Program:
     if program is None:
         chart = Chart(machine)
         invoked = {name: compiled(other) for name, other in machine.invoked.items()}
-        program = Program(chart, Planner(chart), invoked)
+        planner = Planner(chart)
+        program = Program(chart, planner, Shortcuts(planner), invoked)
         object.__setattr__(machine, "_program", program)  # frozen, and the same for all who hold it
     return program

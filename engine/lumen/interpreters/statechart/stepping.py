@@ -41,9 +41,12 @@ def step(machine: Machine, snapshot: Snapshot, event: Event) -> Step:
     more change nothing. Time never goes back: an event from the past happens at `snapshot.at`. Raises LumenError
     where the machine never comes to rest, SnapshotError where the snapshot has states that the machine has not.
     """
-    at = event.at
+    program = compiled(machine)
     try:
-        session = Session(compiled(machine), snapshot, event, at if at > snapshot.at else snapshot.at)
+        short = program.shortcuts.step(snapshot, event)
+        if short is not None:
+            return short
+        session = Session(program, snapshot, event, max(event.at, snapshot.at))
     except KeyError as error:
         raise SnapshotError(f"`{machine.id}` has no state `{error.args[0]}`, which is active in the snapshot") from None
     return session.hear(event)

@@ -39,7 +39,7 @@ class Workbench:
 
     def __init__(self, program: Program, before: Snapshot, event: Event | None, at: float) -> None:
         self.program = program
-        self.chart, self.planner, _ = program
+        self.chart, self.planner, *_ = program
         self.trigger = self.event = event
         self.at = at
         (
