@@ -27,7 +27,7 @@ check: .venv/test
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check -q .
 	@$(BIN)/mypy
-	@$(BIN)/lint-imports --no-logo | tail -n 3
+	@$(BIN)/lint-imports --no-logo
 
 packages:
 	@sh scripts/packages.sh packages.txt
