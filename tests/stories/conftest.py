@@ -29,9 +29,9 @@ states:
     do: [{say: "Hello, {{ context.name }}!"}, {play: goodbye}]
     after: {20s: closed}
   spinning:
-    always: spun
+    always: {guard: context.opened < 100, target: spun}
   spun:
-    always: spinning
+    always: {guard: context.opened < 100, target: spinning}
 """
 
 

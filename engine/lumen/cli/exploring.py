@@ -1,7 +1,7 @@
 """A behaviour explored in its project: what was found, where that stands, and the story that leads there."""
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -43,12 +43,22 @@ class Explored:
     took: float
 
 
-def explored(project: Project, behavior: str, *, bound: int, home: str = "") -> Explored:
-    """Explore a behaviour of the project under every event that its routes, its robot and its file declare."""
+def explored(
+    project: Project, behavior: str, *, bound: int, home: str = "", tell: Callable[[int, int], None] | None = None
+) -> Explored:
+    """Explore a behaviour of the project under every event that its routes, its robot and its file declare.
+
+    `tell` hears how far it is: how many configurations were walked, and how many are in sight.
+    """
     began = time.perf_counter()
     machine = project.behaviors[behavior]
-    events = outside(project, machine)
-    found = explore(machine, events, bound=bound, home=home, language=project.languages[0], epoch=time_of_day(MORNING))
+    options: dict[str, Any] = {
+        "bound": bound,
+        "home": home,
+        "language": project.languages[0],
+        "epoch": time_of_day(MORNING),
+    }
+    found = explore(machine, outside(project, machine), tell=tell or (lambda *_: None), **options)
     findings = tuple(
         Found(f.kind, _place(project, behavior, f.state), f.message, story(project, behavior, f))
         for f in found.findings

@@ -92,7 +92,16 @@ def _explore(project: Project, options: argparse.Namespace) -> Explored:
     names = [state.name for state in project.behaviors[behavior].states.values() if state.path]
     if options.home and options.home not in names:
         raise UsageError(f"no state `{options.home}` in `{behavior}`: {did_you_mean(options.home, names, 'it has')}")
-    return explored(project, behavior, bound=options.bound, home=options.home or "")
+    tell = _progress if sys.stderr.isatty() else None
+    return explored(project, behavior, bound=options.bound, home=options.home or "", tell=tell)
+
+
+def _progress(walked: int, waiting: int) -> None:
+    """Now and then, on a terminal, how far exploring is; at its end nothing is left of that line."""
+    if not waiting:
+        print(f"\r{'':60}\r", end="", file=sys.stderr)
+    elif walked % 200 == 0:
+        print(f"\r{f'explored {walked:,} configurations, {waiting:,} in sight':60}", end="", file=sys.stderr)
 
 
 def _print(shown: str) -> None:

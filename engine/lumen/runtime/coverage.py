@@ -34,10 +34,8 @@ class Coverage:
         """Count a step of that behaviour, and those of the behaviours that it has invoked."""
         self.entered.setdefault(behavior, set()).update(step.entered)
         self.taken.setdefault(behavior, set()).update(t.where for t in step.transitions)
-        machine = self.project.behaviors[behavior]
-        invokes = {invoke.id: invoke.behavior for state in machine.states.values() for invoke in state.invoke}
         for id, inner in step.invoked:
-            self.note(invokes[id], inner)
+            self.note(_invoked(self.project.behaviors[behavior], id, inner), inner)
 
     @property
     def states(self) -> tuple[int, int]:
@@ -77,6 +75,14 @@ class _Watcher(Observer):
 
     def stepped(self, step: Step) -> None:
         self._coverage.note(self._behavior, step)
+
+
+def _invoked(machine: Machine, id: str, step: Step) -> str:
+    """The behaviour of which a step is, among those that the machine invokes under that id."""
+    behaviors = [invoke.behavior for state in machine.states.values() for invoke in state.invoke if invoke.id == id]
+    names = {*step.entered, *step.exited, *step.snapshot.configuration}
+    known = {b: {state.name for state in machine.invoked[b].states.values()} for b in behaviors}
+    return next((b for b in behaviors if names <= known[b]), behaviors[0])
 
 
 def described(machine: Machine, transition: Transition) -> str:

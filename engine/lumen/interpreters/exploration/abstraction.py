@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.interpreters.exploration.liveness import Liveness
-from lumen.interpreters.exploration.reading import of_state
+from lumen.interpreters.exploration.reading import behind, of_state
 from lumen.interpreters.expressions.tree import Literal, walk
-from lumen.interpreters.statechart import Awaiting, Fork, Position, Snapshot, Within
+from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 from lumen.language.machines import Machine
 
 ITEMS = 4
@@ -33,9 +33,7 @@ class Abstraction:
         self._texts = {value for value in literals if isinstance(value, str)}
         self._numbers = sorted({v for v in literals if isinstance(v, int | float) and not isinstance(v, bool)} | {0})
         self._language = any(re.search(r"\bstate\.language\b", t) for t in _guards(machine))
-        self._inner = {
-            i.id: Abstraction(machine.invoked[i.behavior]) for s in machine.states.values() for i in s.invoke
-        }
+        self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 
     def key(self, snapshot: Snapshot) -> Key:
         live = self._liveness.of(snapshot.configuration)
@@ -46,8 +44,12 @@ class Abstraction:
             tuple((path, _shape(position)) for path, position in sorted(snapshot.doing.items())),
             tuple(sorted(snapshot.history.items())),
             snapshot.language if self._language else "",
-            tuple((id, self._inner[id].key(child.snapshot)) for id, child in sorted(snapshot.invoked.items())),
+            tuple(self._child(id, child) for id, child in sorted(snapshot.invoked.items())),
         )
+
+    def _child(self, id: str, child: Invoked) -> Key:
+        behavior = behind(self._machine, child.state, id)
+        return (id, behavior, self._inner[behavior].key(child.snapshot))
 
     def value(self, value: Any) -> Any:
         """What of a value counts."""

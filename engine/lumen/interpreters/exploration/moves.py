@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.exploration.reading import of_transition
+from lumen.interpreters.exploration.reading import behind, of_transition
 from lumen.interpreters.exploration.samples import samples
 from lumen.interpreters.expressions import Node, Scope, compile_expression, names, unparse
 from lumen.interpreters.expressions.tree import children
@@ -32,13 +32,14 @@ COSTS: Mapping[Kind, int] = {Kind.DONE: 0, Kind.EVENT: 2, Kind.TIME: 2, Kind.FAI
 """What a move costs on the way to the shortest story: a robot that does what it should costs nothing."""
 
 IMPATIENCE = 5
-"""What it costs besides that a timer ends while a command is under way: the robot has to hang."""
+"""What it costs besides that a timer ends while a command is under way, or before an earlier one."""
 
 
 class Move(NamedTuple):
     """Something that can happen; `event` is what the behaviour steps with.
 
     `waited` [s] is how long it takes, `pending` what the robot is asked to do meanwhile; `command` is what is answered.
+    `overtaking` is a timer that ends before one that is due earlier.
     """
 
     kind: Kind
@@ -46,10 +47,11 @@ class Move(NamedTuple):
     waited: float = 0.0
     command: BodyCommand | None = None
     pending: tuple[BodyCommand, ...] = ()
+    overtaking: bool = False
 
     @property
     def cost(self) -> int:
-        return COSTS[self.kind] + (IMPATIENCE if self.kind is Kind.TIME and self.pending else 0)
+        return COSTS[self.kind] + IMPATIENCE * (bool(self.pending) + self.overtaking)
 
 
 class Moves:
@@ -70,7 +72,8 @@ class Moves:
             at = max(timer.due, snapshot.at)
             event = Event(timer.event, timer.data, at, timer.id)
             hanging = () if _pause(timer.id) else pending
-            yield Move(Kind.TIME, event, at - snapshot.at, None, hanging)
+            overtaking = any(t.due < timer.due for t in snapshot.timers)
+            yield Move(Kind.TIME, event, at - snapshot.at, None, hanging, overtaking)
         for name in self._events:
             yield from (Move(Kind.EVENT, Event(name, data, snapshot.at)) for data in self._data(name, snapshot))
         for id in awaited:
@@ -105,9 +108,9 @@ def _heard(program: Program, snapshot: Snapshot, name: str) -> Iterator[tuple[Ma
     """The transitions that an event of that name may select, here or in what is invoked."""
     for group in program.planner.configuration(snapshot.configuration).candidates(name):
         yield from ((program.chart.machine, rule.transition) for rule in group)
-    behaviors = {i.id: i.behavior for s in program.chart.machine.states.values() for i in s.invoke}
     for id, child in snapshot.invoked.items():
-        yield from _heard(program.invoked[behaviors[id]], child.snapshot, name)
+        behavior = behind(program.chart.machine, child.state, id)
+        yield from _heard(program.invoked[behavior], child.snapshot, name)
 
 
 def _known_of_events(tree: Node) -> Iterator[Node]:

@@ -69,6 +69,11 @@ def relevant(machine: Machine) -> frozenset[str]:
         found |= read
 
 
+def behind(machine: Machine, state: str, id: str) -> str:
+    """The behaviour that a state, by its path, invokes under that id."""
+    return next(invoke.behavior for invoke in machine.states[state].invoke if invoke.id == id)
+
+
 def _of(value: Value, key: str = "") -> Iterator[Use]:
     if isinstance(value, Expression):
         if (tree := tree_of(value.source)) is not None:

@@ -74,14 +74,15 @@ class Walk:
         """How many configurations were come upon and not walked from."""
         return len(self.spots) - self.walked
 
-    def go(self, bound: int) -> None:
-        """Walk on until there is nowhere to go, or from so many configurations."""
+    def go(self, bound: int) -> Iterator[int]:
+        """Walk on until there is nowhere to go, or from so many configurations; yields their number."""
         while self._waiting and self.walked < bound:
             cost, _, spot = heappop(self._waiting)
             if not spot.walked and cost == spot.cost:
                 spot.walked = True
                 self.walked += 1
                 self._leave(spot)
+                yield self.walked
 
     def finished(self, spot: Spot) -> bool:
         """Whether the machine has come to its end there."""

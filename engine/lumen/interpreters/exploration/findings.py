@@ -1,0 +1,109 @@
+"""What should not be among the configurations walked: dead ends, no way back, no rest; and the way to each."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from lumen.interpreters.exploration.moves import Move
+from lumen.interpreters.exploration.walking import Spot, Walk, leading, leaves
+from lumen.language.machines import Kind, Machine
+
+Sort = Literal["dead-end", "no-way-back", "restless"]
+
+
+@dataclass(frozen=True)
+class Stay:
+    """A stay on the way to a finding: the move that led there (None at the beginning), and the states then active."""
+
+    move: Move | None
+    states: frozenset[str]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that should not be: a dead end, no way back to `home`, or a machine that never comes to rest.
+
+    `state` is the path of the state it is about, `way` the shortest one there.
+    """
+
+    kind: Sort
+    state: str
+    message: str
+    way: tuple[Stay, ...]
+
+
+def findings(machine: Machine, walk: Walk, home: str = "") -> list[Finding]:
+    """Everything found on a walk; without a `home`, that is each innermost state of the beginning."""
+    spots = list(walk.spots.values())
+    dead = list(_dead_ends(machine, walk, spots))
+    homes = [home] if home else [machine.states[p].name for p in leaves(machine, walk.first.names)]
+    lost = [finding for name in homes for finding in _no_way_back(machine, walk, spots, name)]
+    known = {finding.state for finding in dead}
+    return [*_restless(machine, spots), *dead, *(f for f in lost if f.state not in known)]
+
+
+def _restless(machine: Machine, spots: list[Spot]) -> Iterator[Finding]:
+    for path, spot in _cheapest(machine, [s for s in spots if s.restless]).items():
+        yield _finding("restless", path, spot.restless, spot)
+
+
+def _dead_ends(machine: Machine, walk: Walk, spots: list[Spot]) -> Iterator[Finding]:
+    """Where no event, time or answer leads to other states, and the machine is not at its end."""
+    leaving = {id(s) for s in spots if not s.walked or s.restless or any(e.names != s.names for e in s.exits)}
+    free = leading(spots, leaving, inside=True)
+    stuck = [s for s in spots if id(s) not in free and not walk.finished(s)]
+    beginning, told = set(leaves(machine, walk.first.names)), set[str]()
+    for spot in sorted(stuck, key=lambda s: s.cost):
+        paths = [p for p in leaves(machine, spot.names) if p not in beginning] or list(leaves(machine, spot.names))
+        if not told.issuperset(paths):
+            told.update(paths)
+            names = " with ".join(f"`{machine.states[path].name or machine.id}`" for path in paths)
+            yield _finding("dead-end", paths[-1], f"nothing leads out of {names}", spot)
+
+
+def _no_way_back(machine: Machine, walk: Walk, spots: list[Spot], home: str) -> Iterator[Finding]:
+    """Where a state can't be reached any more, nor the machine's end."""
+    goals = {id(s) for s in spots if home in s.names or not s.walked or s.restless or walk.finished(s)}
+    reached = leading(spots, goals)
+    lost = [s for s in spots if id(s) not in reached]
+    nearest = _cheapest(machine, lost, _region(machine, home))
+    for path, spot in sorted(nearest.items(), key=lambda item: _ahead(item[1])):  # what others only lead to is first
+        name = machine.states[path].name or machine.id
+        elsewhere = any(name in s.names for s in spots if id(s) in reached)
+        message = f"from `{name}` there is {'not always a' if elsewhere else 'no'} way back to `{home}`"
+        yield _finding("no-way-back", path, message, spot)
+
+
+def _ahead(spot: Spot) -> int:
+    """How many spots can be reached from this one."""
+    found, ahead = {id(spot)}, [spot]
+    while ahead:
+        fresh = [exit for exit in ahead.pop().exits if id(exit) not in found]
+        found.update(map(id, fresh))
+        ahead += fresh
+    return len(found)
+
+
+def _cheapest(machine: Machine, spots: list[Spot], region: str = "") -> dict[str, Spot]:
+    """For each innermost state of a region (of all, where it is not active) the nearest of these spots."""
+    found: dict[str, Spot] = {}
+    for spot in sorted(spots, key=lambda s: s.cost):
+        paths = list(leaves(machine, spot.names))
+        inside = [p for p in paths if not region or p == region or p.startswith(f"{region}.")]
+        for path in inside or paths:
+            found.setdefault(path, spot)
+    return found
+
+
+def _region(machine: Machine, name: str) -> str:
+    """The region of the nearest parallel state in which a state lies; empty where there is none."""
+    path = next(s.path for s in machine.states.values() if s.name == name)
+    while (parent := machine.states[path].parent) is not None:
+        if machine.states[parent].kind is Kind.PARALLEL:
+            return path
+        path = parent
+    return ""
+
+
+def _finding(kind: Sort, path: str, message: str, spot: Spot) -> Finding:
+    return Finding(kind, path, message, tuple(Stay(s.move, s.names) for s in spot.way()))
