@@ -16,7 +16,7 @@ help:
 run: .venv/run
 	@$(BIN)/lumen run --story $(STORY) --speed $(SPEED)
 
-test: packages check
+test: packages check .cache/scion
 	@$(BIN)/lumen lint --strict
 	@$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not soak"
 
@@ -32,6 +32,11 @@ check: .venv/test
 packages:
 	@sh scripts/packages.sh packages.txt
 
+.cache/scion: scripts/conformance-data.sh
+	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
+	@sh scripts/conformance-data.sh
+	@touch $@
+
 .venv/run: requirements.txt pyproject.toml
 	@echo "setting up .venv (once, a minute or two) …"
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
@@ -44,4 +49,4 @@ packages:
 	@touch $@
 
 clean:
-	rm -rf .venv .lumen .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf .venv .cache .lumen .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

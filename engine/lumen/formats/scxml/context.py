@@ -34,7 +34,7 @@ class Context:
         elements = list(_data(outline.top, outline.scxml))
         for element in elements:
             self._declare(element)
-        states = frozenset(outline.by_id)
+        states = frozenset((*outline.by_id, outline.title))
         self.names = Names(self.keys, {}, states, outline.title)
         for element in elements:
             self._value(element)

@@ -11,6 +11,7 @@ from lumen.formats.findings import Report
 from lumen.formats.plain import plain_action, plain_value
 from lumen.formats.scxml.templates import expression_of
 from lumen.formats.scxml.xml import Tag
+from lumen.interpreters.expressions import parse_expression
 from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import Assign, CancelSend, Expression, If, LogText, Raise, Send, Step, Value
 
@@ -46,6 +47,9 @@ class Orders:
     def _tags(self, step: Step) -> Iterator[Tag]:
         match step.action:
             case Assign(values):
+                if any(isinstance(v, Expression) and not is_constant(v.source) for v in list(values.values())[1:]):
+                    message = "this `assign` becomes several: where one fails, those before it have happened"
+                    self.report.changed(message, step.where)
                 for key, value in values.items():
                     yield Tag("assign", {"location": self.vocabulary.keys[key], "expr": self.value(value)})
             case Raise(event, None):
@@ -104,3 +108,8 @@ class Orders:
                 pairs = (f"{text_of(Literal(str(k)))}: {self.literal(v)}" for k, v in value.items())
                 return "{" + ", ".join(pairs) + "}"
         return text_of(Literal(value))
+
+
+def is_constant(source: str) -> bool:
+    """Whether an expression of ours can't fail."""
+    return isinstance(parse_expression(source), Literal)

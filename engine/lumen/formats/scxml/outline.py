@@ -64,6 +64,6 @@ class Outline:
 
     def _node(self, element: Element, parent: Node) -> Node:
         id = clean_id(element.get("id"))
-        stem = id.removeprefix(f"{parent.path}.") if parent.path else id
+        stem = element.get(f"{{{LUMEN}}}key") or (id.removeprefix(f"{parent.path}.") if parent.path else id)
         key = free_key(parent, stem or element.tag, id, self.ids)
         return Node(element, parent, key, id, parent.below(key))

@@ -192,13 +192,14 @@ class _Document:
     def _afters(self, node: Node) -> dict[str, Any]:
         """The `<send>`, `<cancel>` and events that an `after` of ours was written as."""
         found: dict[str, Any] = {"onentry": [], "onexit": [], "events": {}}
+        name = node.name or self.outline.title
         for block in node.source.of("onentry"):
             send = block.children[0] if len(block.children) == 1 else None
             if send is None or send.tag != "send" or not send.get("id").startswith("after."):
                 continue
-            text = send.get("id").removeprefix("after.").removesuffix(f".{node.name}")
+            text = send.get("id").removeprefix("after.").removesuffix(f".{name}")
             cancels = [b for b in node.source.of("onexit") if [c.get("sendid") for c in b.children] == [send.get("id")]]
-            if f"after.{text}.{node.name}" == send.get("event") == send.get("id") and cancels:
+            if f"after.{text}.{name}" == send.get("event") == send.get("id") and cancels:
                 found["onentry"].append(block)
                 found["onexit"] += cancels
                 found["events"][send.get("event")] = text
@@ -252,16 +253,17 @@ class _Document:
 
     def _done(self, node: Node, rows: list[tuple[str, Row]]) -> tuple[dict[str, Any], list[tuple[str, Row]]]:
         """`onDone` and `onError` out of the candidates, where nothing else can be meant by them."""
+        name = node.name or self.outline.title
         kind = "do" if not regular(node) else "state"
         has_do = bool(self._own(node.source, "do", []))
-        names = {f"done.{kind}.{node.name}": "onDone", f"error.do.{node.name}": "onError"}
+        names = {f"done.{kind}.{name}": "onDone", f"error.do.{name}": "onError"}
         if not regular(node) and not has_do:
             return {}, rows
         found: dict[str, Any] = {}
         for event, key in names.items():
             mine = [row for descriptor, row in rows if descriptor == event]
             rivals = any(d != event and overlap(d, event) for d, _ in rows)
-            longer = any(id.startswith(f"{node.name}.") for id in self._dones)
+            longer = any(id.startswith(f"{name}.") for id in self._dones)
             if mine and not rivals and not (key == "onDone" and kind == "state" and longer):
                 found[key] = single(mine)
                 rows = [(d, row) for d, row in rows if d != event]
@@ -289,7 +291,7 @@ class _Document:
         if actions := self.contents.block(element.children):
             row["actions"] = actions
         inside = bool(targets) and all(target.lies_below(node) for target in targets)
-        if inside and node.source.tag != "parallel" and node.parent and element.get("type") != "internal":
+        if inside and node.source.tag != "parallel" and element.get("type") != "internal":
             row["reenter"] = True
         return row
 

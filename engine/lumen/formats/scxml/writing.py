@@ -100,6 +100,8 @@ class _Document:
         attributes = {"id": self.ids[state.path]}
         if not state.path:
             attributes["lumen:root"] = "true"
+        elif state.name not in (state.path, state.path.rpartition(".")[2]):
+            attributes["lumen:key"] = state.path.rpartition(".")[2]
         if state.kind is Kind.HISTORY:
             attributes["type"] = "deep" if state.deep else "shallow"
             default = [Tag("transition", {"target": self._ids(state.initial)})] if state.initial else []

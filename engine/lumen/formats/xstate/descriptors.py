@@ -12,13 +12,16 @@ class Descriptors:
 
     def __init__(self, machine: Machine) -> None:
         self.names = set(machine.events)
+        self.wild: set[str] = set()
         for state in machine.states.values():
             for block in (state.entry, state.exit, state.do, *(t.actions for t in state.transitions)):
                 self.names.update(_raised(block))
-            self.names.update(bare(t.event) for t in state.transitions if t.event not in ("", "*") and not t.exact)
+            written = [t.event for t in state.transitions if t.event not in ("", "*") and not t.exact]
+            self.names.update(map(bare, written))
+            self.wild.update(bare(event) for event in written if event.endswith(".*"))
 
     def arranged(self, state: State) -> dict[str, list[Transition]]:
-        """The candidates by XState's descriptors, the longest first.
+        """The candidates by XState's descriptors, the longest first; `!done.do.a` for the state's own events.
 
         A more general candidate that comes before a particular one here is repeated among its own, where XState
         would try it later.
@@ -28,17 +31,20 @@ class Descriptors:
         for transition in rows:
             table.setdefault(self._named(transition), [])
         for descriptor in table:
-            own = [i for i, t in enumerate(rows) if self._named(t) == descriptor]
-            table[descriptor] = [
-                t for t in rows[: own[-1] + 1] if self._named(t) == descriptor or _covers(t, bare(descriptor))
-            ]
-        return {descriptor: table[descriptor] for descriptor in longest_first(list(table))}
+            last = max(i for i, t in enumerate(rows) if self._named(t) == descriptor)
+            event = bare(descriptor.removeprefix("!"))
+            found = [t for t in rows[: last + 1] if self._named(t) == descriptor or _covers(t, event)]
+            table[descriptor] = found
+        keys = list(table)
+        if _rivals(keys):
+            keys = longest_first(sorted(keys, key=lambda d: (d == "*", -len(bare(d)))))
+        return {key: table[key] for key in keys}
 
     def _named(self, transition: Transition) -> str:
         event = transition.event
         if transition.exact or event == "*" or event.endswith(".*"):
-            return event
-        return f"{event}.*" if any(name.startswith(f"{event}.") for name in self.names) else event
+            return f"!{event}" if transition.exact else event
+        return f"{event}.*" if event in self.wild or any(name.startswith(f"{event}.") for name in self.names) else event
 
 
 def bare(descriptor: str) -> str:
@@ -47,15 +53,19 @@ def bare(descriptor: str) -> str:
 
 
 def longest_first(descriptors: Sequence[str]) -> list[str]:
-    """As XState tries them, where the order matters at all."""
-    rivals = any(overlap(bare(a), bare(b)) for i, a in enumerate(descriptors) for b in descriptors[:i])
-    return sorted(descriptors, key=lambda d: (d == "*", -len(d))) if rivals else list(descriptors)
+    """As XState tries them, where the order matters at all; of two of one length the first stays the first."""
+    return sorted(descriptors, key=lambda d: (d == "*", -len(d))) if _rivals(descriptors) else list(descriptors)
+
+
+def _rivals(descriptors: Sequence[str]) -> bool:
+    """Whether an event could match two of them."""
+    return any(overlap(bare(a), bare(b)) for i, a in enumerate(descriptors) for b in descriptors[:i])
 
 
 def _covers(transition: Transition, event: str) -> bool:
     """Whether every event below `event` selects it."""
     if transition.exact:
-        return transition.event == event
+        return False
     general = bare(transition.event)
     return general == "*" or f"{event}.".startswith(f"{general}.")
 

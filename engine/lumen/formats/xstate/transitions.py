@@ -85,7 +85,7 @@ class Transitions:
             return {"target": state.calls(entered or first, self.outline.title)}
         row: Row = {"target": self.named(state, targets)}
         below = bool(targets) and all(target.lies_below(state) for target in targets)
-        if reenter and below and state.kind == "compound" and state.parent:
+        if reenter and below and state.kind == "compound":
             row["reenter"] = True
         self._parallel(state, where, targets, reenter)
         return row

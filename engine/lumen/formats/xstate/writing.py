@@ -101,10 +101,10 @@ class _Config:
         for invoke in state.invoke:
             self.report.lost(f"`invoke` of `{invoke.behavior}` is left out", (*state.where, "invoke"))
         name = state.name
-        done, failed = rows.pop(f"done.do.{name}", []), rows.pop(f"error.do.{name}", [])
+        done, failed = rows.pop(f"!done.do.{name}", []), rows.pop(f"!error.do.{name}", [])
         if state.do:
             data["invoke"] = self._do(state, done, failed)
-        if ended := rows.pop(f"done.state.{name}", []):
+        if ended := rows.pop(f"!done.state.{name}", []):
             data["onDone"] = ended
         if rows:
             data["on"] = rows

@@ -1,0 +1,64 @@
+"""`lumen export`: a behaviour for another tool."""
+
+import argparse
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import lumen
+from lumen.cli.render import FORMATS
+from lumen.cli.terminal import coloured
+from lumen.cli.writing import write_result
+from lumen.errors import UsageError
+from lumen.formats.dot import dot
+from lumen.formats.findings import Placing
+from lumen.formats.mermaid import mermaid
+from lumen.formats.scxml import write_scxml
+from lumen.formats.xstate import write_xstate
+from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
+from lumen.language.machines import Machine
+from lumen.loading.packaged import find_project
+from lumen.loading.source import Document, parse
+
+Writer = Callable[[Machine, Placing], tuple[str, list[Diagnostic]]]
+
+WRITERS: Mapping[str, Writer] = {
+    "scxml": write_scxml,
+    "xstate": write_xstate,
+    "mermaid": lambda machine, place: (mermaid(machine), []),
+    "dot": lambda machine, place: (dot(machine), []),
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Write a behaviour as SCXML, as an XState configuration, or as a diagram for Mermaid or Graphviz. What the"
+        " format can't say is listed, with its line; then the exit code is 1, and the rest is written all the same."
+    )
+    parser.add_argument("target", metavar="FORMAT", choices=tuple(WRITERS), help=" | ".join(WRITERS))
+    parser.add_argument("behavior", nargs="?", help="a behaviour's name; default: the one that runs")
+    parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
+    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="write it there instead of printing it")
+    parser.add_argument("--format", choices=tuple(FORMATS), default="text", help="of the list (default: text)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 where everything could be said, 1 where something is left out."""
+    project = lumen.load(options.project)
+    name = options.behavior or project.behavior
+    if name not in project.behaviors:
+        raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
+    document = _document(find_project(options.project), f"behaviors/{name}.yaml")
+    text, diagnostics = WRITERS[options.target](project.behaviors[name], document.place)
+    write_result(text, options.output)
+    if diagnostics or options.format != "text":
+        files = {document.file: document.text.encode()}
+        print(FORMATS[options.format](diagnostics, files, coloured=coloured(sys.stderr)), file=sys.stderr)
+    return int(has_errors(diagnostics))
+
+
+def _document(root: Path, file: str) -> Document:
+    """The behaviour's file, for the lines of what is listed."""
+    document = parse(file, (root / file).read_bytes())[0]
+    assert document is not None  # it was loaded a moment ago
+    return document

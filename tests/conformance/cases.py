@@ -1,0 +1,86 @@
+"""The cases of the SCION test framework, and what our importer and interpreter make of them.
+
+A case is a statechart in SCXML and, mostly, a driver: which states have to be active at first, and after each of some
+events. `scripts/conformance-data.sh` fetches them.
+"""
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from lumen.formats.findings import ForeignFileError
+from lumen.formats.scxml import read_scxml
+from lumen.language.diagnostics import Diagnostic, Severity
+from lumen.loading.source import parse
+from lumen.statechart import Event, Machine, Snapshot, Step, due, initial, step
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / ".cache" / "scion" / "test"
+TABLE = Path(__file__).parent / "unsupported.yaml"
+
+
+@dataclass(frozen=True)
+class Case:
+    """`name` is `parallel/test1`; `driver` is None where there is none."""
+
+    name: str
+    chart: Path
+    driver: Mapping[str, Any] | None
+
+    def read(self) -> tuple[dict[str, Any] | None, list[Diagnostic]]:
+        """What the importer makes of the chart."""
+        try:
+            return read_scxml(self.chart.name, self.chart.read_bytes(), "chart")
+        except ForeignFileError as error:
+            return None, [error.diagnostic]
+
+    def complaints(self) -> list[str]:
+        """What of the chart can't be carried over."""
+        return [d.message for d in self.read()[1] if d.severity is Severity.ERROR]
+
+
+def table() -> Mapping[str, Any]:
+    """What is known of the cases that do not pass."""
+    document, diagnostics = parse(TABLE.name, TABLE.read_bytes())
+    assert document is not None
+    assert not diagnostics
+    return document.data
+
+
+def cases() -> list[Case]:
+    """All cases; none where they have not been fetched."""
+    return [_case(path) for path in sorted(FOLDER.glob("*/*.scxml"))]
+
+
+def _case(chart: Path) -> Case:
+    driver = chart.with_suffix(".json")
+    name = f"{chart.parent.name}/{chart.name.removesuffix('.scxml').removesuffix('.txml')}"
+    return Case(name, chart, json.loads(driver.read_bytes()) if driver.exists() else None)
+
+
+def play(machine: Machine, driver: Mapping[str, Any]) -> Iterator[tuple[list[str], list[str]]]:
+    """The atomic states expected and those that are active: at first, and after each event, in virtual time."""
+    now, steps = 0.0, [initial(machine)]
+    yield sorted(driver["initialConfiguration"]), _atomic(machine, steps[-1].snapshot)
+    for row in driver["events"]:
+        now += row.get("after", 0) / 1000
+        steps.extend(_elapsed(machine, steps, now))
+        event = Event(row["event"]["name"], row["event"].get("data"), now)
+        steps.append(step(machine, steps[-1].snapshot, event))
+        yield sorted(row["nextConfiguration"]), _atomic(machine, steps[-1].snapshot)
+
+
+def _elapsed(machine: Machine, steps: list[Step], now: float) -> Iterator[Step]:
+    """The steps of all timers until then."""
+    snapshot = steps[-1].snapshot
+    while (event := due(snapshot)) is not None and event.at <= now:
+        taken = step(machine, snapshot, event)
+        snapshot = taken.snapshot
+        yield taken
+
+
+def _atomic(machine: Machine, snapshot: Snapshot) -> list[str]:
+    states = (s for s in machine.states.values() if s.path and not s.children)
+    return sorted(s.name for s in states if s.name in snapshot.configuration)

@@ -1,0 +1,72 @@
+"""What holds of every machine: out and in again it behaves the same, and the second time nothing changes any more."""
+
+import json
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lumen.formats.document import behavior_yaml
+from lumen.formats.findings import dotted
+from lumen.formats.scxml import read_scxml, write_scxml
+from lumen.formats.xstate import read_xstate, write_xstate
+from lumen.language.diagnostics import has_errors
+from lumen.loading.source import parse
+from lumen.statechart import Machine
+from tests.formats.making import HAPPENINGS, charts, run
+
+FORMATS = {"scxml": (write_scxml, read_scxml), "xstate": (write_xstate, read_xstate)}
+
+
+def through(machine: Machine, format: str) -> dict[str, Any]:
+    """The machine written and read; nothing may be left out on the way."""
+    write, read = FORMATS[format]
+    text, written = write(machine, dotted("machine"))
+    data, found = read("file", text.encode(), "machine")
+    assert not has_errors([*written, *found])
+    return data
+
+
+def trace(machine: Machine, happenings: list[str]) -> list[tuple[Any, ...]]:
+    """What a run is seen to do: states by name, commands, context, and events raised."""
+    steps = run(machine, happenings)
+    return [
+        (
+            s.exited,
+            s.entered,
+            s.commands,
+            sorted(s.snapshot.configuration),
+            s.snapshot.context,
+            [e.name for e in s.raised],
+        )
+        for s in steps
+    ]
+
+
+@pytest.mark.parametrize("format", FORMATS)
+@settings(max_examples=60, deadline=None)
+@given(chart=charts(), happenings=HAPPENINGS)
+def test_what_comes_back_behaves_the_same(format: str, chart: dict[str, Any], happenings: list[str]) -> None:
+    machine = Machine.from_dict(chart)
+    again = Machine.from_dict(through(machine, format))
+    assert trace(again, happenings) == trace(machine, happenings)
+
+
+@pytest.mark.parametrize("format", FORMATS)
+@settings(max_examples=60, deadline=None)
+@given(chart=charts())
+def test_the_second_time_nothing_changes(format: str, chart: dict[str, Any]) -> None:
+    once = through(Machine.from_dict(chart), format)
+    twice = through(Machine.from_dict(once), format)
+    assert json.dumps(twice) == json.dumps(once)
+
+
+@settings(max_examples=60, deadline=None)
+@given(chart=charts(), pick=st.sampled_from(sorted(FORMATS)))
+def test_the_yaml_holds_the_same_data(chart: dict[str, Any], pick: str) -> None:
+    data = through(Machine.from_dict(chart), pick)
+    document, diagnostics = parse("machine.yaml", behavior_yaml(data).encode())
+    assert not diagnostics
+    assert document is not None
+    assert json.dumps(document.data) == json.dumps(data)
