@@ -250,6 +250,15 @@ def test_joints_stay_inside_limits_and_speeds(body: Body) -> None:
     assert degrees(truth(robot).theta) == pytest.approx(degrees(0.8), abs=3)
 
 
+def test_hot_motors_take_smaller_steps(body: Body) -> None:
+    cool, hot = on_the_floor(body), on_the_floor(body)
+    hot.condition.temperatures[hot.motors.index["LKneePitch"]] = 80.0
+    hot.advance(0.2)
+    slow, fast = walk(hot, Walk(0.2)), walk(cool, Walk(0.2))
+    assert slow.true
+    assert slow.seconds > fast.seconds + 1.0
+
+
 def test_the_same_seed_walks_the_same_way(body: Body) -> None:
     ends = [walk(any_robot(body, seed=5), Walk(0.1)) for _ in range(2)]
     assert (ends[0].off, ends[0].turned) == (ends[1].off, ends[1].turned)

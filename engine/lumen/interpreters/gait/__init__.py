@@ -6,10 +6,11 @@ Nothing here touches a robot: feet and a goal go in, joint angles come out, tick
 from lumen.interpreters.gait.footsteps import Feet, Step, corners, middle
 from lumen.interpreters.gait.gait import CentreOfMass, Gait, Tick
 from lumen.interpreters.gait.legs import JOINTS, SIDES, Side, foot_from
-from lumen.interpreters.gait.pace import Pace
+from lumen.interpreters.gait.pace import GENTLE, Pace
 from lumen.interpreters.gait.poses import Pose
 
 __all__ = [
+    "GENTLE",
     "JOINTS",
     "SIDES",
     "CentreOfMass",

@@ -48,7 +48,7 @@ class Gait:
         self.feet, self.goal, self.pace, self.steps = feet, goal, pace or Pace(), 0
         self._com = com
         self._side = first_side(goal.seen_from(middle(feet)))
-        self._most = len(self.coming) + _MORE
+        self._most = 2 * len(self.coming) + _MORE
         self._stopping = False
         self._north: float | None = None
         self._mass = self._dcm = self._zmp = between(feet, self.pace)

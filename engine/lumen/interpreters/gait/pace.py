@@ -24,3 +24,7 @@ class Pace:
     ahead: float = 0.02
     shift: float = 0.35
     settle: float = 0.35
+
+
+GENTLE = Pace(forward=0.03, sideways=0.02, turn=0.12, lift=0.02)
+"""Shorter and lower steps, for a robot whose motors are hot."""

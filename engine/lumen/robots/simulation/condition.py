@@ -61,6 +61,11 @@ class Condition:
         """Whether there is nothing left for the motors."""
         return self._energy <= 0.0
 
+    @property
+    def hot(self) -> bool:
+        """Whether a motor has spoken up and not cooled down since."""
+        return bool(self._hot)
+
     def live(self, torques: NDArray[np.float64], speeds: NDArray[np.float64], dt: float, now: float) -> list[Event]:
         """Spend energy and heat up for `dt` [s] of such torques [N m] and speeds [rad/s]; the events of it."""
         load = np.square(torques / self._efforts)

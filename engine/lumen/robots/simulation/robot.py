@@ -78,6 +78,7 @@ class SimulatedRobot:
             Anatomy(body, Path(models)),
             Hazards(self._sonars, self._pressed),
             self._free,
+            lambda: self.condition.hot,
         )
         self._repertoire = Repertoire(self.world, self.motors, self.lights, walker)
         self._executor = Executor(self._begin, self._repertoire.parts)

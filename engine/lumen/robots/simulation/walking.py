@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotError
-from lumen.interpreters.gait import JOINTS, SIDES, Gait, Pose, middle
+from lumen.interpreters.gait import GENTLE, JOINTS, SIDES, Gait, Pose, middle
 from lumen.language.commands import Walk
 from lumen.robots.simulation.anatomy import Anatomy
 from lumen.robots.simulation.balance import Balance
@@ -37,7 +37,10 @@ SWING, MOST, HANGING = 2.5, 0.35, 1.0
 
 
 class Walker:
-    """What walking takes; `begin` makes the activity of a command. `free` tells whether nothing else moves a joint."""
+    """What walking takes; `begin` makes the activity of a command.
+
+    `free` tells whether nothing else moves a joint, `hot` whether the motors should be spared.
+    """
 
     def __init__(
         self,
@@ -48,10 +51,11 @@ class Walker:
         anatomy: Anatomy,
         hazards: Hazards,
         free: Callable[[str], bool],
+        hot: Callable[[], bool],
     ) -> None:
         self.motors, self.balance, self.instruments = motors, balance, instruments
         self.whereabouts, self.hazards = whereabouts, hazards
-        self._anatomy, self._free = anatomy, free
+        self._anatomy, self._free, self._hot = anatomy, free, hot
         legs = {side + name for side in SIDES for name in JOINTS}
         self._legs = [(name, i) for name, i in motors.index.items() if name in legs]
         self._others = [name for name in motors.names if name not in legs]
@@ -66,7 +70,7 @@ class Walker:
         if reason := self.hazards.danger():
             raise RobotError(f"{reason}: the robot did not set out")
         feet = self.whereabouts.feel(self.measured())
-        gait = Gait(feet, middle(feet).then(Pose(x, y, theta)), self._centre_of_mass)
+        gait = Gait(feet, middle(feet).then(Pose(x, y, theta)), self._centre_of_mass, GENTLE if self._hot() else None)
         self.whereabouts.check(gait.coming)
         return Walking(self, gait, now)
 
