@@ -171,9 +171,9 @@ def test_the_same_seed_gives_the_same_run(body: Body) -> None:
     ("name", "content", "reason"),
     [
         ("nao.xml", "this is not XML", "nao.xml is not MJCF"),
-        ("nao.xml", "<mujoco><worldbody/></mujoco>", "lacks the joints HeadYaw"),
+        ("nao.xml", "<mujoco><worldbody/></mujoco>", "lacks what the simulation needs: .*the joint `HeadYaw`"),
         ("nao.xml", None, "no model nao.xml"),
-        ("hall.xml", "<mujoco><worldbody/></mujoco>", "no site `stage`"),
+        ("hall.xml", "<mujoco><worldbody/></mujoco>", "needs: the site `stage`"),
     ],
 )
 def test_a_model_that_can_t_be_used_is_said_to_be(
