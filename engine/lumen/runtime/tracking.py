@@ -53,10 +53,10 @@ class Tracking:
             route, message = self._waiting.popleft()
             for name, tracker in self._trackers.items():
                 if route == POSES and (angles := _angles(message.body, tracker.joints)):
-                    tracker.pose(_time(message.body, now), angles)
+                    tracker.pose(_time(message.body, now), angles, now=now)
                 elif route in tracker.routes and isinstance(message.body, Mapping):
                     captured = _time(message.body, now - self._project.routes[route].latency)
-                    if (target := tracker.see(message.body, captured, route)) is not None:
+                    if (target := tracker.see(message.body, captured, route, now=now)) is not None:
                         seen[name] = target
         for name, tracker in self._trackers.items():
             target = seen.get(name) or tracker.idle(now)
