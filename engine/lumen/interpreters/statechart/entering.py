@@ -1,6 +1,6 @@
 """Which states a transition leaves and enters: the sets of SCXML's Appendix D, by its names."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 
 from lumen.interpreters.statechart.chart import Chart, Node, Rule
@@ -39,8 +39,7 @@ class Topology:
         left: set[Node] = set()
         for rule in rules:
             if rule.targets:
-                domain = self.domain(rule)
-                left.update(node for node in active if node.lies_below(domain))
+                left.update(_active_below(self.domain(rule), active))
         return left
 
     def entry_set(self, rules: Iterable[Rule]) -> set[Node]:
@@ -121,6 +120,13 @@ def in_final(node: Node, active: AbstractSet[Node]) -> bool:
     if node.kind is Kind.COMPOUND:
         return any(child.kind is Kind.FINAL and child in active for child in node.children)
     return node.kind is Kind.PARALLEL and all(in_final(child, active) for child in node.children)
+
+
+def _active_below(node: Node, active: AbstractSet[Node]) -> Iterator[Node]:
+    for child in node.children:
+        if child in active:
+            yield child
+            yield from _active_below(child, active)
 
 
 def _innermost(nodes: Sequence[Node]) -> list[Node]:
