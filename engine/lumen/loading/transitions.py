@@ -98,12 +98,21 @@ class Transitions:
 
     def _together(self, states: list[Entry], where: Path) -> bool:
         for one, other in combinations(states, 2):
-            if not (one.lies_in(other) or other.lies_in(one) or _meeting(one, other).kind is Kind.PARALLEL):
+            if not _fit(one, other):
                 message = f"`{one.path}` and `{other.path}` can't be active together"
                 hint = "the targets of a list have to lie in different regions of a parallel state"
                 self.report("conflicting-targets", where, message, hint=hint)
                 return False
         return True
+
+
+def _fit(one: Entry, other: Entry) -> bool:
+    """Whether two states can be targets together; a history speaks for all that is in its parent."""
+    for history, state in ((one, other), (other, one)):
+        home = history.parent
+        if history.kind is Kind.HISTORY and home and state not in (history, home) and state.lies_in(home):
+            return False
+    return one.lies_in(other) or other.lies_in(one) or _meeting(one, other).kind is Kind.PARALLEL
 
 
 def _meeting(one: Entry, other: Entry) -> Entry:

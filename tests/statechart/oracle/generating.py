@@ -124,7 +124,7 @@ class Making:
             data.update({"output": {"k": self.pick(["context.n", "event.data.k"])}} if self.chance(50) else {})
             return
         if self.deeds and self.chance(50):
-            data["do"] = [self.pick(DEEDS) for _ in range(self.draw(st.integers(1, 3)))]
+            data["do"] = self.actions(DEEDS, 3)
         if "states" in data and kind != "parallel" and self.chance(30):
             data["initial"] = self.beginning(path)
         self.transitions(data)
@@ -162,11 +162,9 @@ class Making:
             data["actions"] = self.actions()
         return data
 
-    def actions(self) -> list[Data]:
-        return [
-            named(self.pick(ACTIONS), self.pick([p for p in self.states if p]))
-            for _ in range(self.draw(st.integers(1, 2)))
-        ]
+    def actions(self, options: list[Data] = ACTIONS, most: int = 2) -> list[Data]:
+        states = [path for path in self.states if path]
+        return [named(self.pick(options), self.pick(states)) for _ in range(self.draw(st.integers(1, most)))]
 
     def target(self) -> Any:
         histories = [path for path, state in self.states.items() if state.get("type") == "history"]
