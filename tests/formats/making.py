@@ -41,8 +41,9 @@ GUARDS = [
 
 
 @st.composite
-def charts(draw: st.DrawFn) -> dict[str, Any]:
-    """The data of a machine of at most three levels, some states with ids, and no endless `always`."""
+def charts(draw: st.DrawFn, *, deep: bool = True) -> dict[str, Any]:
+    """The data of a machine of at most three levels, some states with ids, and no endless `always`; `deep` allows
+    `initial` to lead deeper than to a child."""
     tree = draw(
         st.recursive(st.just({}), lambda t: st.dictionaries(st.sampled_from("abc"), t, min_size=1), max_leaves=8)
     )
@@ -51,7 +52,7 @@ def charts(draw: st.DrawFn) -> dict[str, Any]:
     root["id"] = draw(st.sampled_from(["chart", "my.chart"]))
     root["context"] = {"n": 0, "t": "", "list": [], "wide": None}
     root["phrases"] = {"word": {"en": ["f"]}}
-    _fill(draw, root, names, "")
+    _fill(draw, root, names if deep else [], "", names)
     return root
 
 
@@ -75,7 +76,7 @@ def _state(draw: st.DrawFn, children: dict[str, Any], path: str, names: list[str
     return data
 
 
-def _fill(draw: st.DrawFn, data: dict[str, Any], names: list[str], path: str) -> None:
+def _fill(draw: st.DrawFn, data: dict[str, Any], deeper: list[str], path: str, names: list[str]) -> None:
     if data.get("type") in ("history", "final"):
         return
     for key in ("entry", "exit"):
@@ -100,9 +101,9 @@ def _fill(draw: st.DrawFn, data: dict[str, Any], names: list[str], path: str) ->
         data["onError"] = draw(several)
     if "do" in data or "states" in data:
         data["onDone"] = draw(several)
-    _begin(draw, data, names, path)
+    _begin(draw, data, deeper, path)
     for key, child in data.get("states", {}).items():
-        _fill(draw, child, names, f"{path}.{key}" if path else key)
+        _fill(draw, child, deeper, f"{path}.{key}" if path else key, names)
 
 
 def _begin(draw: st.DrawFn, data: dict[str, Any], names: list[str], path: str) -> None:

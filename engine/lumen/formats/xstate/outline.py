@@ -20,9 +20,14 @@ class State(Node):
     @property
     def kind(self) -> str:
         kind = self.source.get("type")
-        if kind in ("parallel", "final", "history"):
+        if kind in ("final", "history") or (kind == "parallel" and self.regular):
             return str(kind)
-        return "compound" if self.children else "atomic"
+        return "compound" if self.regular else "atomic"
+
+    @property
+    def regular(self) -> "list[State]":
+        """The children that can be active."""
+        return [c for c in self.children if isinstance(c, State) and c.source.get("type") != "history"]
 
     def child(self, key: str) -> "State | None":
         return next((c for c in self.children if isinstance(c, State) and c.original == key), None)
@@ -57,6 +62,9 @@ class Outline:
             id = data.get("id") if isinstance(data, dict) else None
             if not isinstance(data, dict):
                 self.findings.lost(self.source.place(where), f"`{original}` is no state", "a state is an object")
+            elif parent.source.get("type") == "parallel" and data.get("type") == "final":
+                hint = "put it into one of the regions"
+                self.findings.lost(self.source.place(where), f"`{original}` is final in a parallel state", hint)
             elif isinstance(id, str) and id in self.by_id:
                 self.findings.lost(self.source.place(where), f"a second state has the id `{id}`", "give each its own")
             else:
@@ -66,6 +74,9 @@ class Outline:
                 if isinstance(id, str):
                     self.by_id[id] = state
                 self._fill(state, level + 1)
+        if parent.children and not parent.regular:
+            self.findings.lost(self.source.place(parent.where), "a state has a history and no other states", "delete it")
+            parent.children.clear()
 
     def _states(self, parent: State, level: int) -> Mapping[str, Any]:
         states = parent.source.get("states") or {}

@@ -37,6 +37,8 @@ def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], 
         raise broken(source.place(()), "not-xstate", "this is no machine of XState: it has no `states`", hint)
     findings = Findings()
     outline = Outline(source, title, findings)
+    if not outline.root.regular:
+        raise broken(source.place(("states",)), "not-xstate", "the machine has no states")
     context = _context(source.data, findings, outline)
     return _Machine(outline, Parts(source, context, findings), findings).data()
 
@@ -91,7 +93,7 @@ class _Machine:
         if state.kind == "final":
             return data | self._output(state)
         data.update(self._behaviour(state))
-        if state.children:
+        if state.regular:
             data["states"] = {c.key: self._state(c) for c in state.children if isinstance(c, State)}
             data["states"].update(self.passed.get(state, {}))
         return data
@@ -121,25 +123,24 @@ class _Machine:
         """Where a history leads that names no target: as its parent begins."""
         home = state.parent
         assert isinstance(home, State)  # the machine itself is never read as a history
-        regular = [c for c in home.children if isinstance(c, State) and c.kind != "history"]
         initial = home.source.get("initial")
         named = home.child(initial) if isinstance(initial, str) else None
-        first = named if named in regular else regular[0] if regular else None
-        found = regular if home.kind == "parallel" else [first] if first else []
-        return {"target": self.transitions.named(state, found)} if found else {}
+        first = named if named in home.regular else home.regular[0]
+        found = home.regular if home.kind == "parallel" else [first]
+        return {"target": self.transitions.named(state, [f for f in found if f is not None])}
 
     def _initial(self, state: State) -> str:
         """The key of the child entered first; where actions are done on the way, of a state that does them."""
         where = (*state.where, "initial")
-        first = next((c for c in state.children if isinstance(c, State) and c.kind != "history"), None)
-        data = state.source.get("initial", first.original if first else "")
+        first = state.regular[0]
+        data = state.source.get("initial", first.original)
         target = data.get("target") if isinstance(data, dict) else data
         found = state.child(target) if isinstance(target, str) else None
         if found is None:
             found = self.outline.resolve(state, target) if isinstance(target, str) and target[:1] in "#." else None
         if found is None or not found.lies_below(state):
             self.parts.lost(where, f"`{target}` is no state in this one", "the first one is entered")
-            found = first or state
+            found = first
         name = state.calls(found, self.outline.title, inside=True)
         actions = self.parts.actions(data.get("actions"), (*where, "actions")) if isinstance(data, dict) else []
         return self._pass_through(state, found, actions) if actions else name

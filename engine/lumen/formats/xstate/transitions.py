@@ -79,7 +79,7 @@ class Transitions:
             self.parts.changed(
                 where, f"`{state.original or self.outline.title}` itself is not left: its first state is the target"
             )
-            first = next(c for c in state.children if isinstance(c, State) and c.kind != "history")
+            first = state.regular[0]
             initial = state.source.get("initial")
             entered = state.child(initial) if isinstance(initial, str) else None
             return {"target": state.calls(entered or first, self.outline.title)}
