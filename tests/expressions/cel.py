@@ -123,7 +123,7 @@ def is_meant(node: Node, scope: Scope, ours: Outcome, theirs: Outcome) -> bool:
         case Call(function="has", arguments=(Field(base=base),)):
             found = by_lumen(unparse(base), scope)
             return theirs == ("error",) and ours == ("value", False) and not isinstance(found[-1], Mapping)
-        case Call(function="lower" | "trim"):
+        case Call(function="lower"):
             return not flat[0].isascii()
     return False
 

@@ -54,7 +54,9 @@ def test_what_comes_back_from_scxml_behaves_the_same(chart: dict[str, Any], happ
 @settings(max_examples=60, deadline=None)
 @given(chart=charts(deep=False), happenings=HAPPENINGS)
 def test_what_comes_back_from_xstate_behaves_the_same(chart: dict[str, Any], happenings: list[str]) -> None:
-    """But for an `initial` that leads deeper than to a child: that becomes a state of its own."""
+    """But for an `initial` that leads deeper than to a child, which becomes a state of its own, and for candidates that
+    are written twice: the second failure at one place is passed over, that at another is not.
+    """
     machine = Machine.from_dict(chart)
     assert trace(Machine.from_dict(through(machine, "xstate")), happenings) == trace(machine, happenings)
 

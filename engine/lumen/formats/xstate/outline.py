@@ -75,7 +75,9 @@ class Outline:
                     self.by_id[id] = state
                 self._fill(state, level + 1)
         if parent.children and not parent.regular:
-            self.findings.lost(self.source.place(parent.where), "a state has a history and no other states", "delete it")
+            self.findings.lost(
+                self.source.place(parent.where), "a state has a history and no other states", "delete it"
+            )
             parent.children.clear()
 
     def _states(self, parent: State, level: int) -> Mapping[str, Any]:

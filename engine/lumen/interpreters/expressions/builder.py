@@ -183,11 +183,11 @@ class Builder:
         return ast.Compare(self.hidden(left), [operator], [self.node(right)])
 
     def compares_number(self, sign: str, left: Node, right: Literal) -> ast.expr:
-        """`left < number` without a call where `left` is an int, and with all checks where it is not."""
+        """`left < number` at once where `left` is a number, and with all checks where it is not."""
         value, again = self.named(self.node(left))
-        is_int = ast.Compare(self.call("type", value), [ast.Is()], [_load("int")])
+        is_number = ast.Compare(self.call("type", value), [ast.In()], [_load("numbers")])
         fast = ast.Compare(again, [_ORDER[sign]()], [ast.Constant(right.value)])
-        return ast.IfExp(is_int, fast, self.call(SIGNS[sign], again, ast.Constant(right.value)))
+        return ast.IfExp(is_number, fast, self.call(SIGNS[sign], again, ast.Constant(right.value)))
 
 
 def _load(name: str) -> ast.expr:

@@ -53,7 +53,7 @@ def lower(text: Any) -> str:
 
 def trim(text: Any) -> str:
     _texts(text)
-    return str(text[:CUT].strip())
+    return str(text[:CUT].strip(phrases.BLANKS))
 
 
 def contains(text: Any, part: Any) -> bool:

@@ -8,8 +8,10 @@ from unicodedata import category, normalize
 from lumen.interpreters.expressions.scope import CUT, Scope
 
 _APOSTROPHES = frozenset("'’ʼ‘`´")
-_BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace())
-_AROUND = _BLANKS + ".,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
+BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace() and not 0x1C <= code <= 0x1F)
+"""What Unicode calls White_Space; Python counts four separators of records among it."""
+
+_AROUND = BLANKS + ".,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
 _TABLES = 256
 
 
