@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from lumen.formats.ecmascript.kinds import UNKNOWN, is_float, kind
 from lumen.formats.ecmascript.methods import FUNCTIONS, SIGNS, method
 from lumen.formats.ecmascript.parsing import ScriptError, parse_script
+from lumen.formats.ecmascript.presence import is_data, known, negated
 from lumen.formats.ecmascript.printing import text_of
 from lumen.interpreters.expressions.kinds import BOOLEAN, LIST, MAP, NULL, NUMBER, TEXT
 from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_INT, MIN_INT
@@ -91,7 +92,7 @@ class Reading:
             read = self.condition(operand)
             same = isinstance(read, Logic) and read.sign == sign
             found += read.operands if same and isinstance(read, Logic) else (read,)
-            self.present |= _known(read, sign == "&&")
+            self.present |= known(read, sign == "&&")
         self.present = before
         return Logic(sign, tuple(found))
 
@@ -225,7 +226,7 @@ class Reading:
     def _absent(self, node: Node, or_null: bool) -> Node:
         path = path_of(node)
         is_null = Binary("==", node, Literal(None))
-        if not _is_data(path) or path in self.present:
+        if not is_data(path) or path in self.present:
             return is_null
         missing = Unary("!", Call("has", (node,)))
         return Logic("||", (missing, is_null)) if or_null else missing
@@ -250,7 +251,7 @@ class Reading:
 
     def _guarded(self, node: Node, *operands: Node) -> Node:
         """The comparison, false where a field of the event is missing (which ECMAScript calls undefined)."""
-        paths = {path: operand for operand in operands if _is_data(path := path_of(operand))}
+        paths = {path: operand for operand in operands if is_data(path := path_of(operand))}
         missing = [Call("has", (operand,)) for path, operand in paths.items() if path not in self.present]
         return Logic("&&", (*missing, node)) if missing else node
 
@@ -270,37 +271,6 @@ class Reading:
         if node.function in SIGNS and len(arguments) == 2:
             return Binary(SIGNS[node.function], *arguments)
         return Call(node.function, arguments)
-
-
-def negated(node: Node) -> Node:
-    """Not that, without a needless `!`."""
-    match node:
-        case Unary(sign="!", operand=operand):
-            return operand
-        case Literal(value=bool() as value):
-            return Literal(not value)
-        case Binary(sign="==" | "!=" as sign, left=left, right=right):
-            return Binary("!=" if sign == "==" else "==", left, right)
-        case Logic(sign="&&", operands=(Call(function="has"), *_)):
-            return Logic("||", tuple(negated(operand) for operand in node.operands))
-    return Unary("!", node)
-
-
-def _is_data(path: tuple[str, ...] | None) -> bool:
-    return path is not None and path[:2] == ("event", "data") and len(path) > 2
-
-
-def _known(node: Node, holds: bool) -> frozenset[tuple[str, ...]]:
-    """The fields that are there where the node holds (or does not)."""
-    match node:
-        case Call(function="has", arguments=(target,)) if holds:
-            path = path_of(target)
-            return frozenset((path,)) if path else frozenset()
-        case Unary(sign="!", operand=operand):
-            return _known(operand, not holds)
-        case Logic(sign=sign, operands=operands) if holds == (sign == "&&"):
-            return frozenset().union(*(_known(operand, holds) for operand in operands))
-    return frozenset()
 
 
 def _floats(left: Node, right: Node) -> tuple[Node, Node]:

@@ -1,21 +1,18 @@
 """An SCXML document as the data of a behaviour file."""
 
-import re
-from collections.abc import Iterator
 from typing import Any
 
 from lumen.formats.ecmascript import ScriptError
 from lumen.formats.findings import Findings, broken
 from lumen.formats.nodes import Node, passing_key
-from lumen.formats.scxml.candidates import Row, arrange, normal, overlap, single
 from lumen.formats.scxml.contents import Action, Contents, LeftOutError, own
 from lumen.formats.scxml.context import Context
 from lumen.formats.scxml.elements import LUMEN, Element, parse_xml
 from lumen.formats.scxml.outline import STATES, Outline, regular
+from lumen.formats.scxml.transitions import Transitions
 from lumen.language.diagnostics import Diagnostic
 
 _KNOWN = {*STATES, "transition", "onentry", "onexit", "initial", "datamodel", "donedata", "invoke", "script"}
-_DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*")
 
 
 def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
@@ -39,6 +36,7 @@ class _Document:
         self.outline = Outline(scxml, title, self.findings)
         self.context = Context(self.outline, self.findings)
         self.contents = Contents(self.context, self.findings)
+        self.transitions = Transitions(self.outline, self.contents, self.findings)
         self.passed: dict[Node, dict[str, Any]] = {}
 
     def data(self) -> tuple[dict[str, Any], list[Diagnostic]]:
@@ -107,12 +105,12 @@ class _Document:
         """Where a history leads that names no target (which SCXML does not allow): as its parent begins."""
         home = node.parent
         found = regular(home)[: None if home.source.tag == "parallel" else 1] if home else []
-        return {"target": self._named(node, found)} if found else {}
+        return {"target": self.transitions.named(node, found)} if found else {}
 
     def _default(self, node: Node, transition: Element, key: str) -> dict[str, Any]:
         """`initial` or a history's `target`, with the actions on the way."""
         home = node if key == "initial" else node.parent
-        found = self._targets(transition)
+        found = self.transitions.targets(transition)
         if found is None or not found:
             return {}
         wrong = next((t for t in found if home is None or not t.lies_below(home)), None)
@@ -124,7 +122,7 @@ class _Document:
             return {key: self._pass_through(home, transition, found, actions)}
         if actions:
             self.findings.lost(transition.place, "actions on the way to the states of a parallel one", "move them")
-        return {key: self._named(node, found, inside=key == "initial")}
+        return {key: self.transitions.named(node, found, inside=key == "initial")}
 
     def _pass_through(self, home: Node, transition: Element, targets: list[Node], actions: list[Action]) -> str:
         """A state that is left at once, doing on the way what SCXML does between `home` and its states."""
@@ -133,7 +131,7 @@ class _Document:
         hint = "it is passed through at once"
         self.findings.changed(transition.place, f"what is done here becomes a state of its own, `{key}`", hint)
         pretended = Node(transition, home, key, "", "")
-        passed[key] = {"always": {"target": self._named(pretended, targets), "actions": actions}}
+        passed[key] = {"always": {"target": self.transitions.named(pretended, targets), "actions": actions}}
         return key
 
     def _passed(self, home: Node) -> dict[str, Any]:
@@ -150,22 +148,7 @@ class _Document:
             found = self._default(node, pretended, "initial")
             if found:
                 return found["initial"]
-        return self._named(node, [regular(node)[0]], inside=True)
-
-    def _targets(self, element: Element) -> list[Node] | None:
-        """The states of `target`, None (and reported) where one does not exist."""
-        found = []
-        for id in element.get("target").split():
-            node = self.outline.by_id.get(id)
-            if node is None:
-                self.findings.lost(element.place, f"there is no state `{id}` to go to")
-                return None
-            found.append(node)
-        return found
-
-    def _named(self, source: Node, targets: list[Node], *, inside: bool = False) -> Any:
-        names = [source.calls(target, self.outline.title, inside=inside) for target in targets]
-        return names[0] if len(names) == 1 else names
+        return self.transitions.named(node, [regular(node)[0]], inside=True)
 
     def _behaviour(self, node: Node) -> dict[str, Any]:
         data: dict[str, Any] = {}
@@ -177,10 +160,12 @@ class _Document:
             self._several(blocks)
         if do := self._own(node.source, "do", []):
             data["do"] = do
-        data.update(self._transitions(node, afters["events"]))
+        data.update(self.transitions.of(node, afters["events"]))
         if node.source.tag == "final" and (output := self._output(node)) is not None:
             data["output"] = output
-        data.update(self._own(node.source, "state", {}))
+        reload = self._own(node.source, "state", {}).get("onReload")
+        if isinstance(reload, str) and (home := self.outline.by_id.get(reload)):
+            data["onReload"] = node.calls(home, self.outline.title)
         return data
 
     def _several(self, blocks: list[Element]) -> None:
@@ -213,95 +198,8 @@ class _Document:
                 self.findings.lost(element.place, f"the data of `{node.name}`: {error}")
         return None
 
-    def _transitions(self, node: Node, afters: dict[str, str]) -> dict[str, Any]:
-        always: list[Row] = []
-        after: dict[str, list[Row]] = {}
-        rows: list[tuple[str, Row]] = []
-        for element in node.source.of("transition"):
-            row = self._row(node, element)
-            if row is None:
-                continue
-            for descriptor in self._descriptors(element):
-                if descriptor in afters:
-                    after.setdefault(afters[descriptor], []).append(row)
-                else:
-                    rows.append((descriptor, row))
-            if not element.get("event"):
-                always += self._eventless(element, row)
-        done, rows = self._done(node, rows)
-        data: dict[str, Any] = {"on": arrange(rows)} if rows else {}
-        if always:
-            data["always"] = single(always)
-        if after:
-            data["after"] = {text: single(found) for text, found in after.items()}
-        return {**data, **done}
-
-    def _eventless(self, element: Element, row: Row) -> Iterator[Row]:
-        if "target" in row or "guard" in row:
-            yield row
-        elif row:
-            yield {"guard": "true", **row}
-        else:
-            self.findings.lost(element.place, "a transition without event, condition and target runs for ever")
-
-    def _descriptors(self, element: Element) -> list[str]:
-        found = [normal(word) for word in element.get("event").split()]
-        for word in found:
-            if not _DESCRIPTOR.fullmatch(word):
-                self.findings.lost(element.place, f"`{word}` is no event", "write names with dots between")
-        return list(dict.fromkeys(word for word in found if _DESCRIPTOR.fullmatch(word)))
-
-    def _done(self, node: Node, rows: list[tuple[str, Row]]) -> tuple[dict[str, Any], list[tuple[str, Row]]]:
-        """`onDone` and `onError` out of the candidates, where nothing else can be meant by them."""
-        name = node.name or self.outline.title
-        kind = "do" if not regular(node) else "state"
-        has_do = bool(self._own(node.source, "do", []))
-        names = {f"done.{kind}.{name}": "onDone", f"error.do.{name}": "onError"}
-        if not regular(node) and not has_do:
-            return {}, rows
-        found: dict[str, Any] = {}
-        for event, key in names.items():
-            mine = [row for descriptor, row in rows if descriptor == event]
-            rivals = any(d != event and overlap(d, event) for d, _ in rows)
-            longer = any(id.startswith(f"{name}.") for id in self._dones)
-            if mine and not rivals and not (key == "onDone" and kind == "state" and longer):
-                found[key] = single(mine)
-                rows = [(d, row) for d, row in rows if d != event]
-        return found, rows
-
-    @property
-    def _dones(self) -> set[str]:
-        """The names of all states whose end is an event."""
-        return {node.name for node in self.outline.root.walk() if node.children}
-
-    def _row(self, node: Node, element: Element) -> Row | None:
-        row: Row = {}
-        targets = self._targets(element)
-        if targets is None:
-            return None
-        if "cond" in element.attributes:
-            try:
-                row["guard"] = self.contents.condition(element.get("cond"))
-            except ScriptError as error:
-                hint = "the transition is left out"
-                self.findings.lost(element.place, f"the condition `{_short(element.get('cond'))}`: {error}", hint)
-                return None
-        if targets:
-            row["target"] = self._named(node, targets)
-        if actions := self.contents.block(element.children):
-            row["actions"] = actions
-        inside = bool(targets) and all(target.lies_below(node) for target in targets)
-        if inside and node.source.tag != "parallel" and element.get("type") != "internal":
-            row["reenter"] = True
-        return row
-
 
 def _with_entry(data: dict[str, Any], late: list[Action]) -> dict[str, Any]:
     """Values that have to be computed are, before anything else."""
     entry = [*late, *data.pop("entry", [])]
     return {**{k: v for k, v in data.items() if k != "states"}, "entry": entry, "states": data["states"]}
-
-
-def _short(source: str) -> str:
-    text = " ".join(source.split())
-    return text if len(text) <= 60 else text[:59] + "…"

@@ -120,7 +120,7 @@ class _Document:
             yield _json("do", plain_block(state.do))
         if state.on_reload:
             self.report.foreign("`onReload`", (*state.where, "onReload"))
-            yield _json("state", {"onReload": f"#{self.ids[state.on_reload]}"})
+            yield _json("state", {"onReload": self.ids[state.on_reload]})
         for invoke in state.invoke:
             self.report.lost(f"`invoke` of `{invoke.behavior}` is left out", (*state.where, "invoke"))
         timers = {t.event: t.delay for t in state.transitions if t.delay is not None}

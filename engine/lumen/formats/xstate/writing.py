@@ -106,8 +106,8 @@ class _Config:
             data["invoke"] = self._do(state, done, failed)
         if ended := rows.pop(f"!done.state.{name}", []):
             data["onDone"] = ended
-        if rows:
-            data["on"] = rows
+        if on := {event: row for event, row in rows.items() if not event.startswith("!")}:
+            data["on"] = on
         if always := [self._row(state, t) for t in state.transitions if not t.event]:
             data["always"] = always
         if after := self._after(state):

@@ -1,0 +1,145 @@
+"""What each part of SCXML becomes, and what is said of the parts that can't be carried over."""
+
+from typing import Any
+
+import pytest
+
+from lumen.formats.findings import dotted
+from lumen.formats.scxml import read_scxml, write_scxml
+from lumen.statechart import Machine
+
+HEAD = '<scxml xmlns="http://www.w3.org/2005/07/scxml" datamodel="ecmascript" name="chart">\n'
+
+
+def read(body: str) -> tuple[dict[str, Any], list[str]]:
+    """The data, and the line and message of each finding."""
+    data, diagnostics = read_scxml("chart.scxml", (HEAD + body + "</scxml>").encode(), "chart")
+    Machine.from_dict(data)
+    return data, [f"{d.place.line}: {d.message}" for d in diagnostics]
+
+
+def state(content: str, more: str = "") -> dict[str, Any]:
+    """What a state with this content becomes; nothing may be said of it."""
+    data, said = read(f'<datamodel><data id="x" expr="0"/></datamodel><state id="a">{content}</state>{more}')
+    assert said == []
+    found: dict[str, Any] = data["states"]["a"]
+    return found
+
+
+B = '<state id="b"><state id="c"/></state>'
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        ('<transition event="e" target="b"/>', {"on": {"e": "b"}}),
+        ('<transition event="e f.* g." target="c"/>', {"on": {"e": "#c", "f": "#c", "g": "#c"}}),
+        ('<transition event="*"/>', {"on": {"*": {}}}),
+        ('<transition cond="x &gt; 1" target="b"/>', {"always": {"guard": "context.x > 1", "target": "b"}}),
+        (
+            '<transition event="e" cond="In(\'b\')"><raise event="f"/></transition>',
+            {"on": {"e": {"guard": "In('b')", "actions": [{"raise": "f"}]}}},
+        ),
+        ('<onentry><send event="e" delay="1500ms" id="i"/></onentry>',
+         {"entry": [{"send": {"event": "e", "delay": "1.5s", "id": "i"}}]}),
+        ('<onentry><send event="e" delayexpr="\'2s\'"><param name="p" expr="x + 1"/></send></onentry>',
+         {"entry": [{"send": {"event": "e", "data": {"p": "context.x + 1"}, "delay": "2s"}}]}),
+        ('<onexit><send target="#_internal" event="e"><content>{"a": "b"}</content></send></onexit>',
+         {"exit": [{"raise": {"event": "e", "data": {"a": "'b'"}}}]}),
+        ('<onexit><cancel sendid="i"/><log label="L" expr="\'n: \' + x"/></onexit>',
+         {"exit": [{"cancel": "i"}, {"log": "L: n: {{ context.x }}"}]}),
+        ('<onentry><script>x += 2; x++;</script></onentry>',
+         {"entry": [{"assign": {"x": "context.x + 2"}}, {"assign": {"x": "context.x + 1"}}]}),
+        (
+            '<onentry><if cond="x"><raise event="a"/><elseif cond="x==1"/><else/><raise event="b"/></if></onentry>',
+            {"entry": [{"if": "context.x != 0", "then": [{"raise": "a"}],
+                        "else": [{"if": "context.x == 1", "then": [], "else": [{"raise": "b"}]}]}]},
+        ),
+    ],
+)  # fmt: skip
+def test_what_becomes_of_a_state(content: str, expected: dict[str, Any]) -> None:
+    assert state(content, B) == expected
+
+
+def test_document_order_survives_the_map_of_descriptors() -> None:
+    rows = '<transition event="*" cond="x == 1" target="b"/><transition event="e.f" target="c"/><transition event="*"/>'
+    assert state(rows, B)["on"] == {
+        "*": [
+            {"guard": "context.x == 1", "target": "b"},
+            {"guard": "event.name == 'e.f' || matches(event.name, '^e\\\\.f\\\\.')", "target": "#c"},
+            {},
+        ]
+    }
+
+
+def test_external_is_told_from_internal() -> None:
+    rows = '<transition event="e" target="c"/><transition event="i" type="internal" target="c"/>'
+    found, said = read(f'<state id="b">{rows}<state id="c"/></state>')
+    assert found["states"]["b"]["on"] == {"e": {"target": ".c", "reenter": True}, "i": ".c"}
+    assert said == []
+
+
+def test_parallel_history_final_and_deep_initial() -> None:
+    data, said = read(
+        '<parallel id="p"><history id="h" type="deep"><transition target="r2"/></history>'
+        '<state id="r" initial="r2"><state id="r1"><state id="r2"/></state></state>'
+        '<state id="s"><final id="f"><donedata><param name="n" expr="1"/></donedata></final></state></parallel>'
+    )
+    parallel = data["states"]["p"]
+    assert parallel["type"] == "parallel"
+    assert parallel["states"]["h"] == {"id": "h", "type": "history", "history": "deep", "target": "#r2"}
+    assert parallel["states"]["r"]["initial"] == "#r2"
+    assert parallel["states"]["s"]["states"]["f"] == {"id": "f", "type": "final", "output": {"n": 1}}
+    assert said == []
+
+
+def test_values_that_change_their_kind_are_of_any() -> None:
+    data, _ = read('<datamodel><data id="x" expr="0"/><data id="y" expr="x + 1"/>'
+                   '<data id="z">[1, "a"]</data></datamodel>'
+                   '<state id="a"><onentry><assign location="x" expr="\'t\'"/></onentry></state>')  # fmt: skip
+    assert data["context"] == {"x": 0, "y": None, "z": [1, "a"]}
+    assert data["types"] == {"x": {}}
+    assert data["entry"] == [{"assign": {"y": "context.x + 1"}}]
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ("<state>\n<invoke src='x'/></state>", ["3: `<invoke>`: other charts and services are not carried over"]),
+        ("<state><onentry>\n<foreach array='x' item='y'/></onentry></state>",
+         ["3: `<foreach>`: there are no loops here"]),
+        ("<state id='a'/>\n<state id='a'/>", ["3: a second state has the id `a`"]),
+        ("<state>\n<transition event='e' target='z'/></state>", ["3: there is no state `z` to go to"]),
+        ("<state>\n<transition event='e' cond='y = 1'/></state>",
+         ["3: the condition `y = 1`: Lumen's expressions have no assignments"]),
+        ("<state><onentry>\n<send event='e' target='http://x'/></onentry></state>",
+         ["3: `<send>` to `http://x`"]),
+        ("<state>\n<transition/></state>", ["3: a transition without event, condition and target runs for ever"]),
+        ("<state>\n<custom xmlns='urn:x'/></state>", ["3: `<custom>` has no counterpart"]),
+    ],
+)  # fmt: skip
+def test_nothing_is_dropped_in_silence(body: str, said: list[str]) -> None:
+    assert read(body)[1] == said
+
+
+def test_what_only_lumen_has_comes_back() -> None:
+    chart = {
+        "id": "tour",
+        "context": {"name": ""},
+        "phrases": {"hi": {"en": ["hi", "hello"]}},
+        "initial": "a",
+        "states": {
+            "a": {
+                "do": [{"say": {"en": "Hello {{ context.name }}"}}, {"wait": "2s"}],
+                "onDone": {"guard": "heard(event.data, 'hi')", "target": "b"},
+                "after": {"2min": "b"},
+            },
+            "b": {"onReload": "a", "entry": [{"posture": {"name": "Stand", "speed": 0.5}}]},
+        },
+    }
+    text, said = write_scxml(Machine.from_dict(chart), dotted("tour"))
+    assert {d.message for d in said} == {
+        f"only Lumen understands {what}"
+        for what in ("`phrases`", "`do`", "`heard` in an expression", "`onReload`", "`posture`")
+    }
+    assert read_scxml("tour.scxml", text.encode(), "x") == (chart, [])

@@ -1,0 +1,119 @@
+"""What each part of an XState machine becomes, and what is said of code that lies elsewhere."""
+
+import json
+from typing import Any
+
+from lumen.formats.findings import dotted
+from lumen.formats.xstate import read_xstate, write_xstate
+from lumen.statechart import Machine, initial
+
+
+def read(chart: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """The data, and the line and message of each finding."""
+    data, diagnostics = read_xstate("chart.json", json.dumps(chart, indent=1).encode(), "chart")
+    Machine.from_dict(data)
+    return data, [f"{d.place.line}: {d.message}" for d in diagnostics]
+
+
+def test_a_machine_as_it_is_written_for_xstate() -> None:
+    data, said = read(
+        {
+            "id": "light",
+            "context": {"count": 0},
+            "initial": "green",
+            "states": {
+                "green": {"on": {"TIMER": "yellow", "SELF": {"target": "green"}}, "after": {"1500": "yellow"}},
+                "yellow": {"on": {"*": {"target": "Very red"}, "TIMER": {"target": "#light.Very red.stop"}}},
+                "Very red": {
+                    "id": "red",
+                    "initial": "walk",
+                    "states": {"walk": {"always": "stop"}, "stop": {"type": "final"}},
+                    "onDone": "green",
+                },
+            },
+        }
+    )
+    assert said == []
+    assert data["states"] == {
+        "green": {"on": {"TIMER": "yellow", "SELF": {}}, "after": {"1.5s": "yellow"}},
+        "yellow": {"on": {"TIMER": "#Very_red.stop", "*": "Very_red"}},
+        "Very_red": {
+            "id": "red",
+            "initial": "walk",
+            "onDone": "green",
+            "states": {"walk": {"always": "stop"}, "stop": {"type": "final"}},
+        },
+    }
+
+
+def test_code_that_is_not_in_the_file() -> None:
+    data, said = read(
+        {
+            "id": "m",
+            "states": {
+                "a": {
+                    "entry": ["ring", {"type": "xstate.raise", "event": {"type": "E"}}],
+                    "on": {"E": {"target": "a", "guard": "isOpen", "reenter": True}},
+                    "after": {"soon": "a"},
+                    "invoke": {"src": "fetch"},
+                    "tags": ["busy"],
+                }
+            },
+        }
+    )
+    assert data["context"] == {"isOpen": False}
+    assert data["states"]["a"]["entry"] == [{"log": "ring"}, {"raise": "E"}]
+    assert data["states"]["a"]["on"] == {"E": {"guard": "context.isOpen", "target": "a"}}
+    assert [message.partition(": ")[2] for message in said] == [
+        "the code of the action `ring` is not in the file",
+        "the code of the guard `isOpen` is not in the file",
+        "the code of the delay `soon` is not in the file",
+        "`invoke` of `fetch`: its code is not in the file",
+        "`tags` mean nothing here",
+    ]
+    lines = [int(message.partition(": ")[0]) for message in said]
+    assert lines == sorted(set(lines))
+
+
+def test_order_and_prefixes_survive_xstates_rules() -> None:
+    chart = {
+        "id": "m",
+        "context": {"n": 0},
+        "states": {
+            "a": {
+                "entry": {"raise": "door.open"},
+                "on": {
+                    "*": {"guard": "context.n > 1", "target": "b"},
+                    "door": "b",
+                    "a": {"reenter": True, "target": "a"},
+                },
+            },
+            "b": None,
+        },
+    }
+    config = json.loads(write_xstate(Machine.from_dict(chart), dotted("m"))[0])
+    star = {"target": "b", "guard": {"type": "lumen.expression", "params": {"source": "context.n > 1"}}}
+    assert config["states"]["a"]["on"] == {
+        "door.*": [star, {"target": "b"}],
+        "a": [star, {"target": "a", "reenter": True}],
+        "*": [star],
+    }
+
+
+def test_an_initial_state_deep_inside() -> None:
+    chart = {"id": "m", "initial": "#a.b", "states": {"a": {"initial": "c", "states": {"c": None, "b": None}}}}
+    text, said = write_xstate(Machine.from_dict(chart), dotted("m"))
+    assert [d.message for d in said] == [
+        "XState enters only children at first: `begin`, which is passed through, leads deeper"
+    ]
+    again = Machine.from_dict(read_xstate("m", text.encode(), "m")[0])
+    assert initial(again).snapshot.configuration == {"a", "a.b"}
+
+
+def test_an_invoked_behaviour_is_left_out_and_listed() -> None:
+    invoke = {"behavior": "quiz", "onDone": "b"}
+    quiz = {"states": {"q": {"type": "final"}}}
+    machine = Machine.from_dict({"id": "m", "states": {"a": {"invoke": invoke}, "b": None}}, behaviors={"quiz": quiz})
+    text, said = write_xstate(machine, dotted("m"))
+    assert [d.message for d in said] == ["`invoke` of `quiz` is left out"]
+    assert json.loads(text)["states"] == {"a": {}, "b": {}}
