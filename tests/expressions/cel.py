@@ -1,6 +1,7 @@
 """Google's CEL as an oracle: the same expression there, its value, and where the two differ on purpose."""
 
 from collections.abc import Iterator, Mapping
+from ctypes import py_object, pythonapi
 from math import isfinite
 from typing import Any
 
@@ -27,6 +28,9 @@ from lumen.interpreters.expressions.tree import (
 ENVIRONMENT = cel.NewEnv(
     variables=dict.fromkeys(("context", "event", "state"), cel.Type.DYN), extensions=[ext_strings.ExtStrings()]
 )
+NONE = py_object(None)
+"""cel-expr-python 0.1.3 hands out None without counting it, which ends in a crash after some thousands."""
+
 METHODS = {"contains": "contains", "replace": "replace", "trim": "trim", "matches": "matches", "lower": "lowerAscii"}
 
 Outcome = tuple[Any, ...]
@@ -44,7 +48,12 @@ def by_cel(source: str, scope: Scope) -> Outcome:
     """The outcome in CEL, without the type checker, as lint is for us; RuntimeError where it can't be read."""
     data = {"context": scope.context, "event": scope.event, "state": scope.state}
     result = ENVIRONMENT.compile(source, disable_check=True).eval(data=data)
-    return ("error",) if result.type().name() == "ERROR" else ("value", result.plain_value())
+    if result.type().name() == "ERROR":
+        return ("error",)
+    value = result.plain_value()
+    for _ in (leaf for leaf in leaves(value) if leaf is None):
+        pythonapi.Py_IncRef(NONE)
+    return "value", value
 
 
 def printed(node: Node) -> str:

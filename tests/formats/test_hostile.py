@@ -153,3 +153,22 @@ def build(data: dict[str, Any]) -> None:
 def test_what_is_whole_is_not_complained_of() -> None:
     chart = HEAD + b'<state id="a"><transition event="e" target="b"/></state><final id="b"/></scxml>'
     assert not has_errors(read_scxml("chart", chart, "chart")[1])
+
+
+def test_ten_thousand_states_take_seconds() -> None:
+    """And so do candidates whose order no map can keep, and values that are given to each other in a chain."""
+    order = b'<transition event="e%d.x"/><transition event="e%d"/><transition event="e%d.x"/>'
+    chart = [
+        b'<state id="s%d"><transition event="e" target="s%d"/></state>' % (n, (n + 1) % 10_000) for n in range(10_000)
+    ]
+    data = [b'<data id="x%d" expr="0"/>' % n for n in range(3_000)]
+    chain = [b'<assign location="x%d" expr="x%d"/>' % (n, n + 1) for n in range(2_999)]
+    mixed = [order % (n, n, n) for n in range(3_000)]
+    begun = time.process_time()
+    _, said = read_scxml("chart", HEAD + b"".join(chart) + b"</scxml>", "chart")
+    rest = b"<datamodel>%s</datamodel><state><onentry>%s</onentry>%s</state></scxml>"
+    _, more = read_scxml("chart", HEAD + rest % (b"".join(data), b"".join(chain), b"".join(mixed)), "chart")
+    states = {f"s{n}": {"on": {"e": f"s{(n + 1) % 10_000}"}} for n in range(10_000)}
+    _, last = read_xstate("chart", json.dumps({"states": states}).encode(), "chart")
+    assert [*said, *more, *last] == []
+    assert time.process_time() - begun < 15

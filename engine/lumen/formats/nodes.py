@@ -22,6 +22,12 @@ class Node:
     id: str
     path: str
     children: list["Node"] = field(default_factory=list)
+    keys: set[str] = field(default_factory=set)
+
+    def add(self, child: "Node") -> None:
+        """One more child."""
+        self.children.append(child)
+        self.keys.add(child.key)
 
     @property
     def name(self) -> str:
@@ -65,19 +71,17 @@ def clean_id(text: str) -> str:
 def free_key(parent: Node, wanted: str, id: str, ids: Container[str]) -> str:
     """A key like the one wanted that no other child has, and whose path is not the id of another state."""
     stem = _UNFIT_KEY.sub("_", wanted) or "state"
-    taken = {child.key for child in parent.children}
     number, key = 1, stem
-    while key in taken or (parent.below(key) != id and parent.below(key) in ids):
-        number += 1
+    while key in parent.keys or (parent.below(key) != id and parent.below(key) in ids):
+        number += 1 if number < 100 else len(parent.keys)
         key = f"{stem}_{number}"
     return key
 
 
 def passing_key(home: Node, taken: Container[str]) -> str:
     """A key for a state that is passed through on the way into `home`."""
-    keys = {child.key for child in home.children}
     number, key = 1, "begin"
-    while key in keys or key in taken:
+    while key in home.keys or key in taken:
         number += 1
         key = f"begin_{number}"
     return key

@@ -10,7 +10,7 @@ from lumen.formats.ecmascript.parsing import ScriptError, parse_script
 from lumen.formats.ecmascript.presence import is_data, known, negated
 from lumen.formats.ecmascript.printing import text_of
 from lumen.interpreters.expressions.kinds import BOOLEAN, LIST, MAP, NULL, NUMBER, TEXT
-from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_INT, MIN_INT
+from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_INT, MAX_SOURCE, MIN_INT
 from lumen.interpreters.expressions.tree import (
     Binary,
     Call,
@@ -49,20 +49,24 @@ class Names:
 
 def read_condition(source: str, names: Names) -> str:
     """Our expression, true where ECMAScript's is truthy; raises ScriptError."""
-    return _printed(Reading(names).condition(parse_script(source)))
+    return printed(Reading(names).condition(parse_script(source)))
 
 
 def read_value(source: str, names: Names) -> Node:
     """The tree of our expression with the same value; raises ScriptError."""
     tree = Reading(names).value(parse_script(source))
-    _printed(tree)
+    printed(tree)
     return tree
 
 
-def _printed(tree: Node) -> str:
+def printed(tree: Node) -> str:
+    """The text of one of our trees; raises ScriptError where it is longer or deeper than an expression may be."""
     if any(level > MAX_DEPTH for _, level in walk(tree)):
         raise ScriptError("it has too many levels")
-    return text_of(tree)
+    text = text_of(tree)
+    if len(text) > MAX_SOURCE:
+        raise ScriptError(f"it becomes longer than {MAX_SOURCE:,} characters")
+    return text
 
 
 class Reading:

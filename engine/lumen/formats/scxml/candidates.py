@@ -1,11 +1,13 @@
 """Transitions in document order as our `on`: a map, in which each descriptor stands once."""
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 from lumen.formats.ecmascript.printing import text_of
 from lumen.interpreters.expressions import parse_expression
-from lumen.interpreters.expressions.tree import Binary, Call, Field, Literal, Logic, Name, Node
+from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_SOURCE
+from lumen.interpreters.expressions.tree import Binary, Call, Field, Literal, Logic, Name, Node, walk
 
 Row = dict[str, Any]
 
@@ -20,18 +22,61 @@ def overlap(one: str, other: str) -> bool:
     return "*" in (one, other) or f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
 
 
-def arrange(rows: list[tuple[str, Row]]) -> dict[str, Any]:
+def arrange(rows: list[tuple[str, Row]], leave_out: Callable[[Row], None]) -> dict[str, Any]:
     """`on` for these candidates, tried in this order; a descriptor with one candidate has it without a list.
 
     Where the same descriptor stands before and after one that an event may match as well, all of these become
-    candidates of the most general one, which ask for the event's name.
+    candidates of the most general one, which ask for the event's name. One whose guard becomes too long is left out.
     """
+    heads = _heads({descriptor for descriptor, _ in rows})
+    order, mixed = _Order(), set[str]()
+    for descriptor, _ in rows:
+        if order.passed(descriptor):
+            mixed.add(heads[descriptor])
+        order.add(descriptor)
     table: dict[str, list[Row]] = {}
     for descriptor, row in rows:
-        if descriptor in table and any(overlap(descriptor, later) for later in _after(table, descriptor)):
-            return arrange(_merged(rows, descriptor))
-        table.setdefault(descriptor, []).append(row)
+        head = heads[descriptor] if heads[descriptor] in mixed else descriptor
+        narrowed = _narrowed(descriptor, head, row)
+        if narrowed is None:
+            leave_out(row)
+        else:
+            table.setdefault(head, []).append(narrowed)
     return {descriptor: single(found) for descriptor, found in table.items()}
+
+
+def _heads(descriptors: set[str]) -> dict[str, str]:
+    """For each descriptor the most general one that shares events with it."""
+    return {d: next((general for general in _prefixes(d) if general in descriptors), d) for d in descriptors}
+
+
+class _Order:
+    """Where each descriptor stands, and the last one that lies below each."""
+
+    def __init__(self) -> None:
+        self.place: dict[str, int] = {}
+        self.below: dict[str, int] = {}
+
+    def add(self, descriptor: str) -> None:
+        """Let it stand last, if it does not stand anywhere."""
+        if descriptor not in self.place:
+            place = self.place[descriptor] = len(self.place)
+            for general in _prefixes(descriptor):
+                self.below[general] = place
+
+    def passed(self, descriptor: str) -> bool:
+        """Whether one that an event may match as well stands after it."""
+        place = self.place.get(descriptor, len(self.place))
+        later = [self.place.get(general, -1) for general in _prefixes(descriptor)]
+        return max([self.below.get(descriptor, -1), *later]) > place
+
+
+def _prefixes(descriptor: str) -> list[str]:
+    """All that are more general: `*`, `a` and `a.b` for `a.b.c`."""
+    if descriptor == "*":
+        return []
+    words = descriptor.split(".")
+    return ["*", *(".".join(words[:n]) for n in range(1, len(words)))]
 
 
 def single(rows: list[Row]) -> Any:
@@ -40,21 +85,8 @@ def single(rows: list[Row]) -> Any:
     return shown[0] if len(shown) == 1 else shown
 
 
-def _after(table: dict[str, list[Row]], descriptor: str) -> list[str]:
-    keys = list(table)
-    return keys[keys.index(descriptor) + 1 :]
-
-
-def _merged(rows: list[tuple[str, Row]], descriptor: str) -> list[tuple[str, Row]]:
-    group, size = {descriptor}, 0
-    while len(group) > size:
-        size = len(group)
-        group |= {other for other, _ in rows if any(overlap(other, one) for one in group)}
-    general = min(group, key=lambda name: (name != "*", len(name)))
-    return [(general if name in group else name, _narrowed(name, general, row)) for name, row in rows]
-
-
-def _narrowed(name: str, general: str, row: Row) -> Row:
+def _narrowed(name: str, general: str, row: Row) -> Row | None:
+    """The row as a candidate of the general descriptor, None where its guard can't be that long."""
     if name == general:
         return row
     event = Field(Name("event"), "name")
@@ -64,4 +96,6 @@ def _narrowed(name: str, general: str, row: Row) -> Row:
         guard = parse_expression(row["guard"])
         more = guard.operands if isinstance(guard, Logic) and guard.sign == "&&" else (guard,)
         asked = Logic("&&", (asked, *more))
-    return {"guard": text_of(asked), **{key: value for key, value in row.items() if key != "guard"}}
+    text = text_of(asked)
+    fits = len(text) <= MAX_SOURCE and all(level <= MAX_DEPTH for _, level in walk(asked))
+    return {"guard": text, **{key: value for key, value in row.items() if key != "guard"}} if fits else None

@@ -17,6 +17,9 @@ from lumen.interpreters.expressions.kinds import kind_of
 _UNFIT = re.compile(r"\W+", re.ASCII)
 _NOTHING = object()
 
+ROUNDS = 10
+"""How often kinds are looked at again: after that, whatever is assigned may be of any."""
+
 
 class Context:
     """`first` are the values of our context's keys, `late` those that have to be computed, in order.
@@ -31,11 +34,13 @@ class Context:
         self.late: dict[str, str] = {}
         self.wide: dict[str, dict[str, Any]] = {}
         self.keys: dict[str, str] = {}
+        self.taken: set[str] = set()
         elements = list(_data(outline.top, outline.scxml))
         for element in elements:
             self._declare(element)
         states = frozenset((*outline.by_id, outline.title))
-        self.names = Names(self.keys, {}, states, outline.title)
+        self.kinds: dict[str, str] = {}
+        self.names = Names(self.keys, self.kinds, states, outline.title)
         for element in elements:
             self._value(element)
         self._late_binding(outline, elements)
@@ -45,19 +50,17 @@ class Context:
         id = element.get("id")
         key = wanted = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", id)) or "_"
         number = 1
-        while key in self.keys.values() and id not in self.keys:
-            number += 1
+        while key in self.taken and id not in self.keys:
+            number += 1 if number < 100 else len(self.taken)
             key = f"{wanted}_{number}"
-        self.keys.setdefault(id, key)
+        self.taken.add(self.keys.setdefault(id, key))
 
     def _value(self, element: Element) -> None:
-        key, value = self.keys[element.get("id")], self._first(element)
-        self.first[key] = value
-        self._rename()
-
-    def _rename(self) -> None:
-        kinds = {key: kind_of(value) for key, value in self.first.items() if value is not None and key not in self.wide}
-        self.names = Names(self.keys, kinds, self.names.states, self.names.title)
+        key = self.keys[element.get("id")]
+        self.kinds.pop(key, None)
+        value = self.first[key] = self._first(element)
+        if value is not None:
+            self.kinds[key] = kind_of(value)
 
     def _first(self, element: Element) -> Any:
         id = element.get("id")
@@ -92,14 +95,14 @@ class Context:
     def _widen(self, outline: Outline) -> None:
         """Find the keys that are given values of another kind than their first."""
         assigned = [e for e in outline.scxml.walk() if e.tag == "assign" and e.get("location") in self.keys]
-        while True:
+        for turn in range(ROUNDS):
             before = len(self.wide)
             for element in assigned:
                 key = self.keys[element.get("location")]
-                first = self.first.get(key)
-                if first is not None and key not in self.wide and self._kind(element) != kind_of(first):
+                kept = self.kinds.get(key)
+                if kept is not None and (turn == ROUNDS - 1 or self._kind(element) != kept):
                     self.wide[key] = {}
-                    self._rename()
+                    del self.kinds[key]
             if len(self.wide) == before:
                 return
 

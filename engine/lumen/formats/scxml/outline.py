@@ -42,7 +42,7 @@ class Outline:
             if element.tag not in STATES or not self._fits(element, parent, level):
                 continue
             node = self._node(element, parent)
-            parent.children.append(node)
+            parent.add(node)
             if node.id:
                 self.by_id[element.get("id")] = node
             self._fill(node, level + 1)

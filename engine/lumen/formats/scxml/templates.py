@@ -5,7 +5,7 @@ import re
 from lumen.formats.ecmascript import Names, ScriptError, Vocabulary, parse_script, write_expression
 from lumen.formats.ecmascript.kinds import kind
 from lumen.formats.ecmascript.printing import text_of
-from lumen.formats.ecmascript.reading import Reading
+from lumen.formats.ecmascript.reading import Reading, printed
 from lumen.formats.scxml.elements import Element
 from lumen.interpreters.expressions import split_template
 from lumen.interpreters.expressions.kinds import TEXT
@@ -43,7 +43,7 @@ def _parts(tree: Node, names: Names) -> list[Node]:
 def _piece(node: Node) -> str:
     if isinstance(node, Literal) and isinstance(node.value, str):
         return re.sub(r"\{(?=\{)|\{$", "{{ '{' }}", node.value)
-    return f"{{{{ {text_of(node)} }}}}"
+    return f"{{{{ {printed(node)} }}}}"
 
 
 def expression_of(text: str, vocabulary: Vocabulary) -> tuple[str, tuple[str, ...]]:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from functools import cached_property
 from typing import Any
 
 from lumen.formats.ecmascript import ScriptError
@@ -11,6 +12,7 @@ from lumen.formats.scxml.candidates import Row, arrange, normal, overlap, single
 from lumen.formats.scxml.contents import Contents
 from lumen.formats.scxml.elements import LUMEN, Element
 from lumen.formats.scxml.outline import Outline, regular
+from lumen.language.diagnostics import Place
 
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*")
 
@@ -25,10 +27,12 @@ class Transitions:
         always: list[Row] = []
         after: dict[str, list[Row]] = {}
         rows: list[tuple[str, Row]] = []
+        places: dict[int, Place] = {}
         for element in node.source.of("transition"):
             row = self._row(node, element)
             if row is None:
                 continue
+            places[id(row)] = element.place
             for descriptor in self._descriptors(element):
                 if descriptor in afters:
                     after.setdefault(afters[descriptor], []).append(row)
@@ -37,7 +41,12 @@ class Transitions:
             if not element.get("event"):
                 always += self._eventless(element, row)
         done, rows = self._done(node, rows)
-        data: dict[str, Any] = {"on": arrange(rows)} if rows else {}
+
+        def leave_out(row: Row) -> None:
+            place = places.get(id(row), node.source.place)
+            self.findings.lost(place, "the condition becomes too long", "put it into two")
+
+        data: dict[str, Any] = {"on": arrange(rows, leave_out)} if rows else {}
         if always:
             data["always"] = single(always)
         if after:
@@ -71,16 +80,17 @@ class Transitions:
         for event, key in names.items():
             mine = [row for descriptor, row in rows if descriptor == event]
             rivals = any(d != event and overlap(d, event) for d, _ in rows)
-            longer = any(id.startswith(f"{name}.") for id in self._dones)
-            if mine and not rivals and not (key == "onDone" and kind == "state" and longer):
+            shared = key == "onDone" and kind == "state" and name in self._dones
+            if mine and not rivals and not shared:
                 found[key] = single(mine)
                 rows = [(d, row) for d, row in rows if d != event]
         return found, rows
 
-    @property
+    @cached_property
     def _dones(self) -> set[str]:
-        """The names of all states whose end is an event."""
-        return {node.name for node in self.outline.root.walk() if node.children}
+        """What the names of states begin with whose end is an event: up to each of their dots."""
+        names = (node.name.split(".") for node in self.outline.root.walk() if node.children)
+        return {".".join(words[:n]) for words in names for n in range(1, len(words))}
 
     def _row(self, node: Node, element: Element) -> Row | None:
         row: Row = {}

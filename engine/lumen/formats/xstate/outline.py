@@ -10,12 +10,15 @@ from lumen.language.diagnostics import Path
 
 
 class State(Node):
-    """A state; `source` is its JSON, `original` its key there, `where` its path in the file."""
+    """A state; `source` is its JSON, `original` its key there, `where` its path in the file, `named` its children,
+    `regular` those that can be active."""
 
-    __slots__ = ("original", "where")
+    __slots__ = ("named", "original", "regular", "where")
 
     original: str
     where: Path
+    named: "dict[str, State]"
+    regular: "list[State]"
 
     @property
     def kind(self) -> str:
@@ -24,13 +27,8 @@ class State(Node):
             return str(kind)
         return "compound" if self.regular else "atomic"
 
-    @property
-    def regular(self) -> "list[State]":
-        """The children that can be active."""
-        return [c for c in self.children if isinstance(c, State) and c.source.get("type") != "history"]
-
     def child(self, key: str) -> "State | None":
-        return next((c for c in self.children if isinstance(c, State) and c.original == key), None)
+        return self.named.get(key)
 
 
 class Outline:
@@ -51,7 +49,7 @@ class Outline:
         named = clean_id(id) if isinstance(id, str) else ""
         path = parent.below(key) if parent else ""
         state = State(data, parent, key, "" if named == path else named, path)
-        state.original, state.where = original, where
+        state.original, state.where, state.named, state.regular = original, where, {}, []
         return state
 
     def _fill(self, parent: State, level: int) -> None:
@@ -70,7 +68,10 @@ class Outline:
             else:
                 key = free_key(parent, original, id if isinstance(id, str) else "", self.ids)
                 state = self._state(data, parent, key, original, where)
-                parent.children.append(state)
+                parent.add(state)
+                parent.named[original] = state
+                if data.get("type") != "history":
+                    parent.regular.append(state)
                 if isinstance(id, str):
                     self.by_id[id] = state
                 self._fill(state, level + 1)
@@ -79,6 +80,7 @@ class Outline:
                 self.source.place(parent.where), "a state has a history and no other states", "delete it"
             )
             parent.children.clear()
+            parent.named.clear()
 
     def _states(self, parent: State, level: int) -> Mapping[str, Any]:
         states = parent.source.get("states") or {}
