@@ -1,0 +1,72 @@
+"""What is to be said about each code: what it means, why it matters, an example of what is wrong and of what is right.
+
+Beside this file stands a `CODE.md` for each code: a paragraph that says what, paragraphs that say why, `Wrong:` and
+`Right:` with the same files in both. An example is a fenced block whose info string names its language and its file; in
+a wrong one also the word that lint marks, as in `yaml behaviors/tour.yaml:3:11-15` (line, first column, column after
+the last). The keys at the left edge of an example replace those of a small sound project; all others stay.
+
+Only who explains reads these files: lint itself does not.
+"""
+
+import re
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+_HERE = Path(__file__).parent
+_FENCE = re.compile(
+    r"^```(?P<language>\w+) (?P<file>\S+?)(?::(?P<line>\d+):(?P<first>\d+)-(?P<last>\d+))?(?: (?P<note>.+))?\n"
+    r"(?P<text>.*?)^```$",
+    re.MULTILINE | re.DOTALL,
+)
+
+
+class Mark(NamedTuple):
+    """The word of an example that lint points at; line and columns from 1, the last column exclusive."""
+
+    line: int
+    first: int
+    last: int
+
+
+class Sheet(NamedTuple):
+    """A file of an example. `note` says what text alone can't: `latin-1`, or `folder` in place of the file."""
+
+    file: str
+    language: str
+    text: str
+    mark: Mark | None = None
+    note: str = ""
+
+
+class Page(NamedTuple):
+    """All that is to be said about a code; `what` and `why` are Markdown."""
+
+    code: str
+    what: str
+    why: str
+    wrong: tuple[Sheet, ...]
+    right: tuple[Sheet, ...]
+
+
+@cache
+def page(code: str) -> Page:
+    """The page of a code that `CODES` has."""
+    text = (_HERE / f"{code}.md").read_text(encoding="utf-8")
+    said, _, examples = text.partition("\nWrong:\n")
+    wrong, _, right = examples.partition("\nRight:\n")
+    what, _, why = said.strip().partition("\n\n")
+    return Page(code, what, why.strip(), _sheets(wrong), _sheets(right))
+
+
+def _sheets(text: str) -> tuple[Sheet, ...]:
+    return tuple(
+        Sheet(
+            found["file"],
+            found["language"],
+            found["text"],
+            Mark(*(int(found[key]) for key in ("line", "first", "last"))) if found["line"] else None,
+            found["note"] or "",
+        )
+        for found in _FENCE.finditer(text)
+    )

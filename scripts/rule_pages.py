@@ -1,0 +1,99 @@
+"""Writes docs/rules/ from the pages of the rules: `python scripts/rule_pages.py`.
+
+Each example is laid over a small sound project and linted; what lint says of the wrong ones stands in the docs.
+"""
+
+import re
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from lumen.language.diagnostics import Diagnostic
+from lumen.loading.files import Unreadable, read_files
+from lumen.rules import check_files
+from lumen.rules.codes import CODES, FAMILIES
+from lumen.rules.pages import Page, Sheet, page
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs/rules"
+BASE = ROOT / "tests/lint/pages/base"
+
+_BLOCK = re.compile(r"^(?=[^\s#])", re.MULTILINE)
+
+
+def laid(base: Mapping[str, bytes], sheets: Iterable[Sheet]) -> dict[str, bytes]:
+    """The files of the small project with those of an example laid over them."""
+    files = dict(base)
+    for sheet in sheets:
+        if sheet.note == "folder":
+            files[sheet.file] = Unreadable(b"it is a folder")
+        elif sheet.note == "none":
+            files.pop(sheet.file, None)
+        else:
+            text = sheet.text + _kept(base.get(sheet.file, b"").decode(), sheet)
+            files[sheet.file] = text.encode("latin-1" if sheet.note == "latin-1" else "utf-8")
+    return dict(sorted(files.items()))
+
+
+def _kept(below: str, sheet: Sheet) -> str:
+    """The blocks of a YAML file whose keys an example leaves as they are."""
+    if sheet.language != "yaml" or sheet.note:
+        return ""
+    given = {block.split(":")[0] for block in _BLOCK.split(sheet.text)}
+    return "".join(block for block in _BLOCK.split(below) if block.split(":")[0] not in given)
+
+
+def said(sheets: Iterable[Sheet]) -> list[Diagnostic]:
+    """What lint says of an example."""
+    return list(check_files(BASE, laid(read_files(BASE), sheets))[1])
+
+
+def written() -> dict[str, str]:
+    """The pages of the docs, by file name."""
+    index = "".join(f"\n## [{_title(name)}]({name}.md)\n\n{_list(name)}\n" for name in FAMILIES)
+    pages = {"README.md": f"{_INTRODUCTION}{index}"}
+    for name, codes in FAMILIES.items():
+        pages[f"{name}.md"] = f"# {_title(name)}\n" + "".join(f"\n{_section(page(code))}" for code in codes)
+    return pages
+
+
+_INTRODUCTION = """# What lint finds
+
+Written by `scripts/rule_pages.py` from the text that `lumen explain CODE` prints. [lint.md](../lint.md) tells how to
+read a finding.
+"""
+
+
+def _title(family: str) -> str:
+    return f"Rules: {family}"
+
+
+def _list(family: str) -> str:
+    return "\n".join(f"- [`{code}`]({family}.md#{code}): {CODES[code].summary}" for code in FAMILIES[family])
+
+
+def _section(found: Page) -> str:
+    wrong = "\n".join(_sheet(sheet) for sheet in found.wrong)
+    right = "\n".join(_sheet(sheet) for sheet in found.right)
+    output = "\n".join(str(d) for d in said(found.wrong))
+    return (
+        f"## {found.code}\n\n*{CODES[found.code].severity}.* {found.what}\n\n{found.why}\n\n"
+        f"Wrong:\n\n{wrong}\nLint says:\n\n```text\n{output}\n```\n\nRight:\n\n{right}"
+    )
+
+
+def _sheet(sheet: Sheet) -> str:
+    return f"`{sheet.file}`\n\n```{sheet.language}\n{sheet.text}```\n"
+
+
+def main() -> None:
+    DOCS.mkdir(exist_ok=True)
+    for name, text in written().items():
+        (DOCS / name).write_text(text, encoding="utf-8")
+    for stale in {file.name for file in DOCS.glob("*.md")} - written().keys():
+        (DOCS / stale).unlink()
+    print(f"wrote {len(written())} pages to {DOCS.relative_to(ROOT)}", file=sys.stderr)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()

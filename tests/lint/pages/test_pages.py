@@ -1,0 +1,44 @@
+"""Every code has a page; lint says of its wrong example what the page is about, at the marked word, and of the right one
+nothing; and docs/rules/ is what the pages say."""
+
+import pytest
+
+from lumen.loading.project import read_files
+from lumen.rules import check_files
+from lumen.rules.codes import CODES
+from lumen.rules.pages import _HERE, page
+from scripts.rule_pages import BASE, DOCS, said, written
+
+
+def test_the_project_below_the_examples_is_sound() -> None:
+    assert check_files(BASE, read_files(BASE))[1] == ()
+
+
+def test_every_code_has_a_page_and_every_page_a_code() -> None:
+    assert {file.stem for file in _HERE.glob("*.md")} == CODES.keys()
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_a_wrong_example_has_its_finding_at_the_marked_word_and_the_right_one_none(code: str) -> None:
+    wrong, right = page(code).wrong, page(code).right
+    (marked,) = [sheet for sheet in wrong if sheet.mark]
+    line, first, last = marked.mark or (0, 0, 0)
+    found = [d for d in said(wrong) if d.code == code]
+    assert [d.code for d in said(wrong)] == [code]
+    assert (found[0].place.file, found[0].place.line, found[0].place.column) == (marked.file, line, first)
+    assert found[0].place.end_column == last or found[0].place.end_line > line
+    assert said(right) == []
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_a_page_says_what_and_why_in_few_words(code: str) -> None:
+    found = page(code)
+    assert found.what.endswith(".")
+    assert found.why.endswith(".")
+    assert len(found.what) + len(found.why) < 900
+    assert {sheet.file for sheet in found.wrong} & {sheet.file for sheet in found.right}
+
+
+def test_the_docs_are_what_the_pages_say() -> None:
+    there = {file.name: file.read_text(encoding="utf-8") for file in DOCS.glob("*.md")}
+    assert there == written(), "run `python scripts/rule_pages.py`"
