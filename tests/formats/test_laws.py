@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lumen.formats.document import behavior_yaml
+from lumen.formats.document import document_yaml
 from lumen.formats.findings import dotted
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.xstate import read_xstate, write_xstate
@@ -74,7 +74,7 @@ def test_the_second_time_nothing_changes(format: str, chart: dict[str, Any]) -> 
 @given(chart=charts(), pick=st.sampled_from(sorted(FORMATS)))
 def test_the_yaml_holds_the_same_data(chart: dict[str, Any], pick: str) -> None:
     data = through(Machine.from_dict(chart), pick)
-    document, diagnostics = parse("machine.yaml", behavior_yaml(data).encode())
+    document, diagnostics = parse("machine.yaml", document_yaml(data).encode())
     assert not diagnostics
     assert document is not None
     assert json.dumps(document.data) == json.dumps(data)

@@ -1,52 +1,64 @@
-"""`lumen import`: a statechart of another tool as a behaviour file."""
+"""`lumen import`: a statechart or a motion of another tool as a file of ours."""
 
 import argparse
 import re
 import sys
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import lumen
 from lumen.cli.render import FORMATS
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.formats.document import behavior_yaml
+from lumen.formats.document import document_yaml
 from lumen.formats.findings import ForeignFileError
+from lumen.formats.gestures import ENDINGS, read_gesture
 from lumen.formats.scxml import read_scxml
 from lumen.formats.scxml.elements import MAX_BYTES
 from lumen.formats.xstate import read_xstate
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import Machine
+from lumen.language.robots import Body
 from lumen.loading.behaviors import build_machine
+from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
 from lumen.loading.source import Report, parse
 
 Reader = Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]
 
-READERS: Mapping[str, Reader] = {".scxml": read_scxml, ".xml": read_scxml, ".json": read_xstate}
+CHARTS: Mapping[str, Reader] = {".scxml": read_scxml, ".xml": read_scxml, ".json": read_xstate}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Turn a statechart in SCXML or XState's JSON into a behaviour file. What can't be carried over is listed, with"
-        " its line; then the exit code is 1, and the rest is written all the same."
+        "Turn a statechart (SCXML, XState's JSON) into a behaviour file, or a motion (Webots, Choregraphe, NAOqi's"
+        " Python) into a motion file. What can't be carried over is listed, with its line; then the exit code is 1, and"
+        " the rest is written all the same."
     )
-    parser.add_argument("file", metavar="FILE", type=Path, help="a .scxml file, or the .json of an XState machine")
-    parser.add_argument("-o", "--output", metavar="OUT.yaml", type=Path, help="write it there instead of printing it")
-    parser.add_argument("--format", choices=tuple(FORMATS), default="text", help="of the list (default: text)")
+    add = parser.add_argument
+    add("file", metavar="FILE", type=Path, help="chart.scxml, machine.json, wave.motion, behavior.xar or keyframes.py")
+    add("-o", "--output", metavar="OUT.yaml", type=Path, help="write it there instead of printing it")
+    add("--timeline", metavar="NAME", default="", help="which one of a .xar file that has several")
+    add("--project", metavar="DIR", help="whose robot a motion is for; default: here or above, else the shipped one")
+    add("--format", choices=tuple(FORMATS), default="text", help="of the list (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
     """0 where everything was carried over, 1 where something is left out, 2 where the file can't be read."""
-    content = _content(options.file)
+    content = foreign_content(options.file)
     title = _title(options.output or options.file)
+    body = lumen.load(options.project).body if options.file.suffix.lower() in ENDINGS else None
+    kind = "motion" if body else "behavior"
+    read = partial(_gesture, body, options.timeline) if body else _chart(options.file, content)
     try:
-        data, diagnostics = _reader(options.file, content)(str(options.file), content, title)
+        data, diagnostics = read(str(options.file), content, title)
     except ForeignFileError as error:
-        raise UsageError(_one_line(error.diagnostic)) from None
-    text = behavior_yaml(data)
-    diagnostics += _faults(str(options.output or "the result"), text)
+        raise UsageError(one_line(error.diagnostic)) from None
+    text = document_yaml(data, kind)
+    diagnostics += _faults(str(options.output or "the result"), text, kind, body)
     write_result(text, options.output)
     if diagnostics or options.format != "text":
         files = {str(options.file): content}
@@ -54,10 +66,15 @@ def run(options: argparse.Namespace) -> int:
     return int(has_errors(diagnostics))
 
 
-def _content(path: Path) -> bytes:
+def _gesture(body: Body, timeline: str, file: str, content: bytes, _: str) -> tuple[dict[str, Any], list[Diagnostic]]:
+    return read_gesture(file, content, body, timeline=timeline)
+
+
+def foreign_content(path: Path) -> bytes:
+    """What the file holds; raises UsageError where it can't be read, or is too large to be one of these."""
     try:
         if path.is_file() and path.stat().st_size > MAX_BYTES:
-            raise UsageError(f"{path} is larger than {MAX_BYTES // 1_000_000} MB: too large to be a statechart")
+            raise UsageError(f"{path} is larger than {MAX_BYTES // 1_000_000} MB: too large to be imported")
         return path.read_bytes()
     except OSError as error:
         raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
@@ -67,26 +84,31 @@ def _title(path: Path) -> str:
     return re.sub(r"[\s#*]+", "_", path.stem)
 
 
-def _reader(path: Path, content: bytes) -> Reader:
+def _chart(path: Path, content: bytes) -> Reader:
     """By the file's ending, else by how it begins."""
-    if path.suffix.lower() in READERS:
-        return READERS[path.suffix.lower()]
+    if path.suffix.lower() in CHARTS:
+        return CHARTS[path.suffix.lower()]
     start = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
     if start not in (b"<", b"{"):
-        raise UsageError(f"{path} is neither SCXML nor the JSON of XState")
+        raise UsageError(f"{path} is neither SCXML, the JSON of XState, nor a motion ({', '.join(ENDINGS)})")
     return read_scxml if start == b"<" else read_xstate
 
 
-def _one_line(diagnostic: Diagnostic) -> str:
+def one_line(diagnostic: Diagnostic) -> str:
+    """A finding as the reason why a command can't run."""
     hint = f" ({diagnostic.hint})" if diagnostic.hint else ""
     return f"{diagnostic.place}: {diagnostic.message}{hint}"
 
 
-def _faults(file: str, text: str) -> list[Diagnostic]:
+def _faults(file: str, text: str, kind: str, body: Body | None) -> list[Diagnostic]:
     """What the file would be refused for: nothing, unless we are mistaken."""
     document, found = parse(file, text.encode())
     if document is None:
         return found
     report = Report(document)
-    build_machine(check_schema(document, "behavior", report), report, name="imported", into=Machine)
+    data = check_schema(document, kind, report)
+    if body:
+        build_motion(data, report, name="imported", body=body)
+    else:
+        build_machine(data, report, name="imported", into=Machine)
     return [*found, *report.diagnostics]

@@ -21,7 +21,7 @@ VERBS = {
     "test": "play the stories, and say which of them end badly",
     "play": "show a motion on the simulated robot",
     "graph": "draw a behaviour (Mermaid)",
-    "import": "turn a statechart of another tool into a behaviour file",
+    "import": "turn a statechart or a motion of another tool into a file of ours",
     "export": "write a behaviour as SCXML, for XState, or as a diagram",
 }
 MODULES = {"import": "importing", "export": "exporting"}

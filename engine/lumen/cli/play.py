@@ -1,23 +1,31 @@
 """`lumen play MOTION`: a motion on the simulated robot, from the posture it begins in."""
 
 import argparse
+import sys
 from pathlib import Path
 
 import lumen
 from lumen.cli.cast import SPEEDS, cast
+from lumen.cli.importing import foreign_content, one_line
 from lumen.cli.run import film_path
-from lumen.errors import UsageError
+from lumen.errors import ProjectError, UsageError
+from lumen.formats.findings import ForeignFileError
+from lumen.formats.gestures import ENDINGS, read_gesture
 from lumen.language.commands import Posture
-from lumen.language.diagnostics import did_you_mean
+from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.events import Event
 from lumen.language.motions import Motion
 from lumen.language.projects import Project
+from lumen.loading.motions import build_motion
+from lumen.loading.schema import check_schema
+from lumen.loading.source import Document, Report
 from lumen.ports import Perform, RobotCommand
 from lumen.runtime.exhibition import TICK
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("motion", metavar="MOTION", help="a name in motions/, or a motion file")
+    parser.add_argument("motion", metavar="MOTION", help="a name in motions/, or a file: .yaml, .motion, .xar, .py")
+    parser.add_argument("--timeline", metavar="NAME", default="", help="which one of a .xar file that has several")
     parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
     parser.add_argument("--speed", choices=SPEEDS, default="max", help="simulated time, times real time (default: max)")
     parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="write a film of it (needs OpenGL)")
@@ -25,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     project = lumen.load(options.project)
-    motion = _motion(project, options.motion)
+    motion = _motion(project, options.motion, options.timeline)
     video = film_path(options.video, "simulation")
     player = _Player(project, options.speed, video)
     print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {options.speed} × real time")
@@ -75,8 +83,10 @@ def _reason(event: Event) -> str:
     return "the robot fell" if event.name == "fallen" else str(event.data["reason"])
 
 
-def _motion(project: Project, name: str) -> Motion:
+def _motion(project: Project, name: str, timeline: str) -> Motion:
     path = Path(name)
+    if path.suffix.lower() in ENDINGS:
+        return _foreign(project, path, timeline)
     if path.suffix in (".yaml", ".yml"):
         from lumen.motion import Motion as MotionFile
 
@@ -86,3 +96,18 @@ def _motion(project: Project, name: str) -> Motion:
     if name not in project.motions:
         raise UsageError(f"no motion `{name}`: {did_you_mean(name, project.motions, 'motions/ has')}")
     return project.motions[name]
+
+
+def _foreign(project: Project, path: Path, timeline: str) -> Motion:
+    """The motion in another tool's file; what of it is left out is told."""
+    try:
+        data, diagnostics = read_gesture(str(path), foreign_content(path), project.body, timeline=timeline)
+    except ForeignFileError as error:
+        raise UsageError(one_line(error.diagnostic)) from None
+    for diagnostic in diagnostics:
+        print(diagnostic, file=sys.stderr)
+    report = Report(Document(str(path), data))
+    motion = build_motion(check_schema(report.document, "motion", report), report, name=path.stem, body=project.body)
+    if motion is None or has_errors(report.diagnostics):
+        raise ProjectError(report.diagnostics)
+    return motion

@@ -1,4 +1,4 @@
-"""The data of a behaviour as the text of its file."""
+"""The data of a behaviour, or of a file of another kind, as its text."""
 
 import json
 from collections.abc import Mapping
@@ -9,7 +9,7 @@ from yaml.representer import SafeRepresenter
 
 from lumen.loading.source import resolve
 
-SCHEMA = "# yaml-language-server: $schema=../schemas/behavior.schema.json\n"
+SCHEMA = "# yaml-language-server: $schema=../schemas/{kind}.schema.json\n"
 WIDTH = 90
 """Characters up to which a map or a list stands in one line."""
 
@@ -30,10 +30,10 @@ class _Dumper(yaml.SafeDumper):
         super().increase_indent(flow, False)
 
 
-def behavior_yaml(data: Mapping[str, Any]) -> str:
+def document_yaml(data: Mapping[str, Any], kind: str = "behavior") -> str:
     """The file: states as blocks, transitions and actions in one line where they fit; read again the same data."""
     text: str = yaml.serialize(_state(data), Dumper=_Dumper, width=116, allow_unicode=True)
-    return SCHEMA + text
+    return SCHEMA.format(kind=kind) + text
 
 
 def _state(data: Mapping[str, Any]) -> yaml.Node:

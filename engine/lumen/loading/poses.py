@@ -68,15 +68,15 @@ class PoseReader:
         for joint, sides in (item.get("handles") or {}).items():
             path = (*here, "handles", joint)
             if self._known(joint, path):
-                found[joint] = self._handle(sides, "in", "before", path), self._handle(sides, "out", "after", path)
+                found[joint] = self._handle(joint, sides, "in", path), self._handle(joint, sides, "out", path)
         return found
 
-    def _handle(self, sides: Mapping[str, Any], side: str, word: str, path: Path) -> tuple[float, float]:
+    def _handle(self, joint: str, sides: Mapping[str, Any], side: str, path: Path) -> tuple[float, float]:
         handle = sides.get(side) or {}
-        dt, da = seconds(handle.get(word)), handle.get("angle", 0)
+        dt, da = seconds(handle.get("before" if side == "in" else "after")), handle.get("angle", 0)
         if dt is None or not self.number(da, (*path, side, "angle")):
             return 0.0, 0.0
-        return (-dt if side == "in" else dt), da * self.factor
+        return (-dt if side == "in" else dt), da * (1.0 if joint in self.body.hands else self.factor)
 
     def _posture(self, name: str, path: Path) -> Angles:
         return {joint: (angle, path) for joint, angle in (self.posture(name, path) or {}).items()}

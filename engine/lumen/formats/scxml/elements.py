@@ -50,19 +50,19 @@ class Element:
             yield from child.walk()
 
 
-def parse_xml(file: str, content: bytes) -> Element:
-    """The root element; raises ForeignFileError for what is no XML, or tries to be more than a tree of elements."""
+def parse_xml(file: str, content: bytes, most: int = MAX_ELEMENTS) -> Element:
+    """The root of at most `most` elements; raises ForeignFileError for no XML, or for more than a tree of elements."""
     if len(content) > MAX_BYTES:
         hint = f"at most {MAX_BYTES // 1_000_000} MB are read"
         raise broken(Place(file), "too-large", f"the file has {len(content) / 1e6:.0f} MB", hint)
-    return _Reader(file).read(content)
+    return _Reader(file, most).read(content)
 
 
 class _Reader:
     """Expat's handlers, and the way from the root to the element that is open."""
 
-    def __init__(self, file: str) -> None:
-        self.file = file
+    def __init__(self, file: str, most: int) -> None:
+        self.file, self.most = file, most
         self.parser = expat.ParserCreate(namespace_separator=" ")
         self.open: list[Element] = []
         self.root: Element | None = None
@@ -95,14 +95,14 @@ class _Reader:
         return self.place(self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber)
 
     def refuse(self, *_: object) -> None:
-        hint = "delete the `<!DOCTYPE …>`; SCXML needs none"
+        hint = "delete the `<!DOCTYPE …>`; it is not needed"
         raise broken(self.here, "not-xml", "the file declares a document type or entities, which are not read", hint)
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
         self.count += 1
-        if len(self.open) >= MAX_DEPTH or self.count > MAX_ELEMENTS:
+        if len(self.open) >= MAX_DEPTH or self.count > self.most:
             what = (
-                f"more than {MAX_DEPTH} levels" if len(self.open) >= MAX_DEPTH else f"more than {MAX_ELEMENTS:,} parts"
+                f"more than {MAX_DEPTH} levels" if len(self.open) >= MAX_DEPTH else f"more than {self.most:,} parts"
             )
             raise broken(self.here, "too-large", f"the file is too large to be read: it has {what}")
         known = {_local(key): value for key, value in attributes.items() if not key.startswith(_XML)}

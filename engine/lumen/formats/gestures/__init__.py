@@ -1,0 +1,40 @@
+"""Motions of other tools, as ours."""
+
+from typing import Any
+
+from lumen.formats.findings import Findings, broken
+from lumen.formats.gestures.choregraphe import read_choregraphe
+from lumen.formats.gestures.curves import Curves, MotionWriter
+from lumen.formats.gestures.naoqi import read_naoqi
+from lumen.formats.gestures.webots import read_webots
+from lumen.language.diagnostics import Diagnostic, Place
+from lumen.language.robots import Body
+
+ENDINGS = (".motion", ".xar", ".py")
+
+__all__ = ["ENDINGS", "read_gesture"]
+
+
+def read_gesture(
+    file: str, content: bytes, body: Body, *, timeline: str = ""
+) -> tuple[dict[str, Any], list[Diagnostic]]:
+    """The data of a motion file for that body, and what could not be carried over; by the file's ending.
+
+    Raises ForeignFileError where the file holds no motion.
+    """
+    findings = Findings()
+    curves = _curves(file, content, findings, timeline)
+    data = MotionWriter(body, findings).data(curves, f"From {file.replace(chr(92), '/').rpartition('/')[2]}")
+    if not data["keyframes"]:
+        raise broken(Place(file), "not-a-motion", f"nothing in it moves a joint of {body.name}")
+    return data, findings.diagnostics
+
+
+def _curves(file: str, content: bytes, findings: Findings, timeline: str) -> Curves:
+    if file.lower().endswith(".xar"):
+        return read_choregraphe(file, content, findings, timeline)
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise broken(Place(file), "not-utf8", "the file is not text", "save it as UTF-8") from None
+    return (read_naoqi if file.lower().endswith(".py") else read_webots)(file, text, findings)

@@ -1,0 +1,84 @@
+"""Webots' `.motion` files: a line of joint names, then a pose a line.
+
+Webots' reference manual, "Motion": `#WEBOTS_MOTION,V1.0,JOINT,…`, then `MM:SS:mmm,NAME,ANGLE,…` in [rad], where `*`
+leaves a joint alone.
+"""
+
+import re
+from collections.abc import Iterator
+
+from lumen.formats.findings import Findings, broken
+from lumen.formats.gestures.curves import Curves, Point, number
+from lumen.language.diagnostics import Place
+
+MAGIC = "#WEBOTS_MOTION"
+VERSION = "V1.0"
+
+_TIME = re.compile(r"(\d+):(\d\d?):(\d{1,3})")
+_PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
+
+Cell = tuple[str, Place]
+
+
+def read_webots(file: str, text: str, findings: Findings) -> Curves:
+    """The curves of a motion, joined by lines. Raises ForeignFileError where it is none."""
+    lines = list(_lines(file, text))
+    joints = _joints(file, lines)
+    curves: dict[str, list[Point]] = {joint: [] for joint, _ in joints}
+    renamed = False
+    for cells in lines:
+        time = _time(cells[0][0])
+        if time is None or len(cells) != len(joints) + 2:
+            wanted = "a time like 00:01:500" if time is None else f"a name and {len(joints)} angles"
+            findings.lost(cells[0][1], f"this line can't be read: {wanted} should stand here")
+            continue
+        if not renamed and not _PLAIN_NAME.fullmatch(cells[1][0]):
+            findings.changed(cells[1][1], "poses have names here; a motion of ours has none")
+            renamed = True
+        for (joint, _), (word, place) in zip(joints, cells[2:], strict=True):
+            angle = number(word)
+            if angle is not None:
+                curves[joint].append(Point(time, angle, place, straight=True))
+            elif word != "*":
+                findings.lost(place, f"`{word}` is no angle", "write a number in rad, or * to leave the joint alone")
+    return {joint: points for joint, points in curves.items() if points}
+
+
+def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
+    """The joints, taken off the front of the lines; some tools write their names into the second line."""
+    head = lines.pop(0) if lines else []
+    if not head or head[0][0] != MAGIC:
+        raise broken(Place(file), "not-a-motion", f"this is no motion of Webots: it does not begin with {MAGIC}")
+    if len(head) < 2 or head[1][0] != VERSION:
+        said = head[1][0] if len(head) > 1 else "nothing"
+        raise broken(head[-1][1], "not-a-motion", f"only version {VERSION} is known, and this says {said}")
+    joints = [cell for cell in head[2:] if cell[0]]
+    if not joints and lines and _time(lines[0][0][0]) is None:
+        joints = [cell for cell in lines.pop(0) if cell[0]]
+    names = [name for name, _ in joints]
+    if not joints:
+        raise broken(head[0][1], "not-a-motion", "the first line names no joint")
+    if twice := next((cell for i, cell in enumerate(joints) if cell[0] in names[:i]), None):
+        raise broken(twice[1], "not-a-motion", f"`{twice[0]}` is named twice")
+    return joints
+
+
+def _time(text: str) -> float | None:
+    match = _TIME.fullmatch(text)
+    return int(match[1]) * 60.0 + int(match[2]) + int(match[3].ljust(3, "0")) / 1000.0 if match else None
+
+
+def _lines(file: str, text: str) -> Iterator[list[Cell]]:
+    """The cells of every line that holds something, with their places."""
+    for i, line in enumerate(text.splitlines(), 1):
+        if line.strip():
+            yield list(_cells(file, i, line))
+
+
+def _cells(file: str, row: int, line: str) -> Iterator[Cell]:
+    column = 1
+    for cell in line.split(","):
+        begin = column + len(cell) - len(cell.lstrip())
+        word = cell.strip()
+        yield word, Place(file, row, begin, row, begin + max(len(word), 1))
+        column += len(cell) + 1
