@@ -6,6 +6,7 @@ Each example is laid over a small sound project and linted; what lint says of th
 import re
 import sys
 from collections.abc import Iterable, Mapping
+from functools import cache
 from pathlib import Path
 
 from lumen.language.diagnostics import Diagnostic
@@ -43,7 +44,8 @@ def _kept(below: str, sheet: Sheet) -> str:
     return "".join(block for block in _BLOCK.split(below) if block.split(":")[0] not in given)
 
 
-def said(sheets: Iterable[Sheet]) -> list[Diagnostic]:
+@cache
+def said(sheets: tuple[Sheet, ...]) -> list[Diagnostic]:
     """What lint says of an example."""
     return list(check_files(BASE, laid(read_files(BASE), sheets))[1])
 

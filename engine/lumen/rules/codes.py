@@ -140,7 +140,7 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "bad-stage": Code(ERROR, "the stage does not hold the place where the robot starts"),
     },
     "routes": {
-        "duplicate-route": Code(ERROR, "two routes carry the same key to different events"),
+        "duplicate-route": Code(ERROR, "two routes carry the same key to the same event"),
         "endless-reference": Code(ERROR, "a reference in a message schema leads back to itself"),
         "foreign-reference": Code(ERROR, "a message schema refers to something outside itself"),
         "missing-route": Code(WARNING, "a route is missing that something the behaviour does needs"),

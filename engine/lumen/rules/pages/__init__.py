@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 _HERE = Path(__file__).parent
 _FENCE = re.compile(
-    r"^```(?P<language>\w+) (?P<file>\S+?)(?::(?P<line>\d+):(?P<first>\d+)-(?P<last>\d+))?(?: (?P<note>.+))?\n"
+    r"^```(?P<language>\w+) (?P<file>\S+?)(?::(?P<line>\d+):(?P<first>\d+)-(?P<last>\d+))?(?: (?P<note>[^\n]+))?\n"
     r"(?P<text>.*?)^```$",
     re.MULTILINE | re.DOTALL,
 )
