@@ -1,22 +1,43 @@
 """What every bus promises, asked of each of them."""
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from lumen.bus import BusError, Message, connect
+from lumen.buses.local import Door, LocalBus
 from lumen.ports import Bus
 from tests.waiting import Collector
 
-ADDRESSES = ["memory://", pytest.param("amqp://", marks=pytest.mark.xdist_group("rabbitmq"))]
+KINDS = ["memory", "local", pytest.param("amqp", marks=pytest.mark.xdist_group("rabbitmq"))]
+
+Connect = Callable[[], Bus]
 
 
-@pytest.fixture(params=ADDRESSES)
-def bus(request: pytest.FixtureRequest) -> Iterator[Bus]:
-    url = request.param if request.param == "memory://" else request.getfixturevalue("broker").url
-    bus = connect(url)
+@pytest.fixture(params=KINDS)
+def another(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Connect]:
+    """Makes handles on one bus."""
+    if request.param == "amqp":
+        broker = request.getfixturevalue("broker")
+        yield lambda: connect(broker.url)
+    elif request.param == "memory":
+        first = connect(f"memory://{tmp_path}")
+        yield lambda: connect(f"memory://{tmp_path}")
+        first.close()
+    else:
+        inside = connect("memory://")
+        door = Door(inside, tmp_path)
+        yield lambda: LocalBus(door.address)
+        door.close()
+        inside.close()
+
+
+@pytest.fixture
+def bus(another: Connect) -> Iterator[Bus]:
+    bus = another()
     yield bus
     bus.close()
 
@@ -286,10 +307,8 @@ def test_a_handler_may_close_the_bus(bus: Bus) -> None:
     assert closed.wait(20)
 
 
-def test_two_handles_on_one_bus_hear_each_other(request: pytest.FixtureRequest, bus: Bus) -> None:
-    url = "memory://" if "memory" in request.node.name else request.getfixturevalue("broker").url
-    url = "memory://shared" if url == "memory://" else url
-    one, other = connect(url), connect(url)
+def test_two_handles_on_one_bus_hear_each_other(another: Connect) -> None:
+    one, other = another(), another()
     seen = Collector()
     one.subscribe("lumen.shared", seen)
     other.publish("lumen.shared", "hello")

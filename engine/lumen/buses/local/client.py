@@ -1,0 +1,200 @@
+"""A handle on an exhibition's bus, from another process of the same machine."""
+
+import json
+import logging
+import socket
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from itertools import count
+from typing import Any
+
+from lumen.buses.bodies import check_key, encode
+from lumen.buses.local.addresses import PATIENCE, Address
+from lumen.buses.local.frames import BadFrameError, frame, framed, nonce, proof, proves, unframed
+from lumen.buses.outbox import Outbox, Parcel
+from lumen.errors import BusError
+from lumen.ports import Handler, Message
+
+CLOSING = 5.0
+WAITING = 20_000
+CHUNK = 1 << 16
+GONE = "the exhibition is gone"
+
+_log = logging.getLogger(__name__)
+
+
+class LocalBus:
+    """The bus behind a door; raises BusError where nobody opens it.
+
+    A thread sends, one receives, one runs the handlers. Where a handler is too slow the oldest messages are dropped.
+    When the exhibition ends, `gone` is set and nothing can be published any more.
+    """
+
+    def __init__(self, address: Address) -> None:
+        self.gone = threading.Event()
+        self._wire, self._read = _enter(address)
+        self._outbox, self._closed = Outbox(), False
+        self._handlers: dict[int, Handler] = {}
+        self._answers: dict[int, tuple[threading.Event, list[str]]] = {}
+        self._numbers, self._marked = count(), threading.Event()
+        self._arrived: deque[tuple[Handler, int, Message]] = deque(maxlen=WAITING)
+        self._arriving = threading.Condition()
+        self._threads = [
+            threading.Thread(target=work, name=f"lumen-local-{name}", daemon=True)
+            for name, work in (("out", self._send), ("in", self._receive), ("handlers", self._handle))
+        ]
+        for thread in self._threads:
+            thread.start()
+
+    def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
+        if self._closed:
+            raise BusError("the bus is closed: nobody can subscribe any more")
+        check_key(pattern)
+        number = next(self._numbers)
+        answered, reason = self._answers[number] = (threading.Event(), [])
+        self._handlers[number] = handler
+        self._put(frame("subscribe", number, pattern))
+        if not answered.wait(PATIENCE) or reason != [""]:
+            del self._handlers[number]
+            raise BusError(reason[0] if reason else f"the exhibition does not let us read `{pattern}`")
+
+        def undo() -> None:
+            if self._handlers.pop(number, None) and not self._closed:
+                self._put(frame("unsubscribe", number))
+
+        return undo
+
+    def publish(
+        self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
+    ) -> None:
+        if self._closed:
+            raise BusError("the bus is closed: nothing can be published any more")
+        for name in (key, reply_to, correlation_id):
+            check_key(name)
+        if self.gone.is_set():
+            raise BusError(GONE)
+        self._put(framed(["publish", key, reply_to, correlation_id, ttl], encode(body)))
+
+    def reply(self, message: Message, body: Any) -> None:
+        if message.reply_to:
+            self.publish(message.reply_to, body, correlation_id=message.correlation_id)
+
+    def close(self) -> None:
+        """Deliver what was published, to our own subscribers too, within 5 s, and end."""
+        if self._closed:
+            return
+        deadline = time.monotonic() + CLOSING
+        inside = threading.current_thread() is self._threads[2]
+        if not self.gone.is_set() and not inside:
+            self._put(frame("mark"))
+            self._marked.wait(CLOSING)
+        self._closed = True
+        self._outbox.emptied(max(0.0, deadline - time.monotonic()))
+        self._end()
+        for thread in self._threads:
+            if thread is not threading.current_thread():
+                thread.join(max(0.0, deadline - time.monotonic()))
+        self._wire.close()
+
+    def _end(self) -> None:
+        self.gone.set()
+        with suppress(OSError):
+            self._wire.shutdown(socket.SHUT_RDWR)
+        for answered, _ in list(self._answers.values()):
+            answered.set()
+        self._marked.set()
+        self._outbox.wake()
+        with self._arriving:
+            self._arriving.notify_all()
+
+    def _put(self, data: bytes) -> None:
+        self._outbox.put(Parcel("", "", data, ""))
+
+    def _send(self) -> None:
+        try:
+            while not self.gone.is_set():
+                for parcel in self._outbox.take(100, 0.5):
+                    self._wire.sendall(parcel.body)
+        except OSError:
+            self._end()
+
+    def _receive(self) -> None:
+        try:
+            while True:
+                for words in unframed(self._read):
+                    self._take(words)
+                data = self._wire.recv(CHUNK)
+                if not data:
+                    break
+                self._read += data
+        except (OSError, BadFrameError) as error:
+            if not self._closed:
+                _log.debug("the door was closed: %r", error)
+        self._end()
+
+    def _take(self, words: list[Any]) -> None:
+        match words:
+            case ["message", number, key, reply_to, correlation_id, body] if handler := self._handlers.get(number):
+                with self._arriving:
+                    self._arrived.append((handler, number, Message(key, body, reply_to, correlation_id)))
+                    self._arriving.notify()
+            case ["subscribed", number, reason] if waiting := self._answers.pop(number, None):
+                waiting[1].append(reason)
+                waiting[0].set()
+            case ["refused", key, reason]:
+                _log.warning("the exhibition refuses a message on `%s`: %s", key, reason)
+            case ["marked"]:
+                with self._arriving:
+                    self._arrived.append((lambda _: self._marked.set(), -1, Message("", None)))
+                    self._arriving.notify()
+
+    def _handle(self) -> None:
+        while True:
+            with self._arriving:
+                self._arriving.wait_for(lambda: self._arrived or self.gone.is_set())
+                if not self._arrived:
+                    return
+                handler, number, message = self._arrived.popleft()
+            if number >= 0 and (number not in self._handlers or self._closed):
+                continue
+            try:
+                handler(message)
+            except Exception:
+                _log.exception("a subscriber failed on `%s`", message.key)
+
+
+def _enter(address: Address) -> tuple[socket.socket, bytearray]:
+    """A connection on which both sides have proved that they know the key, and what else has come on it."""
+    buffer = bytearray()
+    try:
+        wire = address.connect()
+    except OSError as error:
+        raise BusError(f"nobody opens: {error.strerror or error}") from None
+    try:
+        asked = nonce()
+        match _next(wire, buffer):
+            case ["prove", str(question)]:
+                wire.sendall(frame("proof", proof(address.key, "guest", question), asked))
+            case _:
+                raise BadFrameError("it does not ask who we are")
+        match _next(wire, buffer):
+            case ["proof", given] if proves(given, address.key, "door", asked):
+                wire.settimeout(None)
+                return wire, buffer
+        raise BadFrameError("it does not know the key")
+    except (OSError, BadFrameError, json.JSONDecodeError) as error:
+        wire.close()
+        raise BusError(f"what listens there is not the exhibition: {error}") from None
+
+
+def _next(wire: socket.socket, buffer: bytearray) -> list[Any]:
+    while True:
+        for words in unframed(buffer):
+            return words
+        data = wire.recv(CHUNK)
+        if not data:
+            raise BadFrameError("it closed the connection")
+        buffer += data
