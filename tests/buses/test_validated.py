@@ -11,7 +11,7 @@ from jsonschema import Draft202012Validator
 
 from lumen.bus import BusError, connect
 from lumen.buses.checking import SchemaCheck
-from lumen.buses.quick import quick
+from lumen.loading.quick import quick
 from tests.exhibits import messages, project
 from tests.waiting import Collector
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from lumen.buses.quick import Quick, quick
 from lumen.language.projects import Project
+from lumen.loading.quick import Quick, quick
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator

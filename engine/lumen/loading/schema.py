@@ -10,6 +10,7 @@ from lumen.language.diagnostics import Path
 from lumen.loading.complaints import Complaint, complaints
 from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
+from lumen.loading.quick import Quick, quick
 from lumen.loading.source import Document, Report
 
 if TYPE_CHECKING:
@@ -29,11 +30,12 @@ def check_schema(document: Document, kind: str, report: Report) -> Any:
     report's document becomes the pruned one, so that paths into the returned data have the right places; its `lost`
     names stand in what was taken out.
     """
-    validator = _validator(kind)
     said: set[Path] = set()
     for _ in range(ROUNDS):
         try:
-            found = list(_complaints(validator, report.document.data))
+            if _quick(kind)(report.document.data):
+                return report.document.data
+            found = list(_complaints(_validator(kind), report.document.data))
         except RecursionError:
             report("too-large", (), "the file is nested too deeply to be read", hint="use fewer levels")
             return None
@@ -57,6 +59,8 @@ def load_schema(kind: str) -> Any:
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:
     """What is wrong with data by a schema that is sound itself."""
+    if _fits(quick(schema), data):
+        return []
     from jsonschema import Draft202012Validator
 
     return _followed(Draft202012Validator(schema), data)
@@ -64,7 +68,7 @@ def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:
 
 def schema_faults(schema: Any) -> list[Complaint]:
     """What is wrong with a JSON Schema itself."""
-    return _followed(_validator("message"), schema)
+    return [] if _fits(_quick("message"), schema) else _followed(_validator("message"), schema)
 
 
 def _followed(validator: "Draft202012Validator", data: Any) -> list[Complaint]:
@@ -74,9 +78,21 @@ def _followed(validator: "Draft202012Validator", data: Any) -> list[Complaint]:
         return [Complaint("too-large", (), "this is nested too deeply to be read", "use fewer levels", (), ())]
 
 
+def _fits(fits: Quick, data: Any) -> bool:
+    try:
+        return fits(data)
+    except RecursionError:
+        return False
+
+
+@cache
+def _quick(kind: str) -> Quick:
+    return quick(load_schema(kind))
+
+
 @cache
 def _validator(kind: str) -> "Draft202012Validator":
-    from jsonschema import Draft202012Validator  # takes 0.1 s: only where something is loaded
+    from jsonschema import Draft202012Validator  # takes 0.1 s: only where something is wrong
 
     return Draft202012Validator(load_schema(kind))
 

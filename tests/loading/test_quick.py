@@ -1,0 +1,123 @@
+"""A quick yes is never wrong, and the shipped files get one: jsonschema is not even imported for them."""
+
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
+
+from lumen.loading.files import read_files
+from lumen.loading.quick import quick
+from lumen.loading.schema import KINDS, load_schema
+from lumen.loading.source import Document, parse
+
+SHIPPED = read_files(Path(__file__).parents[2])
+FOLDERS = {
+    "lumen.yaml": "lumen", "behaviors/tour": "behavior", "behaviors/stories/": "story", "fuzzy/": "controller",
+    "motions/": "motion", "models/": "body", "schemas/messages/": "message",
+}  # fmt: skip
+
+
+def documents() -> list[tuple[str, Document]]:
+    found = []
+    for file, content in SHIPPED.items():
+        kind = next(kind for start, kind in FOLDERS.items() if file.startswith(start))
+        document = None if file.endswith(".xml") else parse(file, content)[0]
+        if document:
+            found.append((kind, document))
+    return found
+
+
+DOCUMENTS = documents()
+QUICK = {kind: quick(load_schema(kind)) for kind in KINDS}
+VALIDATORS = {kind: Draft202012Validator(load_schema(kind)) for kind in KINDS}
+SMALL = [(kind, document) for kind, document in DOCUMENTS if len(document.spans) < 200]
+VALUES = [
+    None,
+    True,
+    0,
+    -1,
+    1.5,
+    1e400,
+    float("nan"),
+    "",
+    "x",
+    "2s",
+    [],
+    {},
+    [1, 2],
+    ["a", "a"],
+    {"a": 1},
+    {"if": "true"},
+]
+
+
+@pytest.mark.parametrize(("kind", "document"), [pytest.param(*d, id=d[1].file) for d in DOCUMENTS])
+def test_every_shipped_file_gets_a_quick_yes(kind: str, document: Document) -> None:
+    assert QUICK[kind](document.data)
+
+
+@settings(max_examples=250)
+@given(st.sampled_from(SMALL), st.randoms(use_true_random=False))
+def test_a_quick_yes_is_never_wrong(chosen: tuple[str, Document], random: Random) -> None:
+    """A file of which something was taken away, added, or put in another's place."""
+    kind, document = chosen
+    data = _copy(document.data)
+    for _ in range(random.choice([1, 1, 2])):
+        _change(data, random)
+    assert not QUICK[kind](data) or VALIDATORS[kind].is_valid(data)
+
+
+@pytest.mark.parametrize(
+    ("schema", "fits", "fails"),
+    [
+        ({"patternProperties": {"^x": {"type": "string"}}, "additionalProperties": False}, {"xa": "b"}, {"a": "b"}),
+        ({"prefixItems": [{"type": "number"}], "items": False}, [1], [1, 2]),
+        ({"if": {"type": "string"}, "then": {"enum": ["a"]}, "else": {"minimum": 2}}, 3, "b"),
+        ({"if": {"minimum": 2}, "then": {"maximum": 3}, "else": {"maximum": 1}}, 2, 1.5),
+        ({"anyOf": [{"type": "string"}, {"type": "null"}]}, None, 1),
+        ({"const": 1}, 1, True),
+        ({"uniqueItems": True}, ["a", "b"], ["a", "a"]),
+        ({"dependentRequired": {"a": ["b"]}}, {"b": 1}, {"a": 1}),
+        ({"propertyNames": {"maxLength": 1}}, {"a": 1}, {"ab": 1}),
+        ({"$ref": "#/$defs/tree", "$defs": {"tree": {"items": {"$ref": "#/$defs/tree"}, "type": "array"}}}, [[]], [1]),
+    ],
+)
+def test_keywords(schema: dict[str, Any], fits: Any, fails: Any) -> None:
+    assert quick(schema)(fits)
+    assert Draft202012Validator(schema).is_valid(fits)
+    assert not quick(schema)(fails)
+    assert not Draft202012Validator(schema).is_valid(fails)
+
+
+@pytest.mark.parametrize(
+    "schema", [{"oneOf": [True]}, {"not": {"type": "null"}}, {"$ref": "#"}, {"$ref": "other"}, {"format": "x"}, False]
+)
+def test_nobody_knows(schema: Any) -> None:
+    assert not quick(schema)(1)
+
+
+def _copy(data: Any) -> Any:
+    if isinstance(data, dict):
+        return {key: _copy(value) for key, value in data.items()}
+    return [_copy(value) for value in data] if isinstance(data, list) else data
+
+
+def _change(data: Any, random: Random) -> None:
+    node, inner = data, data
+    while isinstance(inner, dict | list) and inner and random.random() < 0.9:
+        node = inner
+        inner = node[random.choice(list(node) if isinstance(node, dict) else range(len(node)))]
+    value = random.choice([*VALUES, inner])
+    if isinstance(node, list):
+        node.insert(random.randrange(len(node) + 1), value)
+    elif node and random.random() < 0.7:
+        key = random.choice(list(node))
+        node[key] = value
+        if random.random() < 0.3:
+            del node[key]
+    else:
+        node[random.choice(["x", "at", "id", *node])] = value
