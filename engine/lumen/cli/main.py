@@ -18,6 +18,7 @@ VERBS = {
     "new": "start a project of your own",
     "run": "run an exhibition",
     "lint": "say what is wrong in a project, and where",
+    "explain": "say what a code of lint means, and show an example",
     "test": "play the stories, and say which of them end badly",
     "play": "show a motion on the simulated robot",
     "graph": "draw a behaviour (Mermaid)",

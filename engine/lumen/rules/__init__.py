@@ -21,6 +21,7 @@ from lumen.rules import (
     statecharts,
     stories,
 )
+from lumen.rules.ignores import obey
 
 FAMILIES = (
     schemas,
@@ -64,6 +65,6 @@ def check_files(root: Path, files: Mapping[str, bytes]) -> tuple[Project | None,
     found = draft(files)
     for family in FAMILIES:
         family.check(found)
-    diagnostics = tuple(found.diagnostics)
+    diagnostics = obey(found.diagnostics, {file: report.document for file, report in found.reports.items()})
     project = None if has_errors(diagnostics) else assemble(found, str(root.absolute()))
     return project, diagnostics

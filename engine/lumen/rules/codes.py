@@ -147,6 +147,12 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "route-key": Code(ERROR, "a routing key has a form that no message could have"),
         "unused-route": Code(WARNING, "the messages of a route become an event that nothing waits for"),
     },
+    "comments": {
+        "ignore-without-reason": Code(WARNING, "an ignore comment does not say why"),
+        "ignored-error": Code(WARNING, "an ignore comment names a code that is an error"),
+        "unknown-code": Code(WARNING, "an ignore comment names a code that does not exist, or none"),
+        "unused-ignore": Code(WARNING, "an ignore comment hides nothing"),
+    },
 }
 """The codes of each family, in the order in which they are listed."""
 

@@ -1,13 +1,15 @@
-"""Every code has a page; lint says of its wrong example what the page is about, at the marked word, and of the right one
-nothing; and docs/rules/ is what the pages say."""
+"""Every code has a page; docs/rules/ is what the pages say.
+
+Lint finds in a wrong example what its page is about, at the marked word and nothing else, and nothing in a right one.
+"""
 
 import pytest
+from scripts.rule_pages import BASE, DOCS, said, written
 
 from lumen.loading.project import read_files
 from lumen.rules import check_files
 from lumen.rules.codes import CODES
 from lumen.rules.pages import _HERE, page
-from scripts.rule_pages import BASE, DOCS, said, written
 
 
 def test_the_project_below_the_examples_is_sound() -> None:

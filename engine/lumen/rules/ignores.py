@@ -1,0 +1,116 @@
+"""Findings that somebody has looked at and wants no more: `# lumen: ignore[CODE] reason` in the YAML.
+
+At the end of a line the comment is about that line; on a line of its own about the next one that holds something. Only
+warnings can be ignored: what is an error keeps the exhibition from starting, whoever looks away.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from lumen.language.diagnostics import Diagnostic, Path, Place, Severity, did_you_mean, has_errors
+from lumen.loading.source import Document
+from lumen.rules.codes import CODES
+
+_COMMENT = re.compile(r"(?<!\S)#[ \t]*lumen:[ \t]*ignore\b[ \t]*(?:\[(?P<codes>[^\]]*)\])?[ \t]*(?P<reason>.*)")
+_WORD = re.compile(r"[^,\s]+")
+_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
+
+
+class Ignore(NamedTuple):
+    """A comment: its place, the line that it is about, the codes and where each stands, and the reason."""
+
+    place: Place
+    line: int
+    codes: tuple[tuple[str, Place], ...]
+    reason: str
+
+
+def obey(diagnostics: Iterable[Diagnostic], documents: Mapping[str, Document]) -> tuple[Diagnostic, ...]:
+    """The findings without those that are ignored, and what is wrong with the comments, by file and line."""
+    found = list(diagnostics)
+    comments = [c for d in documents.values() if "ignore" in d.text for c in comments_of(d)]
+    if not comments:
+        return tuple(found)
+    by_line = {(c.place.file, c.line, code) for c in comments for code, _ in c.codes}
+    hidden = [d for d in found if d.severity is not Severity.ERROR and _spot(d) in by_line]
+    gone = {_spot(d) for d in hidden}
+    said = [*(d for d in found if d not in hidden)]
+    said += [f for c in comments for f in _faults(c, gone, whole=not has_errors(found))]
+    return tuple(sorted(said, key=lambda d: (d.place, d.code, d.message)))
+
+
+def comments_of(document: Document) -> Iterator[Ignore]:
+    """The comments of a document; what looks like one inside a text is none."""
+    lines = _BREAK.split(document.text)
+    for number, line in enumerate(lines, 1):
+        if (match := _COMMENT.search(line)) and not _in_text(document, number, match.start() + 1):
+            place = Place(document.file, number, match.start() + 1, number, len(line.rstrip()) + 1)
+            yield Ignore(place, _about(lines, number, match.start()), _codes(place, match), match["reason"].strip())
+
+
+def _about(lines: list[str], number: int, column: int) -> int:
+    if lines[number - 1][:column].strip():
+        return number
+    rest = enumerate(lines[number:], number + 1)
+    return next((n for n, line in rest if line.strip() and not line.lstrip().startswith("#")), number)
+
+
+def _codes(place: Place, match: re.Match[str]) -> tuple[tuple[str, Place], ...]:
+    start = match.start("codes") + 1
+    return tuple(
+        (word[0], place._replace(column=start + word.start(), end_column=start + word.end()))
+        for word in _WORD.finditer(match["codes"] or "")
+    )
+
+
+def _in_text(document: Document, line: int, column: int) -> bool:
+    """Whether a place lies inside a key, or inside a value that is a text; a map goes on behind the comments in it."""
+    here = (line, column)
+    return any(
+        _holds(span.key, here) or (_holds(span.value, here) and isinstance(_value(document, path), str))
+        for path, span in document.spans.items()
+    )
+
+
+def _holds(place: Place | None, here: tuple[int, int]) -> bool:
+    return place is not None and (place.line, place.column) < here < (place.end_line, place.end_column)
+
+
+def _value(document: Document, path: Path) -> Any:
+    node = document.data
+    for step in path:
+        try:
+            node = node[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return node
+
+
+def _spot(diagnostic: Diagnostic) -> tuple[str, int, str]:
+    return diagnostic.place.file, diagnostic.place.line, diagnostic.code
+
+
+def _faults(comment: Ignore, gone: set[tuple[str, int, str]], *, whole: bool) -> Iterator[Diagnostic]:
+    """What is wrong with a comment; what it does not hide can be told where the whole project was looked at."""
+    if not comment.codes:
+        yield _fault("unknown-code", comment.place, "this does not say what to ignore", "write `ignore[CODE] reason`")
+    elif not comment.reason:
+        hint = "write it behind the bracket, for whoever reads this next year"
+        yield _fault("ignore-without-reason", comment.place, "this does not say why", hint)
+    for code, place in comment.codes:
+        if code not in CODES:
+            hint = did_you_mean(code, CODES)
+            hint = hint if hint.startswith("did") else "`lumen explain` lists them all"
+            yield _fault("unknown-code", place, f"there is no code `{code}`", hint)
+        elif (comment.place.file, comment.line, code) in gone:
+            continue
+        elif CODES[code].severity is Severity.ERROR:
+            hint = "repair what it is about, and delete this"
+            yield _fault("ignored-error", place, f"`{code}` is an error, which can't be ignored", hint)
+        elif whole:
+            yield _fault("unused-ignore", place, f"there is no `{code}` here to ignore", "delete this")
+
+
+def _fault(code: str, place: Place, message: str, hint: str) -> Diagnostic:
+    return Diagnostic(code, message, place, hint, CODES[code].severity)

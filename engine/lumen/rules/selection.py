@@ -1,0 +1,33 @@
+"""Which codes are meant by the words that people write: a code, its first words, or a family."""
+
+from collections.abc import Iterable
+
+from lumen.errors import UsageError
+from lumen.language.diagnostics import did_you_mean
+from lumen.rules.codes import CODES, FAMILIES
+
+
+def selected(words: Iterable[str]) -> frozenset[str]:
+    """The codes that these words stand for; each may be several with commas between them.
+
+    `unknown` is every code that begins with `unknown-`. Raises UsageError for a word that stands for nothing.
+    """
+    return frozenset(
+        code for text in words for word in text.split(",") if word.strip() for code in _codes(word.strip())
+    )
+
+
+def _codes(word: str) -> Iterable[str]:
+    if word in CODES:
+        return (word,)
+    if word in FAMILIES:
+        return FAMILIES[word]
+    if found := [code for code in CODES if code.startswith(f"{word.rstrip('-')}-")]:
+        return found
+    raise UsageError(unknown_code(word))
+
+
+def unknown_code(word: str) -> str:
+    """What to say of a word that is no code."""
+    hint = did_you_mean(word, [*CODES, *FAMILIES])
+    return f"no code `{word}`: {hint if hint.startswith('did') else '`lumen explain` lists them all'}"
