@@ -47,6 +47,7 @@ def test_an_error_with_its_excerpt(project: Path, capsys: pytest.CaptureFixture[
         " 28 |     onError: idel",
         "    |              ^^^^",
         "    = did you mean `idle`?",
+        "  behaviors/tour.yaml:14:3 `idle` stands here",
         "",
         "1 error in 10 files",
     ]

@@ -1,10 +1,13 @@
 """What is wrong in somebody's file, where, and what would be right."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from enum import StrEnum
 from typing import Any, NamedTuple, Protocol
+
+MAX_RELATED = 5
+"""How many places of one cause are shown beside the first."""
 
 Path = tuple[str | int, ...]
 """Where something stands in a document: keys and indices from its root, as in `("states", "idle", "on", 0)`."""
@@ -46,7 +49,10 @@ class Related(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding: a stable code, a message in the user's words, the place, and a hint at what would be right."""
+    """One finding: a stable code, a message in the user's words, the place, and a hint at what would be right.
+
+    `cause` names the one mistake that several findings come from, where there can be several: see `gathered`.
+    """
 
     code: str
     message: str
@@ -54,6 +60,7 @@ class Diagnostic:
     hint: str = ""
     severity: Severity = Severity.ERROR
     related: tuple[Related, ...] = ()
+    cause: str = field(default="", compare=False, repr=False)
 
     def __str__(self) -> str:
         hint = f" ({self.hint})" if self.hint else ""
@@ -83,14 +90,45 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
     return any(d.severity is Severity.ERROR for d in diagnostics)
 
 
+def gathered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """The findings sorted by file and line; of those with the same cause only the first, the others related to it.
+
+    A story tells of what a behaviour has: what is wrong in both is wrong in the behaviour.
+    """
+    found: dict[str, list[Diagnostic]] = {}
+    for diagnostic in dict.fromkeys(diagnostics):
+        found.setdefault(diagnostic.cause or f"{len(found)}:", []).append(diagnostic)
+    return sorted(map(_joined, found.values()), key=_order)
+
+
+def _order(diagnostic: Diagnostic) -> tuple[Place, str, str]:
+    return diagnostic.place, diagnostic.code, diagnostic.message
+
+
+def _joined(findings: list[Diagnostic]) -> Diagnostic:
+    """The first of these, the others as places related to it; those beyond MAX_RELATED are counted."""
+    if len(findings) == 1:
+        return findings[0]
+    first, *others = sorted(findings, key=lambda d: ("/stories/" in d.place.file, _order(d)))
+    shown = [Related(d.place, d.message if d.message != first.message else "and here") for d in others[:MAX_RELATED]]
+    if left := len(others) - len(shown):
+        shown[-1] = Related(shown[-1].place, f"and here, and in {left} more")
+    return replace(first, related=(*first.related, *shown))
+
+
+def nearest(word: object, candidates: Iterable[str]) -> str:
+    """The candidate that was probably meant, empty where none is near."""
+    lowered = {name.lower(): name for name in sorted(set(candidates))}
+    return next((lowered[m] for m in get_close_matches(str(word).lower(), lowered, n=1, cutoff=0.6)), "")
+
+
 def did_you_mean(word: object, candidates: Iterable[str], what: str = "") -> str:
-    """The hint for an unknown name: the nearest candidate, else the list of all (`what`: "motions/ has")."""
+    """The hint for an unknown name: the nearest candidate, then the list of all (`what`: "motions/ has")."""
     names: Sequence[str] = sorted(set(candidates))
-    lowered = {name.lower(): name for name in names}
-    near = [lowered[m] for m in get_close_matches(str(word).lower(), lowered, n=1, cutoff=0.6)]
+    near = nearest(word, names)
+    shown = ", ".join(f"`{n}`" for n in names[:8]) + (", …" if len(names) > 8 else "")
     if near:
-        return f"did you mean `{near[0]}`?"
+        return f"did you mean `{near}`?" + (f" {what} {shown}" if what and len(names) > 1 else "")
     if not names:
         return f"{what} nothing".strip() if what else ""
-    shown = ", ".join(f"`{n}`" for n in names[:8]) + (", …" if len(names) > 8 else "")
     return f"{what or 'known are'} {shown}"

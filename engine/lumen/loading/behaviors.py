@@ -96,7 +96,7 @@ class _Builder:
         if "initial" in entry.data:
             rows = entry.data["initial"]
             body = [_child(text) for text in rows] if isinstance(rows, list) else _child(rows)
-            if found := self.within(entry, entry, body, where):
+            if found := self.within(entry, entry, body, where, rows):
                 return tuple(state.path for state in found)
         return _children(entry)[:1]
 
@@ -114,9 +114,9 @@ class _Builder:
         begin = _children(parent) if parent.kind is Kind.PARALLEL else self.initial(parent)
         return begin if entry.path not in begin else _children(parent)[:1]
 
-    def within(self, home: Entry, source: Entry, body: Any, where: Path) -> list[Entry]:
+    def within(self, home: Entry, source: Entry, body: Any, where: Path, written: Any = None) -> list[Entry]:
         """The states named, all of them below `home`; none (and reported) where one is wrong."""
-        found = self.transitions.targets(source, body, where) or []
+        found = self.transitions.targets(source, body, where, written) or []
         for state in found:
             if state is home or not state.lies_in(home):
                 hint = did_you_mean(state.path, home.children, "it has")

@@ -72,12 +72,15 @@ class _Builder:
             return True
         if name not in self.data["joints"]:
             hint = did_you_mean(name, self.joints, "the joints are")
-            self.report("unknown-joint", path, f"`{name}` is not a joint of this robot", hint=hint)
+            self.report(
+                "unknown-joint", path, f"`{name}` is not a joint of this robot", hint=hint, cause=f"joint {name}"
+            )
         return False
 
     def parts(self) -> dict[str, tuple[str, ...]]:
         parts, owner = {}, dict[str, str]()
-        whole = "parts" in self.data and not any(path[0] == "parts" for path in self.report.pruned)
+        named = [name for names in (self.data.get("parts") or {}).values() for name in names]
+        whole = "parts" in self.data and not self.report.broken(("parts",)) and set(named) <= self.data["joints"].keys()
         for part, names in (self.data.get("parts") or {}).items():
             for i, name in enumerate(names):
                 if self.known(name, ("parts", part, i)) and owner.setdefault(name, part) != part:
@@ -121,7 +124,8 @@ class _Builder:
         path: Path = ("postures", posture)
         for name in spec:
             self.known(name, (*path, name))
-        if missing := [n for n in self.joints if n not in spec]:
+        missing = [n for n in self.joints if n not in spec]
+        if missing and not self.report.broken(path) and spec.keys() <= self.data["joints"].keys():
             names = ", ".join(f"`{n}`" for n in missing)
             hint = "a posture holds every joint"
             self.report("incomplete-posture", path, f"`{posture}` says nothing of {names}", hint=hint, key=True)

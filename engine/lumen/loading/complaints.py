@@ -5,10 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import Path, did_you_mean, nearest
 from lumen.loading.wording import Error, describe, node, wording
-
-_MEANT = "did you mean `"
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,12 +77,13 @@ def _unknown_keys(error: Error, path: Path, root: Any) -> Iterator[Complaint]:
     for key in error.instance:
         if key in known or any(re.search(pattern, key) for pattern in patterns):
             continue
-        hint = did_you_mean(key, [k for k in known if k not in error.instance] or known, "allowed here:")
+        free = [k for k in known if k not in error.instance] or known
+        meant = nearest(key, free)
+        hint = f"did you mean `{meant}`?" if meant else did_you_mean(key, free, "allowed here:")
         if key == "<<":
             hint = "YAML 1.2 has no merge keys: write the keys themselves"
-        elif not hint.startswith(_MEANT) and (owner := _owner(key, root)):
+        elif not meant and (owner := _owner(key, root)):
             hint = f"it belongs into {owner}"
-        meant = hint[len(_MEANT) : -2] if hint.startswith(_MEANT) else ""
         message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key that can stand here"
         here = (*path, key)
         yield Complaint("unknown-key", here, message, hint, path, here, True, suggestion=meant)

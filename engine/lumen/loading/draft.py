@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumen.language.controllers import Controller
-from lumen.language.diagnostics import Diagnostic, Place, Severity
+from lumen.language.diagnostics import Diagnostic, Place, Severity, gathered
 from lumen.language.machines import Machine
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
@@ -51,10 +51,9 @@ class Draft:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """Everything found so far, each thing once, by file and line."""
+        """Everything found so far, each cause once, by file and line."""
         found = [d for r in self.reports.values() for d in r.diagnostics if not r.follows(d.code, d.message)]
-        found += self.loose
-        return sorted(dict.fromkeys(found), key=lambda d: (d.place, d.code, d.message))
+        return gathered([*found, *self.loose])
 
     def report(self, folder: str, name: str) -> Report:
         """The report of `FOLDER/NAME.yaml`."""

@@ -58,7 +58,9 @@ class Expressions:
         if key in self.keys:
             return True
         hint = did_you_mean(key, self.keys, "context: declares")
-        self.report("unknown-context-key", where, f"the context has no `{key}`", hint=hint, key=True)
+        message = f"the context has no `{key}`"
+        cause = f"{self.report.document.file} context {key}"
+        self.report("unknown-context-key", where, message, hint=hint, key=True, cause=cause)
         return False
 
     def _sound(self, findings: Iterable[Finding], source: str, where: Path) -> bool:
@@ -66,8 +68,16 @@ class Expressions:
         found = [finding for finding in findings if finding.code != "unguarded-field"]
         for finding in found:
             place = place_within(self.report.document, where, source, finding.offset, finding.length)
-            self.report.diagnostics.append(Diagnostic(finding.code, finding.message, place, finding.hint))
+            cause = cause_of(self.report.document.file, finding)
+            self.report.diagnostics.append(Diagnostic(finding.code, finding.message, place, finding.hint, cause=cause))
         return not found
+
+
+def cause_of(file: str, finding: Finding) -> str:
+    """What an unknown name has in common with the same one elsewhere in the file; other faults are each their own."""
+    if finding.code == "unknown-context-key":
+        return f"{file} context {finding.message.split('`')[1]}"
+    return f"{file} {finding.message}" if finding.code.startswith("unknown-") else ""
 
 
 def place_within(document: Document, path: Path, source: str, offset: int, length: int) -> Place:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.interpreters.choreography import at_speed, joined, mirrored, placed
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import Path, did_you_mean, has_errors
 from lumen.language.motions import Cue, Interpolation, Key, Motion
 from lumen.loading.poses import PoseReader
 from lumen.loading.source import Report
@@ -117,6 +117,8 @@ class KeyframeReader:
 
     def _repeated(self, part: Motion, times: int, mirror: bool | str, here: Path) -> Motion:
         if times > 1 and part.duration <= 0.0:
+            if has_errors(self.report.diagnostics):
+                return part  # what would take its time is broken
             hint = "its last keyframe says how long a round takes: give it a time above 0"
             self.report("zero-duration", here, "a block that is repeated needs a length", hint=hint)
             return part
@@ -140,12 +142,15 @@ class KeyframeReader:
             if ("tempo",) in self.report.pruned:
                 return None
             hint = "write `tempo: 120` (beats per minute) at the top, or use `at`"
-            self.report("no-tempo", (*here, "beat"), "`beat` needs the motion's tempo", hint=hint, key=True)
+            cause = f"{self.report.document.file} no-tempo"
+            message = "`beat` needs the motion's tempo"
+            self.report("no-tempo", (*here, "beat"), message, hint=hint, key=True, cause=cause)
             return None
         return item["beat"] * self.beat if self.poses.number(item["beat"], (*here, "beat")) else None
 
     def _no_time(self, item: Mapping[str, Any], here: Path) -> None:
-        if "at" not in item and "beat" not in item and not self.report.pruned & {(*here, "at"), (*here, "beat")}:
+        gone = {(*here, key) for key in ("at", "beat", "keyframes", "play")}
+        if "at" not in item and "beat" not in item and not self.report.pruned & gone:
             hint = "write `at: 1.5s`" if self.beat is None else "write `beat: 4` or `at: 1.5s`"
             self.report("no-time", here, "this keyframe does not say when", hint=hint)
 

@@ -39,6 +39,8 @@ def build_motion(
     """
     if not isinstance(data, Mapping) or not data.get("keyframes"):
         return None
+    if report.broken(("units", "angle")):
+        return None
     unit = (data.get("units") or {}).get("angle", "rad")
     poses = PoseReader(report, body, unit, ANGLES.get(unit, 1.0))
     poses.define(data.get("poses") or {}, ("poses",))

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import Path, did_you_mean, nearest
 from lumen.language.machines import Kind
 from lumen.loading.source import Report
 
@@ -50,10 +50,11 @@ class Outline:
         for entry in self.entries.values():
             self._alias(entry)
 
-    def resolve(self, source: Entry, target: str, where: Path) -> Entry | None:
+    def resolve(self, source: Entry, target: str, where: Path, written: str = "") -> Entry | None:
         """The state that `target` means in a transition of `source`; reported where there is none.
 
-        A state that was itself reported as broken is not missed a second time.
+        `written` is how the file has it, where that differs. A state that was itself reported as broken is not missed
+        a second time.
         """
         if target.startswith("#"):
             found, known = self._by_id(target[1:]), [f"#{e.name}" for e in self.entries.values() if e.name]
@@ -68,9 +69,25 @@ class Outline:
                 *(f"#{e.alias}" for e in self.entries.values() if e.parent and e.alias),
             ]
         if found is None and target.rpartition(".")[2].lstrip("#") not in self.report.lost:
-            message = f"there is no state `{target}` to go to from {source.title}"
-            self.report("unknown-state", where, message, hint=self._hint(source, target, known))
+            self._unknown(source, target, known, where, written or target)
         return found
+
+    def _unknown(self, source: Entry, target: str, known: list[str], where: Path, written: str) -> None:
+        self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
+        message = f"there is no state `{written}` to go to from {source.title}"
+        hint = self._hint(source, target, known)
+        if written != target:
+            message = f"{source.title} has no state `{written}` to begin in"
+            hint = hint.replace("`.", "`")
+        meant = self._meant(source, nearest(target, known))
+        related = [(meant.where, f"`{meant.name}` stands here")] if meant and "mean" in hint else []
+        cause = f"{self.report.document.file} state {target.lstrip('#.')}"
+        self.report("unknown-state", where, message, hint=hint, related=related, cause=cause)
+
+    def _meant(self, source: Entry, target: str) -> Entry | None:
+        if target.startswith("#"):
+            return self._by_id(target[1:])
+        return _descend(source, target[1:]) if target.startswith(".") else _descend(source.parent, target)
 
     def _hint(self, source: Entry, target: str, known: Iterable[str]) -> str:
         key = target.lstrip("#.")
@@ -107,7 +124,10 @@ class Outline:
             self.aliases[alias] = entry  # the behaviour's own name gives way to a state's
         else:
             message = f"the id `{alias}` of `{entry.path}` already belongs to {first.title}"
-            self.report("duplicate-id", (*entry.where, "id"), message, hint="give each state an id of its own")
+            hint = "give each state an id of its own"
+            before = [((*first.where, "id") if first.alias == alias else first.where, "it belongs to this one")]
+            self.report("duplicate-id", (*entry.where, "id"), message, hint=hint, related=before)
+            self.report.lost |= {alias, *entry.path.split(".")}
             entry.alias = ""
 
 

@@ -102,7 +102,9 @@ class PoseReader:
     def _known(self, joint: str, path: Path) -> bool:
         if joint not in self.body.joints:
             hint = did_you_mean(joint, self.body.joints, f"{self.body.name} has")
-            self.report("unknown-joint", path, f"there is no joint `{joint}`", hint=hint, key=True)
+            self.report(
+                "unknown-joint", path, f"there is no joint `{joint}`", hint=hint, key=True, cause=f"joint {joint}"
+            )
         return joint in self.body.joints
 
     def _inside(self, name: str, value: float, path: Path) -> bool:

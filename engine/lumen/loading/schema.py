@@ -21,6 +21,9 @@ KINDS = ("lumen", "behavior", "story", "controller", "motion", "body", "message"
 
 ROUNDS = 20
 
+_ASTRAY = ("unknown-key", "one-verb")
+"""What is said of keys that belong below the one above them."""
+
 
 def check_schema(document: Document, kind: str, report: Report) -> Any:
     """The document's data without what its schema refuses; each error is reported at its node.
@@ -45,6 +48,7 @@ def check_schema(document: Document, kind: str, report: Report) -> Any:
         if not doomed:
             return report.document.data
         prune(report, doomed)
+        report.pruned |= {(*c.about, c.suggestion) for c in found if c.suggestion}
     return None
 
 
@@ -106,15 +110,55 @@ def _judge(found: list[Complaint], report: Report, said: set[Path]) -> set[Path]
     """The nodes that have to go. What follows from a node that went before, and what was said, is not said again."""
     suggested = {(c.path[:-1], c.suggestion) for c in found if c.suggestion}
     doomed = {c.doomed for c in found if c.doomed is not None}
+    emptied = _emptied(found, report)
     spoken: set[Path] = set()
     for complaint in found:
         about = complaint.about
+        if about in emptied and complaint.code in _ASTRAY:
+            continue  # what should have been indented further
         follows = any(path[: len(about)] == about for path in report.pruned) if about else False
         lost = bool(complaint.missing) and (*about, complaint.missing) in report.pruned
         meant = bool(complaint.missing) and (about, complaint.missing) in suggested
         if not (follows or lost or meant or complaint.path in spoken or complaint.path in said):
-            report(complaint.code, complaint.path, complaint.message, hint=complaint.hint, key=complaint.key)
+            hint = (
+                f"indent what follows it further: {complaint.hint}"
+                if complaint.path in emptied.values()
+                else complaint.hint
+            )
+            cause = _cause(complaint, report)
+            report(complaint.code, complaint.path, complaint.message, hint=hint, key=complaint.key, cause=cause)
         spoken.add(complaint.path)
         if complaint.doomed is None:
             said.add(complaint.path)
     return doomed
+
+
+def _emptied(found: list[Complaint], report: Report) -> dict[Path, Path]:
+    """The nodes in which a key is empty and keys after it are unknown, each with that key: those belong below it."""
+    empty = {c.about[:-1]: c.path for c in found if c.code == "wrong-type" and c.path and _at(report, c.path) is None}
+    found_below: dict[Path, Path] = {}
+    for complaint in found:
+        if complaint.code in _ASTRAY and complaint.about:
+            parent = complaint.about if complaint.about in empty else complaint.about[:-1]
+            if parent in empty and _stands_after(report, complaint.path, empty[parent]):
+                found_below[complaint.about] = empty[parent]
+    return found_below
+
+
+def _stands_after(report: Report, path: Path, other: Path) -> bool:
+    spans = report.document.spans
+    return path in spans and other in spans and spans[path].value > spans[other].value
+
+
+def _cause(complaint: Complaint, report: Report) -> str:
+    """What several keys of one node have in common that mean nothing there, or are missing: they are one mistake."""
+    if not complaint.about or complaint.suggestion or complaint.code not in ("unknown-key", "missing-key"):
+        return ""
+    return f"{report.document.file} keys of {complaint.about}"
+
+
+def _at(report: Report, path: Path) -> Any:
+    node = report.document.data
+    for step in path:
+        node = node[step]
+    return node

@@ -59,6 +59,8 @@ def _check_parent(entry: Entry, report: Report) -> None:
 
 
 def _check_done(entry: Entry, report: Report) -> None:
+    if report.broken((*entry.where, "do")):
+        return
     if entry.kind is Kind.ATOMIC and "onDone" in entry.data and "do" not in entry.data:
         hint = "give it a `do`, or use `always`"
         report(

@@ -6,14 +6,14 @@ at the author's text by the path of the node.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import inf, nan
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
-from lumen.language.diagnostics import Diagnostic, Path, Place, Severity
+from lumen.language.diagnostics import Diagnostic, Path, Place, Related, Severity
 
 MAX_DEPTH = 100
 MAX_NODES = 200_000
@@ -46,8 +46,7 @@ class _Loader(yaml.CSafeLoader):
 _Loader.yaml_implicit_resolvers = {}
 
 
-@dataclass(frozen=True, slots=True)
-class Span:
+class Span(NamedTuple):
     """Where a node stands: its key (None in a list and at the root) and its value."""
 
     key: Place | None
@@ -83,7 +82,9 @@ class Report:
     """Collects the diagnostics of one document; whoever finds something calls it with the path of the node.
 
     `pruned` are the paths of nodes that were taken out because they are broken, and `lost` the names that stood in
-    them: that such a name is unknown (`unknown-…`) follows from what has been said, and is not said.
+    them: that such a name is unknown (`unknown-…`) follows from what has been said, and is not said. A key that was
+    misspelt counts as pruned under the name that was meant. `missed` are names that stand for nothing: something of
+    a like name may have been meant, and looks unused.
     """
 
     def __init__(self, document: Document) -> None:
@@ -91,6 +92,7 @@ class Report:
         self.diagnostics: list[Diagnostic] = []
         self.pruned: set[Path] = set()
         self.lost: set[str] = set()
+        self.missed: set[str] = set()
 
     def __call__(
         self,
@@ -101,10 +103,21 @@ class Report:
         hint: str = "",
         key: bool = False,
         severity: Severity = Severity.ERROR,
+        related: Iterable[tuple[Path, str]] = (),
+        cause: str = "",
     ) -> None:
+        """Report what is wrong with the node at `path`; `related` are nodes of the same document.
+
+        Findings of the same `cause` become one: see `gathered`.
+        """
         if not self.follows(code, message):
             place = self.document.place(path, key=key)
-            self.diagnostics.append(Diagnostic(code, message, place, hint, severity))
+            others = tuple(Related(self.document.place(where, key=True), what) for where, what in related)
+            self.diagnostics.append(Diagnostic(code, message, place, hint, severity, others, cause))
+
+    def broken(self, path: Path) -> bool:
+        """Whether the node at `path`, one above it or one in it, was pruned."""
+        return any(lost[: len(path)] == path[: len(lost)] for lost in self.pruned)
 
     def follows(self, code: str, message: str) -> bool:
         """Whether a finding only follows from what was pruned: a name is unknown that stood there."""
@@ -185,12 +198,22 @@ class _Reader:
                 hint = "put quotes around a text that begins with `{`"
                 self.say("complex-key", key, "a key has to be a single word or text", hint)
             elif key.value in data:
-                first = self.spans[(*path, key.value)].key
-                hint = f"the first one stands in line {first.line}" if first else ""
-                self.say("duplicate-key", key, f"`{key.value}` stands twice in the same place", hint)
+                self.again(key, path)
+                if data[key.value] is None:  # the line was doubled, and the second one goes on
+                    data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
             else:
                 data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
         return data
+
+    def again(self, key: yaml.Node, path: Path) -> None:
+        """Report a key that stands a second time; those of one map are one finding."""
+        first = self.spans[(*path, key.value)].key
+        hint = f"the first one stands in line {first.line}" if first else ""
+        related = (Related(first, "the first one stands here"),) if first else ()
+        message, cause = f"`{key.value}` stands twice in the same place", f"{self.file} twice in {path}"
+        self.diagnostics.append(
+            Diagnostic("duplicate-key", message, self.place(key), hint, related=related, cause=cause)
+        )
 
     def overflow(self, node: yaml.Node, depth: int) -> None:
         if not self.full:

@@ -67,7 +67,7 @@ class _Term:
             wanted = f"{self.inputs} coefficients, one for each input, and then a constant if you like"
         else:
             right, wanted = count == len(names), f"{len(names)} ({', '.join(names)})"
-        if not right:
+        if not right and not self.report.broken((*self.path, kind)):
             message = f"`{kind}` of `{self.name}` has {count} parameter{'s' * (count != 1)}, it takes {wanted}"
             hint = f"write `{kind}: [{', '.join(names)}]`" if kind not in ("discrete", "linear") else ""
             self.report("wrong-parameters", (*self.path, kind), message, hint=hint)

@@ -26,10 +26,14 @@ class Transitions:
         """The candidates of a state, in the order of the file; broken ones are left out."""
         return tuple(found for key, body in entry.data.items() for found in self._under(entry, key, body))
 
-    def targets(self, entry: Entry, body: Any, where: Path) -> list[Entry] | None:
-        """The states that a target or a list of them names; None (and reported) where one is wrong."""
+    def targets(self, entry: Entry, body: Any, where: Path, written: Any = None) -> list[Entry] | None:
+        """The states that a target or a list of them names; None (and reported) where one is wrong.
+
+        `written` is how the file has them, where that differs.
+        """
         rows = _rows(body, where)
-        found = [self.outline.resolve(entry, text, place) for place, text in rows]
+        shown = [text for _, text in _rows(written or body, where)]
+        found = [self.outline.resolve(entry, text, place, s) for (place, text), s in zip(rows, shown, strict=True)]
         states = [state for state in found if state is not None]
         if len(states) < len(found) or not self._together(states, where):
             return None

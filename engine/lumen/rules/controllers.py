@@ -56,7 +56,7 @@ def _joints(controller: Controller, report: Report, body: Body, lost: set[str]) 
 def _known(report: Report, path: Path, joint: str, body: Body, lost: set[str], *, key: bool = False) -> bool:
     if joint not in body.joints and joint not in lost:
         hint = did_you_mean(joint, body.joints, f"{body.name} has")
-        find(report, "unknown-joint", path, f"there is no joint `{joint}`", hint, key=key)
+        find(report, "unknown-joint", path, f"there is no joint `{joint}`", hint, key=key, cause=f"joint {joint}")
     return joint in body.joints
 
 

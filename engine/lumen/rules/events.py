@@ -94,7 +94,7 @@ def raised(data: Any) -> Iterator[str]:
 def _waited(draft: Draft, machine: Machine, report: Report) -> None:
     if draft.settings is None or draft.main is None:
         return
-    known = {*declared(draft, machine), *raised(report.document.data), *draft.main.lost}
+    known = {*declared(draft, machine), *raised(report.document.data), *draft.main.lost, *report.lost}
     said: set[str] = set()
     for state in machine.states.values():
         for transition in state.transitions:
@@ -104,10 +104,12 @@ def _waited(draft: Draft, machine: Machine, report: Report) -> None:
             said.add(event)
             if not _of_the_engine(event):
                 path = _descriptor(transition.where, event)
-                hint = did_you_mean(event, {*known, *(f.removesuffix(".") for f in FAMILIES)} - draft.main.lost)
+                lost = draft.main.lost | report.lost
+                hint = did_you_mean(event, {*known, *(f.removesuffix(".") for f in FAMILIES)} - lost)
                 if "mean" not in hint:
                     hint = "declare it under `events:`, or give a route of lumen.yaml this `event`"
-                find(report, "unknown-event", path, f"nothing raises the event `{event}`", hint, key=True)
+                message = f"nothing raises the event `{event}`"
+                find(report, "unknown-event", path, message, hint, key=True, cause=f"name {event}")
 
 
 def _of_the_engine(event: str) -> bool:

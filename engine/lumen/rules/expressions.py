@@ -8,7 +8,7 @@ from lumen.language.actions import Template
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import Machine, Transition
 from lumen.loading.draft import Draft
-from lumen.loading.expressions import place_within
+from lumen.loading.expressions import cause_of, place_within
 from lumen.loading.source import Report
 from lumen.rules.codes import CODES
 from lumen.rules.events import declared, hears, outcome, raised
@@ -67,4 +67,6 @@ class _Expressions:
         source = spot.text.text if isinstance(spot.text, Template) else spot.text.source
         place = place_within(self.report.document, spot.text.where, source, finding.offset, finding.length)
         severity = CODES[finding.code].severity
-        self.report.diagnostics.append(Diagnostic(finding.code, finding.message, place, finding.hint, severity))
+        cause = cause_of(self.report.document.file, finding)
+        found = Diagnostic(finding.code, finding.message, place, finding.hint, severity, cause=cause)
+        self.report.diagnostics.append(found)

@@ -1,6 +1,6 @@
 """How a rule says what it found."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Path, did_you_mean
@@ -9,9 +9,20 @@ from lumen.loading.source import Report
 from lumen.rules.codes import CODES
 
 
-def find(report: Report, code: str, path: Path, message: str, hint: str = "", *, key: bool = False) -> None:
+def find(
+    report: Report,
+    code: str,
+    path: Path,
+    message: str,
+    hint: str = "",
+    *,
+    key: bool = False,
+    related: Iterable[tuple[Path, str]] = (),
+    cause: str = "",
+) -> None:
     """Report a finding of that code, as bad as `CODES` says."""
-    report(code, path, message, hint=hint, key=key, severity=CODES[code].severity)
+    severity = CODES[code].severity
+    report(code, path, message, hint=hint, key=key, severity=severity, related=related, cause=cause)
 
 
 def first(report: Report, *paths: Path) -> Path:
@@ -55,7 +66,8 @@ class References:
             return True
         if names:
             hint = did_you_mean(name, names, f"{folder}/ has")
-            find(report, f"unknown-{kind}", path, f"there is no {what} `{name}`", hint, key=key)
+            cause = f"{kind} {name}"
+            find(report, f"unknown-{kind}", path, f"there is no {what} `{name}`", hint, key=key, cause=cause)
         elif folder not in self._missing:
             self._missing.add(folder)
             hint = f"make the folder {folder}/ and put the file into it"

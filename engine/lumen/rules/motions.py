@@ -30,7 +30,8 @@ def _too_fast(report: Report, excess: Excess, unit: str, body: Body) -> None:
     what = "" if excess.joint in body.hands else f" {unit}/s"
     message = f"`{excess.joint}` would have to move at {value:g}{what} to get here in time, and {limit:g} is its most"
     percent = ceil(100 * (excess.value / excess.limit - 1))
-    find(report, "too-fast", excess.key.where, message, f"give it {percent} % more time")
+    cause = f"{report.document.file} {value:g} {limit:g}"  # of the left and of the right, wherever the pose stands
+    find(report, "too-fast", excess.key.where, message, f"give it {percent} % more time", cause=cause)
 
 
 def _too_far(report: Report, excess: Excess, unit: str, body: Body) -> None:

@@ -27,7 +27,7 @@ def known_route(draft: Draft, report: Report, path: Path, route: str) -> bool:
         return True
     if route not in draft.main.lost:
         hint = did_you_mean(route, draft.settings.routes, "lumen.yaml has")
-        find(report, "unknown-route", path, f"there is no route `{route}`", hint)
+        find(report, "unknown-route", path, f"there is no route `{route}`", hint, cause=f"name {route}")
     return False
 
 

@@ -71,7 +71,8 @@ class _Script:
             state = self.machine.states.get(name)
             hint = f"it is called by its id: `{state.name}`" if state and name else did_you_mean(name, names)
             message = f"`{self.behavior}` has no state that is called `{name}`"
-            find(self.report, "unknown-state", path, message, hint)
+            cause = f"behaviors/{self.behavior}.yaml state {name}"
+            find(self.report, "unknown-state", path, message, hint, cause=cause)
 
     def key(self, path: Path, key: str, value: Any) -> None:
         """A context key, and whether it can have that value."""
@@ -80,7 +81,8 @@ class _Script:
         if key not in self.machine.context:
             hint = did_you_mean(key, self.machine.context, "it has")
             message = f"the context of `{self.behavior}` has no `{key}`"
-            find(self.report, "unknown-context-key", path, message, hint, key=True)
+            cause = f"behaviors/{self.behavior}.yaml context {key}"
+            find(self.report, "unknown-context-key", path, message, hint, key=True, cause=cause)
         elif self.sound and not fits(value, check := type_checks(self.machine)[key]):
             hint = f"it begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}"
             find(self.report, "wrong-type", path, f"`{key}` is {check} and can't be a {type_name(value)}", hint)
@@ -100,7 +102,8 @@ class _Script:
         if event not in known:
             waited = {d for d in descriptors(machine) if "*" not in d}
             message = f"nothing in `{self.behavior}` knows the event `{event}`"
-            find(self.report, "unknown-event", path, message, did_you_mean(event, known | waited))
+            hint = did_you_mean(event, known | waited)
+            find(self.report, "unknown-event", path, message, hint, cause=f"name {event}")
 
     def message(self, where: Path, route: str, body: Any) -> None:
         if known_route(self.draft, self.report, (*where, "route"), route) and self.draft.settings:
@@ -115,4 +118,5 @@ class _Script:
 
     def _lost(self, name: str) -> bool:
         """Whether the name stood in a part of the behaviour that is broken."""
-        return name.rpartition(".")[2] in self.draft.report("behaviors", self.behavior).lost
+        report = self.draft.report("behaviors", self.behavior)
+        return name in report.lost or name.rpartition(".")[2] in report.lost
