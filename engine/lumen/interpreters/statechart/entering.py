@@ -103,6 +103,17 @@ class Topology:
             if ancestor.kind is Kind.PARALLEL:
                 self._add_regions(ancestor, entered)
 
+    def reach(self, targets: Sequence[Node], entered: Entered) -> None:
+        """Enter these states, from the outermost that is not active."""
+        self._add_all(targets, self.chart.document, entered)
+
+    def fill(self, node: Node, entered: Entered) -> None:
+        """Enter what a state that is active still needs within it."""
+        if node.kind is Kind.PARALLEL:
+            self._add_regions(node, entered)
+        else:
+            self._add_all(node.initial, node, entered)
+
     def _add_all(self, nodes: Sequence[Node], top: Node, entered: Entered) -> None:
         for node in _innermost(nodes):
             self.add_descendants(node, entered)

@@ -2,11 +2,11 @@
 
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Self
 
 from lumen.errors import LumenError, UsageError
-from lumen.interpreters.expressions import ExpressionError
+from lumen.interpreters.expressions import ExpressionError, Scope
 from lumen.interpreters.statechart.answers import labelled
 from lumen.interpreters.statechart.chart import Node
 from lumen.interpreters.statechart.program import Program
@@ -64,14 +64,18 @@ class Host(Run, ABC):
     def begin(self, node: Node) -> None:
         """Invoke what the state invokes, then begin its `do`."""
         for invoke, given in node.invokes:
-            self.stand(node)
-            try:
-                values = given(self.scope or self.view())
-                self.invite(invoke, node, values)
-            except (ExpressionError, UsageError) as error:
-                self.fail(str(error), (*invoke.where, "input"))
-                self.lose(invoke.id, str(error))
+            self.introduce(node, invoke, given)
         super().begin(node)
+
+    def introduce(self, node: Node, invoke: Invoke, given: Callable[[Scope], Any]) -> None:
+        """Begin a behaviour with the input that the state gives it, or say why it can't begin."""
+        self.stand(node)
+        try:
+            values = given(self.scope or self.view())
+            self.invite(invoke, node, values)
+        except (ExpressionError, UsageError) as error:
+            self.fail(str(error), (*invoke.where, "input"))
+            self.lose(invoke.id, str(error))
 
     def leave(self, node: Node) -> None:
         """Leave a state; what it invoked ends after its `exit`, and is heard of no more."""
@@ -105,7 +109,7 @@ class Host(Run, ABC):
         self.invoked = {**self.invoked, id: Invoked(state, step.snapshot, commands)}
         self.follow(id, step)
         if child.configuration.finished:
-            output = _output(step, child.chart.root.name)
+            output = output_of(step, child.chart.root.name)
             self.end(id)
             self.post(Event(f"done.invoke.{id}", output, self.at))
 
@@ -139,6 +143,6 @@ class Host(Run, ABC):
         self.scope = None
 
 
-def _output(step: Step, root: str) -> Any:
+def output_of(step: Step, root: str) -> Any:
     """The output of the final state in which a machine came to its end."""
     return next((event.data for event in reversed(step.raised) if event.name == f"done.state.{root}"), None)

@@ -101,6 +101,10 @@ class Planner:
         """The microstep that leaves every state (`exitInterpreter`)."""
         return self._make(start, (), {}, set(start.nodes), set())
 
+    def passage(self, start: Configuration, left: set[Node], entered: set[Node], history: History) -> Plan:
+        """The microstep that leaves and enters these states, though no transition says so."""
+        return self._make(start, (), history, left, entered)
+
     def plan(self, start: Configuration, enabled: tuple[Rule, ...], history: History) -> Plan:
         """The microstep that these enabled transitions make from there."""
         key = (enabled, *history.items()) if self.chart.has_history else enabled

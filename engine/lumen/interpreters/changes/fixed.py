@@ -1,0 +1,20 @@
+"""What of a project can't change while it runs."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from lumen.language.projects import Project
+
+FIXED: Mapping[str, str] = {
+    "robot": "the robot's name",
+    "body": "the robot's model",
+    "hall": "the hall",
+    "stage": "the stage",
+    "bus": "the broker's address",
+}
+"""Fields of `Project` that are in force only from the next start on, and what they are called."""
+
+
+def live(old: Project, new: Project) -> Project:
+    """The new bundle as far as it can be in force at once: what is `FIXED` is as in the old one."""
+    return replace(new, **{name: getattr(old, name) for name in FIXED})

@@ -1,0 +1,107 @@
+"""What a behaviour remembers, translated from an old machine to a new one: context, timers, history."""
+
+from collections.abc import Mapping
+from itertools import combinations
+from typing import Any, NamedTuple
+
+from lumen.interpreters.migration.identity import Identity
+from lumen.interpreters.statechart.chart import Chart, Node
+from lumen.interpreters.statechart.entering import History
+from lumen.interpreters.statechart.types import fits, type_name
+from lumen.interpreters.statechart.values import Timer
+from lumen.language.machines import Kind
+
+
+class Remembered(NamedTuple):
+    """The context under the new machine, and a sentence for each value that could not be kept."""
+
+    context: Mapping[str, Any]
+    notes: tuple[str, ...]
+
+
+def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identity) -> Remembered:
+    """Every key still declared keeps its value where that is of the key's type; others have their first values."""
+    first, names = new.machine.context, identity.keys()
+    kept = {key: values[was] for key, was in names.items() if was in values and fits(values[was], new.checks[key])}
+    notes = [
+        f"`{key}` begins anew: it was a {type_name(values[was])} and is {new.checks[key]} now"
+        for key, was in names.items()
+        if was in values and key not in kept
+    ]
+    gone = values.keys() - names.values()
+    notes += [f"`{key}` is forgotten" for key in values if key in gone and values[key] != old.machine.context.get(key)]
+    return Remembered({**first, **kept}, tuple(notes))
+
+
+def timers(timers: tuple[Timer, ...], kept: Mapping[Node, Node], at: float) -> tuple[Timer, ...]:
+    """The timers that go on, in their order, each with its deadline; what is new in a state's `after` is set.
+
+    Where the delay of an `after` was changed, it counts from when the old one was set.
+    """
+    images = {node.path: image for node, image in kept.items()}
+    going: dict[int, Timer] = {}
+    fresh: list[Timer] = []
+    for node, image in kept.items():
+        pending = {i: t for i, t in enumerate(timers) if t.kind == "after" and t.state == node.path}
+        for event, delay, known in _afters(node, image):
+            place = next((i for i, t in pending.items() if not known or t.delay == delay), None)
+            if place is not None:
+                timer = pending.pop(place)
+                due = timer.due if known else timer.due - timer.delay + delay
+                going[place] = Timer(event, due, delay, event, None, image.path, "after")
+            elif not known:
+                fresh.append(Timer(event, at + delay, delay, event, None, image.path, "after"))
+    for i, timer in enumerate(timers):
+        if timer.kind != "after":
+            going[i] = timer._replace(state=images[timer.state].path) if timer.kind == "wait" else timer
+    return (*(timer for _, timer in sorted(going.items())), *fresh)
+
+
+def _afters(node: Node, image: Node) -> list[tuple[str, float, bool]]:
+    """The events and delays of a new state's `after`, those first (True) that the old one had."""
+    before = [delay for _, delay in node.afters]
+    found = []
+    for event, delay in image.afters:
+        if known := delay in before:
+            before.remove(delay)
+        found.append((event, delay, known))
+    return sorted(found, key=lambda row: not row[2])
+
+
+def history(old: History, new: Chart, identity: Identity) -> dict[str, tuple[str, ...]]:
+    """What each history state that is still there remembers: the states themselves, or the nearest around them."""
+    found = {}
+    for path, remembered in old.items():
+        name = identity.state(path)
+        node = new.nodes[name] if name else None
+        if node and node.kind is Kind.HISTORY and (states := _recalled(node, remembered, new, identity)):
+            found[node.path] = tuple(state.path for state in states)
+    return found
+
+
+def _recalled(history: Node, remembered: tuple[str, ...], new: Chart, identity: Identity) -> list[Node]:
+    """The states that a history stands for now; none where they can't be active together any more."""
+    home = history.parent
+    assert home is not None  # only the document has none
+    assert history.state is not None  # likewise
+    nodes = [node for path in remembered if (node := _nearest(path, home, new, identity))]
+    if not history.state.deep:
+        nodes = [node if node.parent is home else node.ancestors[node.ancestors.index(home) - 1] for node in nodes]
+    nodes = sorted(set(nodes), key=lambda node: node.index)
+    return nodes if all(_together(*pair) for pair in combinations(nodes, 2)) else []
+
+
+def _nearest(path: str, home: Node, new: Chart, identity: Identity) -> Node | None:
+    while path:
+        found = new.nodes.get(identity.state(path) or "")
+        if found and found.lies_below(home) and found.kind is not Kind.HISTORY:
+            return found
+        path = path.rpartition(".")[0]
+    return None
+
+
+def _together(one: Node, other: Node) -> bool:
+    """Whether two states can be active at once."""
+    if one.lies_below(other) or other.lies_below(one):
+        return True
+    return next(a for a in one.ancestors if other.lies_below(a)).kind is Kind.PARALLEL

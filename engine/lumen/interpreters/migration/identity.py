@@ -1,0 +1,65 @@
+"""Which state of a new machine an active one is: by its path, or by `renamed`."""
+
+from collections.abc import Iterator, Mapping
+
+from lumen.language.machines import Machine
+
+KEYS = "context."
+"""How `renamed` calls keys of the context: `context.name: context.visitor`."""
+
+
+class Identity:
+    """Follows states and context keys from an old machine to a new one.
+
+    A renaming counts once: one that the old machine's file holds already has been followed. A renamed state takes those
+    below it along. `back` is the way to a bundle that ran before: the old machine's renamings are undone.
+    """
+
+    def __init__(self, old: Machine, new: Machine, *, back: bool = False) -> None:
+        self._new = new
+        fresh = {was: _end(new, now) for was, now in new.renamed.items() if old.renamed.get(was) != now}
+        undone = {now: was for was, now in old.renamed.items() if new.renamed.get(was) != now and _known(new, was)}
+        self._first: Mapping[str, str] = undone if back else fresh
+        self._last: Mapping[str, str] = {} if back else undone
+
+    def state(self, path: str) -> str | None:
+        """The path in the new machine, None where the state is gone."""
+        for table in (self._first, {path: path}, self._last):
+            for prefix in _prefixes(path):
+                if prefix in table:
+                    found = table[prefix] + path[len(prefix) :]
+                    if found in self._new.states:
+                        return found
+                    if table is self._first:
+                        return None
+                    break
+        return None
+
+    def keys(self) -> Mapping[str, str]:
+        """For each key of the new context the old machine's name of it."""
+        names = {key: key for key in self._new.context}
+        for table in (self._last, self._first):
+            for was, now in table.items():
+                if was.startswith(KEYS) and now.removeprefix(KEYS) in names:
+                    names[now.removeprefix(KEYS)] = was.removeprefix(KEYS)
+        return names
+
+
+def _prefixes(path: str) -> Iterator[str]:
+    """The path and those of the states around it, the longest first."""
+    while path:
+        yield path
+        path = path.rpartition(".")[0]
+
+
+def _known(machine: Machine, name: str) -> bool:
+    return name in machine.states or (name.startswith(KEYS) and name.removeprefix(KEYS) in machine.context)
+
+
+def _end(machine: Machine, name: str) -> str:
+    """Where renamings lead in the end: what is gone by now may have been renamed again."""
+    seen = {name}
+    while not _known(machine, name) and (following := machine.renamed.get(name)) and following not in seen:
+        name = following
+        seen.add(name)
+    return name

@@ -1,0 +1,201 @@
+"""Takes a snapshot from an old machine to a new one: leaves what is gone, translates, enters what is new."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from lumen.errors import LumenError, SnapshotError
+from lumen.interpreters.migration import carrying
+from lumen.interpreters.migration.continued import Continued, Fresh
+from lumen.interpreters.migration.doing import goes_on
+from lumen.interpreters.migration.identity import Identity
+from lumen.interpreters.migration.placing import Homeless, Placement, is_legal, place
+from lumen.interpreters.migration.verdicts import Plan, Refusal, Verdict, Wait
+from lumen.interpreters.statechart.answers import labelled
+from lumen.interpreters.statechart.chart import Node
+from lumen.interpreters.statechart.program import Program, compiled
+from lumen.interpreters.statechart.sessions import Session
+from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
+from lumen.language.machines import Machine
+
+
+class How(NamedTuple):
+    """The time of the change [s], whether to cancel rather than wait, whether back to a bundle that ran before.
+
+    `languages` are those that may be spoken, the first where the present one is gone; any where there are none.
+    """
+
+    at: float
+    now: bool = False
+    back: bool = False
+    languages: Sequence[str] = ()
+
+
+def move(old: Machine, new: Machine, snapshot: Snapshot, how: How, behavior: str = "") -> Verdict:
+    """How the snapshot goes on under the new machine, which stands in behaviors/BEHAVIOR.yaml."""
+    if old == new and (not how.languages or snapshot.language in how.languages):
+        return Plan(snapshot)
+    try:
+        moving = _Moving(old, new, snapshot, how)
+    except KeyError as error:
+        raise SnapshotError(f"`{old.id}` has no state {error}, which is active in the snapshot") from None
+    if isinstance(moving.placement, Homeless):
+        return moving.refusal(moving.placement, behavior)
+    wait = next(moving.waits(moving.placement), None)
+    if wait and not how.now:
+        return wait
+    try:
+        return moving.go(moving.placement, behavior)
+    except LumenError as error:
+        return Refusal(str(error), "let an event or a guard end it", "", behavior)
+
+
+class _Moving:
+    """One snapshot on its way."""
+
+    def __init__(self, old: Machine, new: Machine, snapshot: Snapshot, how: How) -> None:
+        self.old, self.new, self.how = compiled(old), compiled(new), how
+        self.before = snapshot._replace(at=max(snapshot.at, how.at))
+        self.start = self.old.planner.configuration(snapshot.configuration)
+        self.identity = Identity(old, new, back=how.back)
+        history = carrying.history(snapshot.history, self.new.chart, self.identity)
+        self.placement = place(self.new.chart, self.start.nodes, self.identity, history)
+
+    def refusal(self, homeless: Homeless, behavior: str) -> Refusal:
+        state, gone, rivals = homeless
+        title = f"`{state.name or behavior}`"
+        if len(rivals) > 1:
+            names = " and ".join(f"`{node.name}`" for node in rivals)
+            reason = f"{names} are active, and can't be together in {title} any more"
+            hint = f"give {title} an `onReload` that says where to go"
+        else:
+            reason = f"`{gone.name}` is active and gone, and no `onReload` says where to go instead"
+            hint = f"give {title} an `onReload`, or say under `renamed` what `{gone.path}` is called now"
+        return Refusal(reason, hint, gone.name, behavior, state.state.where if state.state else ())
+
+    def waits(self, placement: Placement) -> Iterator[Wait]:
+        """What is under way and could not go on, in the order of the old file."""
+        doing = self.before.doing
+        changed = self.changed(placement)
+        for node in self.start.ordered:
+            if node.path in doing and node in placement.left:
+                yield Wait(f"`{node.name}` is gone, and is still doing something", node.name)
+            elif node in changed:
+                yield Wait(f"what `{node.name}` is doing has changed", node.name)
+        for id in self.ending(placement):
+            child = self.before.invoked[id]
+            if _is_busy(child.snapshot):
+                yield Wait(f"`{id}` is not invoked any more, and is still doing something", id)
+
+    def changed(self, placement: Placement) -> list[Node]:
+        """The states that stay, and whose `do` is under way and can't go on."""
+        doing = [(node, image) for node, image in placement.kept.items() if node.path in self.before.doing]
+        return [
+            node
+            for node, image in doing
+            if node.state and image.state
+            if not goes_on(node.state.do, image.state.do, self.before.doing[node.path])
+        ]
+
+    def ending(self, placement: Placement) -> list[str]:
+        """The ids of invoked behaviours that end: their state is left, or invokes another one now."""
+        kept = {node.path: image for node, image in placement.kept.items()}
+        return [
+            id
+            for id, child in self.before.invoked.items()
+            if child.state not in kept
+            or _behind(self.old, child.state, id) != _behind(self.new, kept[child.state].path, id)
+        ]
+
+    def go(self, placement: Placement, behavior: str) -> Plan | Refusal | Wait:
+        """The plan: exits of the old machine, what stays translated, entries of the new one, and what follows."""
+        out = self.leave(placement)
+        into, notes = self.arrive(placement, out)
+        leaving = out.commands
+        for id, child in out.invoked.items():
+            verdict = self.follow(into, placement, id, child)
+            if not isinstance(verdict, Plan):
+                return verdict
+            leaving += tuple(labelled(command, id) for command in verdict.leaving)
+            notes += verdict.notes
+        into.microstep(self.new.planner.passage(into.configuration, set(), set(placement.entered), into.history))
+        if not is_legal(self.new.chart, into.configuration.nodes):
+            names = ", ".join(f"`{name}`" for name in sorted(into.configuration.names))
+            return Refusal(f"{names} can't be active together in the new file", "restart the exhibition", "", behavior)
+        step = into.settle()
+        notes = (*self.whereto(placement, step), *notes)
+        return Plan(step.snapshot, leaving, step.commands, out.exited + step.exited, step.entered, notes, into.output)
+
+    def leave(self, placement: Placement) -> Session:
+        """Leave what does not stay, and end what can't go on, by the old machine."""
+        out = Session(self.old, self.before, None, self.before.at)
+        out.microstep(self.old.planner.passage(self.start, set(placement.left), set(), self.before.history))
+        for id in self.ending(placement):
+            if id in out.invoked:
+                out.end(id)
+        for node in self.changed(placement):
+            out.abandon(node.path)
+        return out
+
+    def arrive(self, placement: Placement, out: Session) -> tuple[Continued, tuple[str, ...]]:
+        """What stays, under the new machine; nothing is entered yet."""
+        old, new, kept = self.old.chart, self.new.chart, placement.kept
+        values, notes = carrying.context(old, new, out.context, self.identity)
+        spoken, language = self.how.languages, out.language
+        if spoken and language not in spoken:
+            language = spoken[0]
+            notes += (f"language `{out.language}` is gone: on in `{language}`",)
+        before = Snapshot(
+            configuration=frozenset(image.name for image in kept.values() if image.path),
+            context=values,
+            at=out.at,
+            language=language,
+            timers=carrying.timers(out.timers, kept, out.at),
+            doing={image.path: out.doing[node.path] for node, image in kept.items() if node.path in out.doing},
+            history=carrying.history(out.history, new, self.identity),
+            counters=out.counters,
+            generator=out.generator,
+            epoch=out.epoch,
+        )
+        into = Continued(self.new, before, None, out.at)
+        into.queue = out.queue
+        into.fresh = {image: self.fresh(node, image, placement) for node, image in kept.items()}
+        into.waiting = tuple(image for image, fresh in into.fresh.items() if any(fresh))
+        return into, notes
+
+    def fresh(self, node: Node, image: Node, placement: Placement) -> Fresh:
+        """What a state that stays did not have before."""
+        had = [(invoke.id, invoke.behavior) for invoke, _ in node.invokes]
+        new = frozenset(i.id for i, _ in image.invokes if (i.id, i.behavior) not in had)
+        return Fresh(new, bool(image.do) and (not node.do or node in self.changed(placement)))
+
+    def follow(self, into: Continued, placement: Placement, id: str, child: Invoked) -> Verdict:
+        """Let an invoked behaviour go on under its new machine; what it enters is asked for by `into`."""
+        owner = next(image for node, image in placement.kept.items() if node.path == child.state)
+        behavior = _behind(self.new, owner.path, id)
+        old, new = self.old.invoked[behavior].chart.machine, self.new.invoked[behavior].chart.machine
+        lent = child.snapshot._replace(
+            language=into.language, counters=into.counters, generator=into.generator, epoch=into.epoch
+        )
+        verdict = move(old, new, lent, self.how._replace(at=into.at, languages=()), behavior)
+        if isinstance(verdict, Plan):
+            into.adopt(id, Invoked(owner.path, verdict.snapshot, child.commands), verdict)
+        return verdict
+
+    def whereto(self, placement: Placement, step: Step) -> Iterator[str]:
+        """A sentence for each state that is gone, and where that leads."""
+        gone = [node for node in placement.left if self.identity.state(node.path) is None]
+        inner = [node for node in gone if not any(child in gone for child in node.children)]
+        names = step.snapshot.configuration
+        after = [s.name for s in self.new.chart.machine.states.values() if s.name in set(step.entered) & names]
+        on = f": on to `{after[-1]}`" if after else ""
+        yield from (f"`{node.name}` is gone{on}" for node in sorted(inner, key=lambda node: node.index))
+
+
+def _behind(program: Program, path: str, id: str) -> str:
+    """The behaviour that a state invokes under that id; empty for none."""
+    return next((i.behavior for i, _ in program.chart.nodes[path].invokes if i.id == id), "")
+
+
+def _is_busy(snapshot: Snapshot) -> bool:
+    """Whether any `do` is under way in a behaviour or in what it has invoked."""
+    return bool(snapshot.doing) or any(_is_busy(child.snapshot) for child in snapshot.invoked.values())
