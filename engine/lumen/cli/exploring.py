@@ -83,12 +83,11 @@ def story(project: Project, behavior: str, finding: Finding) -> str:
         f"# On this way `{verb}` works at first; a story can only let it fail from the beginning."
         for verb in sorted(worked)
     ]
-    return "\n".join([*lines, "steps:", *(f"  - {step}" for step in _steps(project, behavior, finding.way))]) + "\n"
+    return "\n".join([*lines, "steps:", *(f"  - {step}" for step in _steps(project, finding.way))]) + "\n"
 
 
-def _steps(project: Project, behavior: str, way: tuple[Stay, ...]) -> Iterator[str]:
-    machine = project.behaviors[behavior]
-    yield _expect(machine, way[0].states, frozenset(), {})
+def _steps(project: Project, way: tuple[Stay, ...]) -> Iterator[str]:
+    yield _expect(way[0].states, (), {})
     for before, stay in pairwise(way):
         move = stay.move
         assert move is not None  # only the first stay has none
@@ -99,7 +98,7 @@ def _steps(project: Project, behavior: str, way: tuple[Stay, ...]) -> Iterator[s
             yield f"wait: {move.waited:g}s"
         elif changed:
             within = {Kind.TIME: f"{move.waited + 1:g}s", Kind.DONE: PATIENCE}.get(move.kind)
-            yield _expect(machine, stay.states, before.states, {"within": within} if within else {})
+            yield _expect(stay.states, before.states, {"within": within} if within else {})
 
 
 def _happens(project: Project, name: str, data: Any) -> str:
@@ -112,12 +111,10 @@ def _happens(project: Project, name: str, data: Any) -> str:
     return f"event: {_flow({'name': name, 'data': data} if data else name)}"
 
 
-def _expect(machine: Machine, states: frozenset[str], before: frozenset[str], more: Mapping[str, Any]) -> str:
-    """The step that expects the innermost states that are active now and were not before."""
-    fresh = states - before or states
-    outer = {machine.states[s.parent].name for s in machine.states.values() if s.parent and s.name in states}
-    inner = [s.name for s in machine.states.values() if s.name in fresh and s.name not in outer]
-    return f"expect: {_flow({'state': inner[0] if len(inner) == 1 else inner, **more})}"
+def _expect(states: tuple[str, ...], before: tuple[str, ...], more: Mapping[str, Any]) -> str:
+    """The step that expects the states that are active now and were not before."""
+    fresh = [state for state in states if state not in before] or list(states)
+    return f"expect: {_flow({'state': fresh[0] if len(fresh) == 1 else fresh, **more})}"
 
 
 def _broken(way: tuple[Stay, ...]) -> Iterator[tuple[str, str]]:

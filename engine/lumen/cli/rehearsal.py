@@ -1,6 +1,7 @@
 """A story played on the recording robot in simulated time, as fast as this machine can, and what came of it."""
 
 import logging
+import threading
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator
@@ -25,8 +26,8 @@ REMEMBERED = 12
 class Rehearsal:
     """How a story went: `time` is simulated, `took` this machine's time [s].
 
-    Where it failed, `place` is that of the step in the story's file, and `trace` tells what happened last: each time
-    [s], who, and what.
+    Where it failed, `place` is that of the step in the story's file. `trace` tells what happened (where it failed, or
+    where it was asked for): each time [s], who, and what.
     """
 
     story: Story
@@ -38,12 +39,12 @@ class Rehearsal:
 
 
 class Trace(Transcript):
-    """Keeps the last lines of a transcript."""
+    """Keeps the last lines of a transcript, None for all of them."""
 
-    def __init__(self, show: Show) -> None:
+    def __init__(self, show: Show, remembered: int | None = REMEMBERED) -> None:
         super().__init__(show.exhibition.clock.now, lambda: show.exhibition.project.machine)
         self._clock = show.exhibition.clock
-        self.lines: deque[tuple[float, str, str]] = deque(maxlen=REMEMBERED)
+        self.lines: deque[tuple[float, str, str]] = deque(maxlen=remembered)
 
     def line(self, who: str, text: str) -> None:
         self.lines.append((self._clock.now(), who, text))
@@ -56,16 +57,17 @@ def rehearse(
     *,
     observers: Iterable[Observer] = (),
     parts: Iterable[Part] = (),
+    whole: bool = False,
 ) -> Rehearsal:
     """Play the story to its end, or to its failure; `chosen` is another robot than the recording one.
 
     The recording robot keeps its head still: joints and pictures, which no behaviour hears of, are not on its bus.
     `observers` watch, `parts` live with it. A behaviour that never comes to rest fails the story, as does whatever
-    else the engine logs as an error; its warnings stand in the trace.
+    else the engine logs as an error; its warnings stand in the trace, which begins where the story does with `whole`.
     """
     robot = chosen or cast("recording", project, "max", story)
     show = Show(project, robot, story=story, tell=lambda deed: trace.deed(deed), sensing=chosen is not None)
-    trace = Trace(show)
+    trace = Trace(show, None if whole else REMEMBERED)
     show.exhibition.observers += [trace, *observers]
     show.exhibition.parts += parts
     player, now, began = show.player, 0.0, time.perf_counter()
@@ -81,19 +83,29 @@ def rehearse(
         show.close()
     took, failed = time.perf_counter() - began, player.failed
     if failed is None:
-        return Rehearsal(story, now, took)
+        return Rehearsal(story, now, took, trace=tuple(trace.lines) if whole else ())
     place = project.place(f"behaviors/stories/{story.name}.yaml", failed.where)
     return Rehearsal(story, now, took, failed, place, tuple(trace.lines))
 
 
 class _Log(logging.Handler):
-    """Takes what the engine logs into the trace; an error fails the story."""
+    """Takes what the engine logs into the trace; an error fails the story.
+
+    Beside a running exhibition only this thread's log is the story's, and only the others' is the exhibition's.
+    """
 
     def __init__(self, player: StoryPlayer, trace: Trace) -> None:
         super().__init__(logging.WARNING)
         self._player, self._trace = player, trace
+        self.thread = 0 if threading.current_thread() is threading.main_thread() else threading.get_ident()
+
+    def spares(self, record: logging.LogRecord) -> bool:
+        """Whether a record is none of the story's."""
+        return record.thread != self.thread or not record.name.startswith("lumen")
 
     def emit(self, record: logging.LogRecord) -> None:
+        if self.thread and self.spares(record):
+            return
         said = record.getMessage()
         self._trace.line("trouble", said)
         if record.levelno >= logging.ERROR:
@@ -105,10 +117,15 @@ def _logged(show: Show, trace: Trace) -> Iterator[None]:
     """While it lasts, the engine's log is the story's and nobody else's."""
     assert show.player is not None
     log, handler = logging.getLogger("lumen"), _Log(show.player, trace)
-    before, log.propagate = log.propagate, False
+    others = [*logging.getLogger().handlers, logging.lastResort] if handler.thread else []
+    before, log.propagate = log.propagate, bool(handler.thread) and log.propagate
     log.addHandler(handler)
+    for other in filter(None, others):
+        other.addFilter(handler.spares)
     try:
         yield
     finally:
+        for other in filter(None, others):
+            other.removeFilter(handler.spares)
         log.removeHandler(handler)
         log.propagate = before

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import lumen
 from lumen.cli.cast import ROBOTS, SPEEDS, cast
+from lumen.cli.choosing import home_of, stories_of
 from lumen.cli.performance import Performance
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
@@ -29,7 +30,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    project = lumen.load(options.project)
+    named = () if options.story is None else (options.story,)
+    project = lumen.load(options.project or home_of(named))
     story = _story(project, options.story)
     if story and story.robot and options.robot != "recording":
         raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
@@ -51,10 +53,10 @@ def run(options: argparse.Namespace) -> int:
 def _story(project: Project, name: str | None) -> Story | None:
     if name is None:
         return None
-    stem = Path(name).stem
-    if stem not in project.stories:
-        raise UsageError(f"no story `{name}`: {did_you_mean(stem, project.stories, 'behaviors/stories/ has')}")
-    return project.stories[stem]
+    found = list(stories_of(project, name))
+    if len(found) > 1:
+        raise UsageError(f"one story at a time: `{name}` means `{found[0].name}`, `{found[1].name}` and more")
+    return found[0]
 
 
 def _period(text: str | None) -> float | None:

@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 
 import lumen
+from lumen.cli.choosing import home_of, stories_of
 from lumen.cli.exploring import Explored, explored
 from lumen.cli.rehearsal import Rehearsal, rehearse
 from lumen.cli.terminal import coloured
@@ -22,9 +23,16 @@ from lumen.runtime.coverage import Coverage
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("words", nargs="*", metavar="[PROJECT] STORY", help="its folder, then stories by name; default: all of them")
+    add(
+        "words",
+        nargs="*",
+        metavar="[PROJECT] STORY",
+        help="its folder, then stories: names, files or 'safety_*'; default: all",
+    )
     add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
     add("-o", "--output", metavar="FILE", type=Path, help="write it there instead of printing it")
+    add("-x", "--exitfirst", action="store_true", help="stop at the first story that fails")
+    add("-v", "--verbose", action="store_true", help="tell what happened in every story, from its beginning")
     add("--coverage", action="store_true", help="list the states never entered and the transitions never taken")
     add("--fail-under", metavar="N", type=float, help="with --coverage: fail where less than N %% is covered")
     add("--explore", action="store_true", help="walk the behaviour for dead ends instead of playing the stories")
@@ -45,9 +53,11 @@ def run(options: argparse.Namespace) -> int:
     if names or coverage or not options.explore:
         for story in _stories(project, names):
             observers = [coverage.of(story.behavior or project.behavior)] if coverage else []
-            rehearsals.append(rehearse(project, story, observers=observers))
+            rehearsals.append(rehearse(project, story, observers=observers, whole=options.verbose))
             if live:
                 _print(text.story(rehearsals[-1], coloured=coloured()))
+            if options.exitfirst and rehearsals[-1].failed:
+                break
     walked = _explore(project, options) if options.explore else None
     took = time.perf_counter() - began
     verdict = Verdict(project.name, tuple(rehearsals), coverage, options.fail_under or 0.0, walked, took)
@@ -59,10 +69,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _words(words: list[str]) -> tuple[str | None, list[str]]:
-    """The project's folder where the first word is one, and the names of stories."""
+    """The project's folder, where the first word is one or a story's file lies in one; and what names stories."""
     if words and (Path(words[0]).is_dir() or Path(words[0]).name == MAIN_FILE):
         return words[0], words[1:]
-    return None, words
+    return home_of(words), words
 
 
 def _check(options: argparse.Namespace) -> None:
@@ -77,12 +87,8 @@ def _check(options: argparse.Namespace) -> None:
 def _stories(project: Project, names: list[str]) -> list[Story]:
     if not project.stories:
         raise UsageError("there are no stories: write one into behaviors/stories/, as docs/stories.md shows")
-    stems = [Path(name).stem if name.endswith(".yaml") else name for name in names]
-    for stem in stems:
-        if stem not in project.stories:
-            hint = did_you_mean(stem, project.stories, "behaviors/stories/ has")
-            raise UsageError(f"no project or story `{stem}`: {hint}")
-    return [project.stories[stem] for stem in stems or sorted(project.stories)]
+    chosen = [story for name in names or ["*"] for story in stories_of(project, name)]
+    return list({story.name: story for story in chosen}.values())
 
 
 def _explore(project: Project, options: argparse.Namespace) -> Explored:

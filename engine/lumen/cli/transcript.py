@@ -9,6 +9,7 @@ from typing import TextIO
 from lumen.cli.terminal import coloured, paint
 from lumen.cli.why import innermost, reason_of, why
 from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart.inside import unfolded
 from lumen.language.commands import (
     Command,
     Language,
@@ -55,13 +56,14 @@ class Transcript(Observer):
         print(f"{time}  {name} {_wrapped(text)}", file=self._stream, flush=True)
 
     def stepped(self, step: Step) -> None:
-        for error in step.raised:
-            if error.name.startswith("error."):
-                self.line("trouble", f"{error.name}: {reason_of(error)}".rstrip(": "))
-        entered = innermost(self._machine(), step.entered)
-        if entered:
-            self.states.update(entered)
-            self.line("state", f"{', '.join(entered)}  ({why(step)})")
+        for prefix, machine, part in unfolded(self._machine(), step):
+            for error in part.raised:
+                if error.name.startswith("error."):
+                    self.line("trouble", f"{error.name}: {reason_of(error)}".rstrip(": "))
+            entered = [prefix + name for name in innermost(machine, part.entered)]
+            if entered:
+                self.states.update(entered)
+                self.line("state", f"{', '.join(entered)}  ({why(part)})")
 
     def performing(self, command: Command, now: float) -> None:
         match command:

@@ -102,7 +102,7 @@ class Story:
     """A story, and how the world is while it plays.
 
     `robot` maps a verb to `fails`, `hangs` or its duration [s]; `clock` is the time of day at its start (`09:30`);
-    the states in `never` must never be active.
+    the states in `never` must never be entered.
     """
 
     name: str

@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from lumen.interpreters.statechart.inside import INSIDE, meant
 from lumen.interpreters.statechart.types import fits, type_checks, type_name
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.machines import Machine
@@ -63,16 +64,17 @@ class _Script:
             known_route(self.draft, self.report, place, expected.published)
 
     def state(self, path: Path, name: str) -> None:
-        """A state as `configuration` calls it: by its id where it has one."""
-        if self.machine is None or self._lost(name):
+        """A state as `configuration` calls it, by its id where it has one; `quiz/ask` of what is invoked as `quiz`."""
+        if self.machine is None or self._lost(name) or any(_has(*reading) for reading in meant(self.machine, name)):
             return
-        names = {state.name for state in self.machine.states.values() if state.path}
-        if name not in names:
-            state = self.machine.states.get(name)
-            hint = f"it is called by its id: `{state.name}`" if state and name else did_you_mean(name, names)
-            message = f"`{self.behavior}` has no state that is called `{name}`"
-            cause = f"behaviors/{self.behavior}.yaml state {name}"
-            find(self.report, "unknown-state", path, message, hint, cause=cause)
+        machine, rest = next(meant(self.machine, name))
+        state = machine.states.get(rest)
+        hint = did_you_mean(name, _names(machine, name.removesuffix(rest)))
+        if state and rest:
+            hint = f"it is called by its id: `{name.removesuffix(rest)}{state.name}`"
+        message = f"`{self.behavior}` has no state that is called `{name}`"
+        cause = f"behaviors/{self.behavior}.yaml state {name}"
+        find(self.report, "unknown-state", path, message, hint, cause=cause)
 
     def key(self, path: Path, key: str, value: Any) -> None:
         """A context key, and whether it can have that value."""
@@ -117,6 +119,21 @@ class _Script:
                 find(self.report, complaint.code, place, complaint.message, complaint.hint, key=complaint.key)
 
     def _lost(self, name: str) -> bool:
-        """Whether the name stood in a part of the behaviour that is broken."""
-        report = self.draft.report("behaviors", self.behavior)
-        return name in report.lost or name.rpartition(".")[2] in report.lost
+        """Whether the name stood in a part of the behaviour, or of one that it invokes, that is broken."""
+        last = name.rpartition(INSIDE)[2]
+        behaviors = self.draft.behaviors if last != name else (self.behavior,)
+        lost = [self.draft.report("behaviors", behavior).lost for behavior in behaviors]
+        return any(name in found or last in found or last.rpartition(".")[2] in found for found in lost)
+
+
+def _has(machine: Machine, name: str) -> bool:
+    return any(state.path and state.name == name for state in machine.states.values())
+
+
+def _names(machine: Machine, prefix: str) -> set[str]:
+    """The states of a machine, and of those that it invokes, as one calls them from outside."""
+    names = {prefix + state.name for state in machine.states.values() if state.path}
+    for invoke in (invoke for state in machine.states.values() for invoke in state.invoke):
+        if other := machine.invoked.get(invoke.behavior):
+            names |= {f"{prefix}{invoke.id}{INSIDE}{state.name}" for state in other.states.values() if state.path}
+    return names

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart.inside import ran
 from lumen.language.diagnostics import Path, Place
 from lumen.language.machines import Kind, Machine, State, Transition
 from lumen.language.projects import Project
@@ -35,7 +36,7 @@ class Coverage:
         self.entered.setdefault(behavior, set()).update(step.entered)
         self.taken.setdefault(behavior, set()).update(t.where for t in step.transitions)
         for id, inner in step.invoked:
-            self.note(_invoked(self.project.behaviors[behavior], id, inner), inner)
+            self.note(ran(self.project.behaviors[behavior], id, inner), inner)
 
     @property
     def states(self) -> tuple[int, int]:
@@ -75,14 +76,6 @@ class _Watcher(Observer):
 
     def stepped(self, step: Step) -> None:
         self._coverage.note(self._behavior, step)
-
-
-def _invoked(machine: Machine, id: str, step: Step) -> str:
-    """The behaviour of which a step is, among those that the machine invokes under that id."""
-    behaviors = [invoke.behavior for state in machine.states.values() for invoke in state.invoke if invoke.id == id]
-    names = {*step.entered, *step.exited, *step.snapshot.configuration}
-    known = {b: {state.name for state in machine.invoked[b].states.values()} for b in behaviors}
-    return next((b for b in behaviors if names <= known[b]), behaviors[0])
 
 
 def described(machine: Machine, transition: Transition) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, assert_never
 
 from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart.inside import active, entered
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import Path
 from lumen.language.events import Event
@@ -125,9 +126,9 @@ class StoryPlayer(Observer):
         return self.failed is not None or self.scene >= len(self.story.scenes)
 
     def stepped(self, step: Step) -> None:
-        self._witness.states = step.snapshot.configuration
+        self._witness.states = active(step.snapshot)
         self._witness.context = dict(step.snapshot.context)
-        if bad := self._witness.states.intersection(self.story.never):
+        if bad := self._witness.states.union(entered(step)).intersection(self.story.never):
             self.fail(Lack(f"never state {_names(bad)}", "it was entered"))
 
     def performing(self, command: Command, now: float) -> None:

@@ -28,10 +28,10 @@ def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
     sign = paint("FAILED", "bold", "red", on=coloured) if failed else paint("ok    ", "green", on=coloured)
     length = paint(f"{clock_time(rehearsal.time):>6}", "dim", on=coloured)
     title = f"{sign} {length}  {paint(rehearsal.story.name, 'bold', on=coloured)}: {rehearsal.story.title}"
-    if failed is None:
-        return title
-    lines = [title, f"  {paint(str(rehearsal.place), 'bold', on=coloured)}: step {failed.step}: {failed.what}"]
-    lines += ["  What happened last:"] if rehearsal.trace else []
+    lines = [title]
+    if failed:
+        lines += [f"  {paint(str(rehearsal.place), 'bold', on=coloured)}: step {failed.step}: {failed.what}"]
+        lines += ["  What happened last:"] if rehearsal.trace else []
     return "\n".join([*lines, *(_line(*row, coloured) for row in rehearsal.trace)])
 
 

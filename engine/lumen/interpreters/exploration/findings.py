@@ -6,6 +6,7 @@ from typing import Literal
 
 from lumen.interpreters.exploration.moves import Move
 from lumen.interpreters.exploration.walking import Spot, Walk, leading, leaves
+from lumen.interpreters.statechart.inside import INSIDE, innermost
 from lumen.language.machines import Kind, Machine
 
 Sort = Literal["dead-end", "no-way-back", "restless"]
@@ -13,10 +14,13 @@ Sort = Literal["dead-end", "no-way-back", "restless"]
 
 @dataclass(frozen=True)
 class Stay:
-    """A stay on the way to a finding: the move that led there (None at the beginning), and the states then active."""
+    """A stay on the way to a finding: the move that led there (None at the beginning), and the states then active.
+
+    `states` are the innermost ones, those of invoked behaviours (`quiz/ask`) included.
+    """
 
     move: Move | None
-    states: frozenset[str]
+    states: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -44,7 +48,7 @@ def findings(machine: Machine, walk: Walk, home: str = "") -> list[Finding]:
 
 def _restless(machine: Machine, spots: list[Spot]) -> Iterator[Finding]:
     for path, spot in _cheapest(machine, [s for s in spots if s.restless]).items():
-        yield _finding("restless", path, spot.restless, spot)
+        yield _finding(machine, "restless", path, spot.restless, spot)
 
 
 def _dead_ends(machine: Machine, walk: Walk, spots: list[Spot]) -> Iterator[Finding]:
@@ -57,8 +61,9 @@ def _dead_ends(machine: Machine, walk: Walk, spots: list[Spot]) -> Iterator[Find
         paths = [p for p in leaves(machine, spot.names) if p not in beginning] or list(leaves(machine, spot.names))
         if not told.issuperset(paths):
             told.update(paths)
-            names = " with ".join(f"`{machine.states[path].name or machine.id}`" for path in paths)
-            yield _finding("dead-end", paths[-1], f"nothing leads out of {names}", spot)
+            inner = [name for name in innermost(machine, spot.snapshot) if INSIDE in name]
+            names = " with ".join(f"`{n}`" for n in [*(machine.states[p].name or machine.id for p in paths), *inner])
+            yield _finding(machine, "dead-end", paths[-1], f"nothing leads out of {names}", spot)
 
 
 def _no_way_back(machine: Machine, walk: Walk, spots: list[Spot], home: str) -> Iterator[Finding]:
@@ -71,7 +76,7 @@ def _no_way_back(machine: Machine, walk: Walk, spots: list[Spot], home: str) -> 
         name = machine.states[path].name or machine.id
         elsewhere = any(name in s.names for s in spots if id(s) in reached)
         message = f"from `{name}` there is {'not always a' if elsewhere else 'no'} way back to `{home}`"
-        yield _finding("no-way-back", path, message, spot)
+        yield _finding(machine, "no-way-back", path, message, spot)
 
 
 def _ahead(spot: Spot) -> int:
@@ -105,5 +110,6 @@ def _region(machine: Machine, name: str) -> str:
     return ""
 
 
-def _finding(kind: Sort, path: str, message: str, spot: Spot) -> Finding:
-    return Finding(kind, path, message, tuple(Stay(s.move, s.names) for s in spot.way()))
+def _finding(machine: Machine, kind: Sort, path: str, message: str, spot: Spot) -> Finding:
+    way = tuple(Stay(s.move, tuple(innermost(machine, s.snapshot))) for s in spot.way())
+    return Finding(kind, path, message, way)

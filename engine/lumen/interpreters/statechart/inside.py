@@ -1,0 +1,77 @@
+"""Behaviours within behaviours as they are seen from outside: `quiz/ask` is the state `ask` of what runs as `quiz`."""
+
+from collections.abc import Iterable, Iterator
+from itertools import compress
+from operator import not_
+
+from lumen.interpreters.statechart.values import Snapshot, Step
+from lumen.language.machines import Machine
+
+INSIDE = "/"
+"""Stands between the id of an `invoke` and a state of the behaviour that runs under it."""
+
+
+def active(snapshot: Snapshot) -> frozenset[str]:
+    """The names of all active states, those of invoked behaviours included."""
+    if not snapshot.invoked:
+        return snapshot.configuration
+    inner = (f"{id}{INSIDE}{name}" for id, child in snapshot.invoked.items() for name in active(child.snapshot))
+    return snapshot.configuration.union(inner)
+
+
+def innermost(machine: Machine, snapshot: Snapshot) -> Iterator[str]:
+    """The names of the active states that have none active within, invoked behaviours' after those of their host."""
+    for state in machine.states.values():
+        if state.name in snapshot.configuration and not any(
+            machine.states[child].name in snapshot.configuration for child in state.children
+        ):
+            yield state.name
+    for id, child in snapshot.invoked.items():
+        other = machine.invoked[_behavior(machine, child.state, id)]
+        yield from (f"{id}{INSIDE}{name}" for name in innermost(other, child.snapshot))
+
+
+def entered(step: Step) -> Iterator[str]:
+    """The names of all states that a step entered, those of invoked behaviours included."""
+    yield from step.entered
+    for id, inner in step.invoked:
+        yield from (f"{id}{INSIDE}{name}" for name in entered(inner))
+
+
+def unfolded(machine: Machine, step: Step, prefix: str = "") -> Iterator[tuple[str, Machine, Step]]:
+    """A step and those of the behaviours invoked in it, each with its machine, and `quiz/` before its states' names.
+
+    What an invoked behaviour did is before its host's step where it led to it, else after.
+    """
+    ends = {t.event.split(".", 2)[2] for t in step.transitions if t.event.startswith(("done.invoke.", "error.invoke."))}
+    early = [id in ends and inner.event is not None for id, inner in step.invoked]
+    yield from _below(machine, compress(step.invoked, early), prefix)
+    yield prefix, machine, step
+    yield from _below(machine, compress(step.invoked, map(not_, early)), prefix)
+
+
+def ran(machine: Machine, id: str, step: Step) -> str:
+    """The behaviour of which a step is, among those that the machine invokes under that id."""
+    behaviors = [invoke.behavior for state in machine.states.values() for invoke in state.invoke if invoke.id == id]
+    names = {*step.entered, *step.exited, *step.snapshot.configuration}
+    known = {b: {state.name for state in machine.invoked[b].states.values()} for b in behaviors}
+    return next((b for b in behaviors if names <= known[b]), behaviors[0])
+
+
+def meant(machine: Machine, name: str) -> Iterator[tuple[Machine, str]]:
+    """The machines that a name may be about, and the name there: `quiz/ask` is `ask` of what is invoked as `quiz`."""
+    invokes = {(invoke.id, invoke.behavior) for state in machine.states.values() for invoke in state.invoke}
+    for id, behavior in sorted(invokes):
+        if name.startswith(id + INSIDE) and behavior in machine.invoked:
+            yield from meant(machine.invoked[behavior], name.removeprefix(id + INSIDE))
+    yield machine, name
+
+
+def _below(machine: Machine, steps: Iterable[tuple[str, Step]], prefix: str) -> Iterator[tuple[str, Machine, Step]]:
+    for id, step in steps:
+        yield from unfolded(machine.invoked[ran(machine, id, step)], step, f"{prefix}{id}{INSIDE}")
+
+
+def _behavior(machine: Machine, state: str, id: str) -> str:
+    """The behaviour that a state, by its path, invokes under that id."""
+    return next(invoke.behavior for invoke in machine.states[state].invoke if invoke.id == id)
