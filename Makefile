@@ -45,7 +45,7 @@ packages:
 	@touch $@
 
 .venv/test: .venv/run requirements-test.txt
-	@$(BIN)/python -m pip install -q --disable-pip-version-check -r requirements-test.txt
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -r requirements-test.txt
 	@touch $@
 
 clean:
