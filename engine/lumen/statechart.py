@@ -7,6 +7,7 @@ from typing import Any, Self
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import UsageError
 from lumen.interpreters.statechart import Snapshot, Step, Timing, due, elapse, freeze, initial, retimed, step, thaw
+from lumen.interpreters.statechart.parts import plain
 from lumen.language import machines
 from lumen.language.events import Event
 from lumen.loading.standalone import machine_from_dict, machine_from_file
@@ -76,8 +77,9 @@ class Interpreter:
     ) -> Self:
         """The interpreter that gave this `snapshot()`, going on; raises SnapshotError where it was of another machine.
 
-        Without a clock, time goes on where it stood. `timers` keep their `deadline` (what is past comes at once),
-        the time `remaining` to them, or `restart` with their whole delay.
+        Without a clock, time goes on where it stood. `timers` keep their `deadline`, for a clock that goes on counting
+        as the old one did (what is past comes at once); the time `remaining` to them when the snapshot was taken; or
+        `restart` with their whole delay.
         """
         if timers not in ("deadline", "remaining", "restart"):
             raise UsageError(f"timers can't be `{timers}`: write `deadline`, `remaining` or `restart`")
@@ -91,14 +93,19 @@ class Interpreter:
         """Enter the initial states. Raises UsageError when repeated, or where `input` does not fit."""
         if self._snapshot is not None:
             raise UsageError("the interpreter has been started already")
+        self._options["input"] = plain(self._options["input"], "input")
         first = self._take(initial(self.machine, at=self.clock.now(), **self._options))
         self.wake()
         return first
 
     def send(self, event: str | Event, data: Any = None) -> Step:
-        """Let an event happen now, after everything that is due; the step it made."""
-        self.wake()
+        """Let an event happen now, after everything that is due; the step it made.
+
+        Raises UsageError where `data` is no JSON data: a snapshot could not hold it.
+        """
         name, data, _, sendid = Event(event, data) if isinstance(event, str) else event
+        data = plain(data, "event.data")
+        self.wake()
         taken = self._take(step(self.machine, self._now, Event(name, data, self.clock.now(), sendid)))
         self.wake()
         return taken
@@ -124,8 +131,12 @@ class Interpreter:
         return dict(self._now.context)
 
     def snapshot(self) -> dict[str, Any]:
-        """Everything needed to go on elsewhere, as JSON data."""
-        return freeze(self.machine, self._now)
+        """Everything needed to go on elsewhere, as JSON data; its time `at` [s] is the clock's now.
+
+        Raises SnapshotError where an event brought something into the context that JSON can't hold.
+        """
+        now = self._now
+        return freeze(self.machine, now._replace(at=max(now.at, self.clock.now())))
 
     @property
     def _now(self) -> Snapshot:

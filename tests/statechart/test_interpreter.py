@@ -120,19 +120,6 @@ def test_alternatives_are_drawn_from_the_snapshot() -> None:
     assert set(said(1)) == {"x", "y", "z"}
 
 
-@pytest.mark.parametrize(("timers", "wakes"), [("deadline", 4.0), ("remaining", 103.0), ("restart", 104.0)])
-def test_timers_after_a_restore(timers: Any, wakes: float) -> None:
-    machine = Machine.from_dict({"states": {"a": {"on": {"tick": {}}, "after": {"4s": "b"}}, "b": None}})
-    it = Interpreter(machine)
-    it.start()
-    it.clock.wait(1.0)
-    it.send("tick")
-    again = Interpreter.restore(machine, json.loads(json.dumps(it.snapshot())), VirtualClock(100.0), timers)
-    assert (again.configuration == frozenset({"b"})) is (wakes < 100.0)
-    again.clock.wait(max(wakes, 100.0))
-    assert again.configuration == frozenset({"b"})
-
-
 def test_a_restored_interpreter_goes_on_with_its_do() -> None:
     it = running()
     again = Interpreter.restore(it.machine, json.loads(json.dumps(it.snapshot())))
@@ -159,15 +146,6 @@ def test_another_machines_snapshot_is_refused(change: dict[str, Any], difference
     states = change.get("states", TOUR["states"])
     with pytest.raises(SnapshotError, match=difference):
         Interpreter.restore(Machine.from_dict({**TOUR, **change, "states": states}), snapshot)
-
-
-@pytest.mark.parametrize("damage", [{"version": 2}, {"timers": 3}, {"configuration": ["x"]}, {"doing": {"greet": {}}}])
-def test_a_damaged_snapshot_is_refused(damage: dict[str, Any]) -> None:
-    it = running()
-    with pytest.raises(SnapshotError):
-        Interpreter.restore(it.machine, {**it.snapshot(), **damage})
-    with pytest.raises(SnapshotError):
-        Interpreter.restore(it.machine, {})
 
 
 def test_use_in_the_wrong_order_is_refused() -> None:

@@ -4,10 +4,10 @@ import time
 
 
 class RealClock:
-    """Seconds since it was made."""
+    """Seconds since it was made, and those that it began with: `now` [s]."""
 
-    def __init__(self) -> None:
-        self._start = time.monotonic()
+    def __init__(self, now: float = 0.0) -> None:
+        self._start = time.monotonic() - now
 
     def now(self) -> float:
         return time.monotonic() - self._start

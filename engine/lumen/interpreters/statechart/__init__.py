@@ -1,7 +1,8 @@
 """Statecharts with SCXML's meaning: an event and a snapshot become a step, and nothing else happens."""
 
-from lumen.interpreters.statechart.frozen import Timing, freeze, retimed, thaw
+from lumen.interpreters.statechart.frozen import Timing, freeze, retimed
 from lumen.interpreters.statechart.stepping import due, elapse, initial, step
+from lumen.interpreters.statechart.thawing import thaw
 from lumen.interpreters.statechart.values import (
     Awaiting,
     Counters,

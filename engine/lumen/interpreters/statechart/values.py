@@ -67,9 +67,10 @@ class Snapshot(NamedTuple):
 
     `configuration` holds the names of the active states but the root (the alias where there is one, else the path);
     `doing` the position of each active `do` and `history` the paths remembered by each history state, both by path.
-    `at` [s] is the time of the last event, `epoch` the local time of day at time 0 [s since midnight], `generator` the
-    state from which alternatives of `say` are drawn. `invoked` are the behaviours that run within it, by their ids; its
-    time, language, counters and generator are theirs too. Mappings in it are never changed, only replaced.
+    `at` [s] is the time of the last event, or a later one at which it was taken off a clock; `epoch` the local time of
+    day at time 0 [s since midnight]; `generator` the state from which alternatives of `say` are drawn. `invoked` are
+    the behaviours that run within it, by their ids; its time, language, counters and generator are theirs too.
+    Mappings in it are never changed, only replaced.
     """
 
     configuration: frozenset[str]

@@ -1,0 +1,193 @@
+"""Snapshots read back from JSON data: every piece has to be what it should be, and to fit the machine."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from lumen.errors import SnapshotError
+from lumen.interpreters.statechart.doing import Awaited, Choice, Deed, Pause, Together
+from lumen.interpreters.statechart.parts import Part
+from lumen.interpreters.statechart.program import compiled
+from lumen.interpreters.statechart.types import Check, fits, type_name
+from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Invoked, Position, Snapshot, Timer, Within
+from lumen.language.machines import Kind, Machine, State
+
+VERSION = 1
+
+
+def thaw(machine: Machine, data: Mapping[str, Any]) -> Snapshot:
+    """The snapshot that `freeze` made of this machine; raises SnapshotError naming what differs."""
+    try:
+        return _thawed(machine, Part(data))
+    except RecursionError:
+        raise SnapshotError("the snapshot is damaged: it is nested too deeply") from None
+
+
+def invoked_by(machine: Machine, state: str, id: str) -> Machine | None:
+    """The machine that a state invokes under that id, None where there is none."""
+    invokes = machine.states[state].invoke if state in machine.states else ()
+    return next((machine.invoked[invoke.behavior] for invoke in invokes if invoke.id == id), None)
+
+
+def _thawed(machine: Machine, data: Part) -> Snapshot:
+    if data["version"].data != VERSION:
+        raise SnapshotError(f"the snapshot is of version {data['version'].data}, and this Lumen reads {VERSION}")
+    if difference := _difference(machine, data["machine"]):
+        raise SnapshotError(f"the snapshot is not of `{machine.id}` as it is now: {difference}")
+    return _Reader(machine, data["configuration"]).read(data)
+
+
+class _Reader:
+    """Reads what belongs to a machine of which these states are active."""
+
+    def __init__(self, machine: Machine, configuration: Part) -> None:
+        self.machine = machine
+        self.names = frozenset(configuration.texts())
+        if unknown := self.names - {state.name for state in machine.states.values() if state.path}:
+            raise SnapshotError(f"`{machine.id}` has no {_list('state', unknown)}")
+        for state in machine.states.values():
+            if fault := self.fault(state):
+                raise configuration.refused(f"can't be: {fault}")
+
+    def read(self, data: Part) -> Snapshot:
+        return Snapshot(
+            configuration=self.names,
+            context=self.context(data["context"]),
+            at=data["at"].number(),
+            language=data["language"].text(),
+            timers=tuple(self.timer(row) for row in data["timers"].rows()),
+            doing={path: self.deed(path, part) for path, part in data["doing"].items()},
+            history={path: self.remembered(path, part) for path, part in data["history"].items()},
+            counters=Counters(**{key: data["counters"][key].count() for key in Counters._fields}),
+            generator=data["generator"].count() % 2**32,
+            epoch=data["epoch"].number(),
+            invoked={id: self.invoked(id, part) for id, part in data["invoked"].items()},
+        )
+
+    def active(self, path: str) -> bool:
+        state = self.machine.states.get(path)
+        return state is not None and (not path or state.name in self.names)
+
+    def fault(self, state: State) -> str:
+        """Why the children of a state can't be active as they are; empty where they can."""
+        children = [self.machine.states[path] for path in state.children]
+        active = [child for child in children if child.name in self.names]
+        here = f"`{state.name}`"
+        if any(child.kind is Kind.HISTORY for child in active):
+            return f"a history state of {here} is active"
+        if not self.active(state.path):
+            return f"`{active[0].name}` is active without {here} around it" if active else ""
+        if state.kind is Kind.COMPOUND and len(active) != 1:
+            return f"{len(active)} states of {here} are active, where one has to be"
+        regions = [child for child in children if child.kind is not Kind.HISTORY]
+        if state.kind is Kind.PARALLEL and len(active) < len(regions):
+            return f"only {len(active)} of the {len(regions)} regions of {here} are active"
+        return ""
+
+    def context(self, data: Part) -> dict[str, Any]:
+        checks: Mapping[str, Check | None] = compiled(self.machine).chart.checks
+        found: dict[str, Any] = {key: data[key].plain() for key in self.machine.context}
+        for key, part in data.items():
+            if key not in found:
+                raise part.refused("is no key of the context")
+            if not fits(found[key], checks[key]):
+                raise part.refused(f"is {checks[key]} and can't be a {type_name(found[key])}")
+        return found
+
+    def timer(self, data: Part) -> Timer:
+        kind, state = data["kind"].text(), data["state"].text()
+        if kind not in ("after", "send", "wait"):
+            raise data["kind"].refused("should be `after`, `send` or `wait`")
+        if kind != "send" and not self.active(state):
+            raise data["state"].refused(f"names `{state}`, which is not active")
+        due, delay = data["due"].number(), data["delay"].number()
+        event, told = data["event"].text(), data["data"].plain()
+        return Timer(data["id"].text(), due, delay, event, told, state, kind)  # type: ignore[arg-type]  # one of three
+
+    def deed(self, path: str, data: Part) -> Within:
+        node = compiled(self.machine).chart.nodes.get(path)
+        if node is None or not node.do or not self.active(path):
+            raise data.refused("stands for no active state with a `do`")
+        return _within(data, node.do, ("do",))
+
+    def remembered(self, path: str, data: Part) -> tuple[str, ...]:
+        state, paths = self.machine.states.get(path), tuple(data.texts())
+        if state is None or state.kind is not Kind.HISTORY:
+            raise data.refused("stands for no history state")
+        if not (paths and all(self.may_remember(state, each) for each in paths)) or self.exclude(paths):
+            raise data.refused(f"remembers {', '.join(paths) or 'nothing'}, which was never active there")
+        return paths
+
+    def may_remember(self, history: State, path: str) -> bool:
+        """Whether that is a state that the history state could stand for."""
+        state = self.machine.states.get(path)
+        if state is None or state.kind is Kind.HISTORY:
+            return False
+        home = history.parent or ""
+        below = path != "" and (not home or path.startswith(f"{home}."))
+        return below and not state.children if history.deep else state.parent == home
+
+    def exclude(self, paths: Sequence[str]) -> bool:
+        """Whether two of these states are never active at the same time."""
+        states = self.machine.states
+        around = {path for each in paths for path in _upwards(states, each)}
+        alone = (state.children for state in states.values() if state.kind is Kind.COMPOUND)
+        return any(len(around.intersection(children)) > 1 for children in alone)
+
+    def invoked(self, id: str, data: Part) -> Invoked:
+        state = data["state"].text()
+        machine = invoked_by(self.machine, state, id)
+        if machine is None or not self.active(state):
+            raise data.refused(f"was invoked by `{state}`, which is not active or invokes nothing of that id")
+        return Invoked(state, _thawed(machine, data["snapshot"]), data["commands"].count())
+
+
+def _upwards(states: Mapping[str, State], path: str | None) -> Iterator[str]:
+    while path is not None:
+        yield path
+        path = states[path].parent
+
+
+def _within(data: Part, deeds: tuple[Deed, ...], blocks: tuple[str, ...]) -> Within:
+    block, place = data["block"].text(), data["place"].count()
+    if block not in blocks:
+        raise data["block"].refused(f"should be {' or '.join(f'`{name}`' for name in blocks)}")
+    if place >= len(deeds):
+        raise data["place"].refused(f"is {place}, where there are {len(deeds)} actions")
+    return Within(block, place, _position(data["inner"], deeds[place]))  # type: ignore[arg-type]  # one of the blocks
+
+
+def _position(data: Part, deed: Deed) -> Position:
+    match deed:
+        case Awaited() | Pause():
+            return Awaiting(data["awaiting"].text())
+        case Choice():
+            return _within(data, deed.block(data["block"].text()), ("then", "else"))
+        case Together(branches):
+            rows = data["branches"].rows()
+            if len(rows) != len(branches) or all(row.data is None for row in rows):
+                raise data["branches"].refused(f"should say of {len(branches)} branches where they stand")
+            pairs = zip(rows, branches, strict=True)
+            return Fork(tuple(None if row.data is None else _position(row, branch) for row, branch in pairs))
+    raise data.refused("stands in an action that takes no time")
+
+
+def _difference(machine: Machine, other: Part) -> str:
+    id, hash = other["id"].text(), other["hash"].text()
+    theirs, their_keys = set(other["states"].texts()), set(other["context"].texts())
+    if hash == machine.hash and id == machine.id:
+        return ""
+    ours, keys = {path for path in machine.states if path}, set(machine.context)
+    found = [
+        f"it is of `{id}`" if id != machine.id else "",
+        f"{_list('state', theirs - ours)} is gone" if theirs - ours else "",
+        f"{_list('state', ours - theirs)} is new" if ours - theirs else "",
+        f"{_list('context key', their_keys - keys)} is gone" if their_keys - keys else "",
+        f"{_list('context key', keys - their_keys)} is new" if keys - their_keys else "",
+    ]
+    same = f"the states are the same, but what stands in them is not ({hash[:8]} then, {machine.hash[:8]} now)"
+    return "; ".join(filter(None, found)) or same
+
+
+def _list(what: str, names: Iterable[str]) -> str:
+    shown = sorted(names)
+    return f"{what} {', '.join(f'`{name}`' for name in shown[:8])}{', …' if len(shown) > 8 else ''}"
