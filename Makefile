@@ -16,7 +16,7 @@ help:
 run: .venv/run
 	@$(BIN)/lumen run --story $(STORY) --speed $(SPEED)
 
-test: packages check .cache/scion
+test: packages check .cache/scion .cache/sarif
 	@$(BIN)/lumen lint --strict
 	@$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not soak"
 
@@ -35,6 +35,11 @@ packages:
 .cache/scion: scripts/conformance-data.sh
 	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
 	@sh scripts/conformance-data.sh
+	@touch $@
+
+.cache/sarif: scripts/sarif-schema.sh
+	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
+	@sh scripts/sarif-schema.sh
 	@touch $@
 
 .venv/run: requirements.txt pyproject.toml

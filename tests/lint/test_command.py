@@ -5,13 +5,12 @@ import re
 import shutil
 import subprocess
 import sys
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import pytest
 
 from lumen.cli.main import main
-from lumen.cli.render.text import render
-from lumen.language.diagnostics import Diagnostic, Place, Severity
 from lumen.rules.codes import CODES
 
 BASE = Path(__file__).parent / "base"
@@ -32,7 +31,7 @@ def edit(file: Path, old: str, new: str) -> None:
 
 def test_a_sound_project(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lint", str(project)]) == 0
-    assert capsys.readouterr().out == "nothing wrong in 10 files\n"
+    assert capsys.readouterr().out == f"nothing wrong; 10 files checked in {project}\n"
 
 
 def test_the_shipped_project_has_no_findings() -> None:
@@ -42,14 +41,16 @@ def test_the_shipped_project_has_no_findings() -> None:
 def test_an_error_with_its_excerpt(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     edit(project / "behaviors/tour.yaml", "onError: idle", "onError: idel")
     assert main(["lint", str(project)]) == 1
-    assert capsys.readouterr().out.splitlines() == [
-        "behaviors/tour.yaml:28:14 error[unknown-state] there is no state `idel` to go to from `greet`",
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[:4] == [
+        f"{project}/behaviors/tour.yaml:28:14 error[unknown-state] there is no state `idel` to go to from `greet`",
         " 28 |     onError: idel",
         "    |              ^^^^",
         "    = did you mean `idle`?",
-        "  behaviors/tour.yaml:14:3 `idle` stands here",
-        "",
-        "1 error in 10 files",
+    ]
+    assert shown[-2:] == [
+        f"1 error in 1 file; 10 files checked in {project}",
+        "`lumen explain unknown-state` says more",
     ]
 
 
@@ -95,6 +96,125 @@ def test_every_error_at_once_and_no_traceback(project: Path) -> None:
     assert re.findall(r"error\[([a-z0-9-]+)\]", done.stdout) == ["tab", "unknown-key", "not-utf8"]
 
 
+def test_files_are_named_from_where_one_stands(
+    project: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    edit(project / "lumen.yaml", "story: hello", "story: helo")
+    monkeypatch.chdir(project)
+    assert main(["lint"]) == 1
+    assert capsys.readouterr().out.startswith("lumen.yaml:3:8 ")
+    monkeypatch.chdir(project / "motions")
+    assert main(["lint", "--format", "concise"]) == 1
+    assert capsys.readouterr().out.startswith("../lumen.yaml:3:8: error[unknown-story] ")
+    monkeypatch.chdir(project.parent)
+    assert main(["lint", "project"]) == 1
+    assert capsys.readouterr().out.startswith("project/lumen.yaml:3:8 ")
+
+
+def test_files_of_a_project_show_their_own_findings(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    edit(project / "lumen.yaml", "story: hello", "story: helo")
+    edit(project / "behaviors/tour.yaml", "onError: idle", "onError: idel")
+    assert main(["lint", str(project / "motions/wave.yaml"), str(project / "fuzzy")]) == 0
+    assert capsys.readouterr().out.startswith("nothing wrong; 10 files checked")
+    assert main(["lint", str(project / "behaviors/tour.yaml"), "--format", "json"]) == 1
+    assert [d["file"] for d in json.loads(capsys.readouterr().out)["diagnostics"]] == ["behaviors/tour.yaml"]
+    assert main(["lint", str(project / "behaviors/tour.yaml"), str(project / "lumen.yaml"), "--format", "json"]) == 1
+    assert len(json.loads(capsys.readouterr().out)["diagnostics"]) == 2
+
+
+def test_several_projects(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    edit(project / "lumen.yaml", "story: hello", "story: helo")
+    shutil.copytree(BASE, tmp_path / "other")
+    assert main(["lint", str(project), str(tmp_path / "other"), "--format", "concise"]) == 1
+    assert capsys.readouterr().out.endswith("1 error in 1 file; 20 files checked in 2 projects\n")
+
+
+def test_what_is_typed_stands_in_place_of_the_file(
+    project: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name = project / "behaviors/tour.yaml"
+    typed = name.read_bytes().replace(b"onError: idle", b"onError: idel")
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(typed)))
+    assert main(["lint", "-", "--stdin-filename", str(name), "--format", "concise"]) == 1
+    assert "unknown-state" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "part"),
+    [
+        (["--select", "speling"], "no code `speling`"),
+        (["--ignore", "unkown-state"], "did you mean `unknown-state`?"),
+        (["/dev/null/x"], "does not exist"),
+        (["-"], "--stdin-filename"),
+        (["--stdin-filename", "x.yaml"], "write `lumen lint -"),
+        (["--fix", "--diff"], "choose one"),
+        (["--watch", "--fix"], "--watch"),
+        (["--watch", "--format", "json"], "for people"),
+        (["FOREIGN"], "belongs to no project"),
+        (["PROJECT/README"], "nothing that lint reads"),
+    ],
+)
+def test_bad_usage_is_a_line_and_2(
+    arguments: list[str], part: str, project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "x.yaml").write_text("")
+    (project / "README").write_text("")
+    named = [a.replace("PROJECT", str(project)).replace("FOREIGN", str(tmp_path / "x.yaml")) for a in arguments]
+    assert main(["lint", *named]) == 2
+    error = capsys.readouterr().err
+    assert part in error
+    assert error.count("\n") == 1
+
+
+def test_select_and_ignore(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    edit(project / "lumen.yaml", "story: hello", "story: helo")
+    edit(project / "behaviors/tour.yaml", ', id: "Halo"', "")
+    for options, codes in {
+        (): ["missing-language", "unknown-story"],
+        ("--select", "speech"): ["missing-language"],
+        ("--select", "unknown,shape"): ["unknown-story"],
+        ("--ignore", "unknown-story", "--ignore", "tab"): ["missing-language"],
+        ("--select", "references", "--ignore", "unknown-story"): [],
+    }.items():
+        counts = "unknown-story" in codes
+        assert main(["lint", str(project), "--format", "json", *options]) == counts
+        assert [d["code"] for d in json.loads(capsys.readouterr().out)["diagnostics"]] == codes
+
+
+def test_the_verdict_counts_though_nobody_reads_it(project: Path) -> None:
+    edit(project / "lumen.yaml", "story: hello", "story: helo")
+    command = f"set -o pipefail; {sys.executable} -m lumen lint {project} | true"
+    environment = {"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin"}
+    done = subprocess.run(
+        ["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=60, check=False
+    )
+    assert (done.returncode, done.stderr) == (1, "")
+
+
+def test_explain(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "unknown-state"]) == 0
+    shown = capsys.readouterr().out
+    assert "unknown-state  error, references" in shown
+    assert "   3 |     on: {touched: gret}\n     |                   ^^^^\n" in shown
+    assert main(["explain"]) == 0
+    assert all(f"  {code} " in line for code, line in zip(CODES, rows(capsys.readouterr().out), strict=True))
+    assert main(["explain", "unkown-state"]) == 2
+    assert capsys.readouterr().err == "lumen explain: no code `unkown-state`: did you mean `unknown-state`?\n"
+
+
+def rows(shown: str) -> list[str]:
+    return [line for line in shown.splitlines() if line.startswith("  ")]
+
+
+def test_explain_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "tab", "--format", "json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["code"], found["family"], found["severity"]) == ("tab", "text", "error")
+    assert found["wrong"][0]["mark"] == {"line": 3, "first": 1, "last": 2}
+    assert main(["explain", "--format", "json"]) == 0
+    assert [entry["code"] for entry in json.loads(capsys.readouterr().out)["codes"]] == list(CODES)
+
+
 def test_lint_imports_nothing_heavy(project: Path) -> None:
     code = (
         "import sys; from lumen.cli.main import main; main(['lint', sys.argv[1]]);"
@@ -102,15 +222,6 @@ def test_lint_imports_nothing_heavy(project: Path) -> None:
         "sys.exit(f'imported {heavy}' if heavy else 0)"
     )
     assert run("-c", code, str(project)).returncode == 0
-
-
-def test_wide_and_hostile_characters() -> None:
-    text = "say: 漢字 \x1b[31m oops\n"
-    finding = Diagnostic("wrong-type", "bad \x1b]0;x\x07", Place("a.yaml", 1, 15, 1, 19), "", Severity.WARNING)
-    shown = render([finding], {"a.yaml": text.encode()}, coloured=False)
-    assert "\x1b" not in shown
-    assert "\x07" not in shown
-    assert "   | " + " " * 16 + "^^^^" in shown.splitlines()
 
 
 def test_every_code_that_is_used_is_registered() -> None:

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import lumen
-from lumen.cli.render import FORMATS
+from lumen.cli.findings import Findings
+from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
@@ -53,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
     write_result(text, options.output)
     if diagnostics or options.format != "text":
         files = {document.file: document.text.encode()}
-        print(FORMATS[options.format](diagnostics, files, coloured=coloured(sys.stderr)), file=sys.stderr)
+        print(render(options.format, [Findings(diagnostics, files)], coloured=coloured(sys.stderr)), file=sys.stderr)
     return int(has_errors(diagnostics))
 
 

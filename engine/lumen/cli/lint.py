@@ -1,29 +1,100 @@
 """`lumen lint`: what is wrong in a project, and where."""
 
 import argparse
+import os
+import sys
+from collections.abc import Sequence
 
-from lumen.cli.render import FORMATS
+from lumen.cli.findings import Findings
+from lumen.cli.linting import Asked, Wanted, asked, lint
+from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
-from lumen.language.diagnostics import Severity
-from lumen.loading.packaged import find_project
-from lumen.loading.project import read_files
-from lumen.rules import check_files
+from lumen.errors import UsageError
+from lumen.language.diagnostics import Diagnostic, Severity
+from lumen.rules.selection import selected
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "project", nargs="?", metavar="PROJECT", help="its folder; default: here or above, else the shipped one"
-    )
-    parser.add_argument("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
-    parser.add_argument("--strict", action="store_true", help="count warnings as errors")
+    add = parser.add_argument
+    add("paths", nargs="*", metavar="PATH", help="projects or files of them; default: the project here or above")
+    add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
+    add("--select", metavar="CODES", action="append", help="show these only: codes, their first words, or families")
+    add("--ignore", metavar="CODES", action="append", help="do not show these")
+    add("--strict", action="store_true", help="count warnings as errors")
+    add("--fix", action="store_true", help="repair what can be repaired without asking")
+    add("--diff", action="store_true", help="show what --fix would change, and change nothing")
+    add("--watch", action="store_true", help="lint again whenever a file is saved, until Ctrl-C")
+    add("--stdin-filename", metavar="FILE", help="with `-`: the file whose new content is read from standard input")
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where nothing is wrong, 1 where something is."""
-    root = find_project(options.project)
-    files = read_files(root)
-    diagnostics = check_files(root, files)[1]
-    shown = FORMATS[options.format](diagnostics, files, coloured=coloured())
-    print(shown.encode("utf-8", "replace").decode())
-    counted = (Severity.ERROR, Severity.WARNING) if options.strict else (Severity.ERROR,)
-    return int(any(d.severity in counted for d in diagnostics))
+    """0 where nothing is wrong, 1 where something is, or where --diff would change something."""
+    wanted = _wanted(options)
+    _consistent(options)
+    projects = asked(options.paths, options.stdin_filename)
+    if options.watch:
+        from lumen.cli.watching import watch
+
+        return watch(projects, wanted, options.format)
+    if options.diff:
+        return _diff(projects, wanted)
+    if options.fix:
+        _fix(projects, wanted)
+    found = [lint(what, wanted) for what in projects]
+    show(render(options.format, found, coloured=options.format in ("text", "concise") and coloured()))
+    return verdict(found, strict=options.strict)
+
+
+def verdict(found: Sequence[Findings], *, strict: bool = False) -> int:
+    """1 where something is shown that counts, else 0."""
+    return int(any(each.count(Severity.ERROR) or (strict and each.count(Severity.WARNING)) for each in found))
+
+
+def show(text: str) -> None:
+    """Print it; where nobody reads on (`lumen lint | head`), the verdict still counts."""
+    try:
+        print(text.encode("utf-8", "replace").decode(), flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _wanted(options: argparse.Namespace) -> Wanted:
+    chosen = selected(options.select) if options.select is not None else None
+    left_out = selected(options.ignore or ())
+
+    def wanted(diagnostic: Diagnostic) -> bool:
+        return (chosen is None or diagnostic.code in chosen) and diagnostic.code not in left_out
+
+    return wanted
+
+
+def _consistent(options: argparse.Namespace) -> None:
+    if options.fix and options.diff:
+        raise UsageError("--fix repairs and --diff only shows: choose one")
+    if options.watch and (options.fix or options.diff or "-" in options.paths):
+        raise UsageError("--watch goes on until Ctrl-C: it can't stand beside --fix, --diff or `-`")
+    if options.watch and options.format not in ("text", "concise"):
+        raise UsageError("--watch is for people: --format text or concise")
+    if "-" in options.paths and options.fix:
+        raise UsageError("`-` has no file to repair: --diff shows what would change")
+
+
+def _diff(projects: Sequence[Asked], wanted: Wanted) -> int:
+    from lumen.cli.fixing import diff, repair
+
+    lines: list[str] = []
+    for what in projects:
+        before, after, _ = repair(what, wanted)
+        lines += diff(what.root, before, after, coloured())
+    if lines:
+        show("\n".join(lines))
+    return int(bool(lines))
+
+
+def _fix(projects: Sequence[Asked], wanted: Wanted) -> None:
+    from lumen.cli.fixing import repair, tell, write
+
+    for what in projects:
+        before, after, done = repair(what, wanted)
+        write(what.root, before, after)
+        tell(done, Findings((), after, str(what.root)))

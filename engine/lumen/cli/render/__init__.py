@@ -1,17 +1,30 @@
-"""Diagnostics for people and for machines: each format a small function from findings to text."""
+"""Findings for people and for machines: each format a small function from findings to text."""
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from importlib import import_module
+from typing import Protocol, cast
 
-from lumen.cli.render.json import render as render_json
-from lumen.cli.render.text import render as render_text
-from lumen.language.diagnostics import Diagnostic
+from lumen.cli.findings import Findings
 
 
 class Renderer(Protocol):
-    """`files` are the project's, for excerpts; `coloured` is whether a terminal shows it."""
+    """`found` has what to show of each project; `coloured` is whether a terminal shows it."""
 
-    def __call__(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, bytes], *, coloured: bool) -> str: ...
+    def __call__(self, found: Sequence[Findings], *, coloured: bool = False) -> str: ...
 
 
-FORMATS: Mapping[str, Renderer] = {"text": render_text, "json": render_json}
+FORMATS: Mapping[str, str] = {
+    "text": "with the line of the file, for people",
+    "concise": "a line for each finding",
+    "json": "one object, for programs",
+    "sarif": "SARIF 2.1.0, for code scanning",
+    "github": "annotations of GitHub Actions",
+    "junit": "JUnit XML, for continuous integration",
+}
+"""Each format, and what it is for; it is the module of its name here."""
+
+
+def render(format: str, found: Sequence[Findings], *, coloured: bool = False) -> str:
+    """The findings in that format; empty where a format says nothing of nothing."""
+    module = import_module(f"lumen.cli.render.{format}")
+    return cast(Renderer, module.render)(found, coloured=coloured)

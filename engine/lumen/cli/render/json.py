@@ -1,12 +1,20 @@
 """One JSON object with all diagnostics, for other programs."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from lumen.language.diagnostics import Diagnostic
+from lumen.cli.findings import Findings
 
 
-def render(diagnostics: Sequence[Diagnostic], files: Mapping[str, bytes], *, coloured: bool = False) -> str:
-    """`{"diagnostics": […], "files": N}`; lines and columns from 1, files relative to the project."""
-    found = {"diagnostics": [d.to_json() for d in diagnostics], "files": len(files)}
-    return json.dumps(found, indent=2)
+def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
+    """`{"diagnostics": […], "files": N}`; lines and columns from 1, files relative to the project.
+
+    Of several projects each diagnostic also says its `project`: the folder.
+    """
+    several = len(found) > 1
+    rows = [
+        ({"project": each.root} if several else {}) | diagnostic.to_json()
+        for each in found
+        for diagnostic in each.diagnostics
+    ]
+    return json.dumps({"diagnostics": rows, "files": sum(len(each.files) for each in found)}, indent=2)

@@ -1,73 +1,85 @@
-"""Diagnostics with the line of the file that each is about, and a mark below the very word."""
+"""Findings with the line of the file that each is about, and a mark below the very word."""
 
-import unicodedata
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterator, Sequence
 
+from lumen.cli.findings import Findings
+from lumen.cli.render.words import COLOURS, clean, summary, width
 from lumen.cli.terminal import paint
-from lumen.language.diagnostics import Diagnostic, Place, Severity
+from lumen.language.diagnostics import Diagnostic, Place
 
-WIDTH = 160
-"""Characters of a line that are shown."""
+WIDTH = 140
+"""Characters of a line that are shown; of a longer one those around the word."""
 
-_COLOURS: Mapping[Severity, str] = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.INFO: "blue"}
-
-
-def render(diagnostics: Sequence[Diagnostic], files: Mapping[str, bytes], *, coloured: bool = False) -> str:
-    """Every finding with its place, excerpt and hint, and a line that counts them."""
-    texts: dict[str, list[str]] = {}
-    blocks = ["\n".join(_finding(d, files, texts, coloured)) for d in diagnostics]
-    return "\n\n".join([*blocks, _summary(diagnostics, len(files), coloured)])
+_BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
 
 
-def _finding(
-    diagnostic: Diagnostic, files: Mapping[str, bytes], texts: dict[str, list[str]], coloured: bool
-) -> Iterator[str]:
-    place, colour = diagnostic.place, _COLOURS[diagnostic.severity]
-    severity = paint(f"{diagnostic.severity}[{diagnostic.code}]", "bold", colour, on=coloured)
-    yield f"{paint(_clean(str(place)), 'bold', on=coloured)} {severity} {_clean(diagnostic.message)}"
-    yield from _excerpt(place, files, texts, colour, coloured)
+def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
+    """Every finding with its place, excerpt, related places and hint, and a line that counts them."""
+    blocks = []
+    for each in found:
+        excerpts = _Excerpts(each, coloured)
+        blocks += ["\n".join(_finding(d, excerpts)) for d in each.diagnostics]
+    return "\n\n".join([*blocks, summary(found, coloured) + _more(found)])
+
+
+def _more(found: Sequence[Findings]) -> str:
+    """What to type next, where something was found."""
+    codes = [d.code for each in found for d in each.diagnostics]
+    if not codes:
+        return ""
+    return f"\n`lumen explain {codes[0]}` says more{', and so for every word in brackets' if codes[1:] else ''}"
+
+
+def _finding(diagnostic: Diagnostic, excerpts: "_Excerpts") -> Iterator[str]:
+    place, colour, on = diagnostic.place, COLOURS[diagnostic.severity], excerpts.coloured
+    severity = paint(f"{diagnostic.severity}[{diagnostic.code}]", "bold", colour, on=on)
+    yield f"{excerpts.where(place)} {severity} {clean(diagnostic.message)}"
+    gutter = max(len(str(p.line)) for p in (place, *(r.place for r in diagnostic.related)))
+    yield from excerpts.of(place, gutter, "^", colour)
     if diagnostic.hint:
-        yield f"{' ' * (len(str(place.line)) + 2)}{paint('=', 'dim', on=coloured)} {_clean(diagnostic.hint)}"
+        yield f" {' ' * gutter} {paint('=', 'dim', on=on)} {clean(diagnostic.hint)}"
     for related in diagnostic.related:
-        yield f"  {_clean(str(related.place))} {_clean(related.message)}"
+        yield f"  {excerpts.where(related.place)} {clean(related.message)}"
+        yield from excerpts.of(related.place, gutter, "-", "blue")
 
 
-def _excerpt(
-    place: Place, files: Mapping[str, bytes], texts: dict[str, list[str]], colour: str, coloured: bool
-) -> Iterator[str]:
-    if place.file not in texts:
-        text = files.get(place.file, b"").decode("utf-8-sig", "replace")
-        texts[place.file] = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    lines = texts[place.file]
-    if place.line > len(lines) or not lines[place.line - 1].strip():
-        return
-    line = lines[place.line - 1][:WIDTH]
-    end = place.end_column if place.end_line == place.line else len(line.rstrip()) + 1
-    before, marked = line[: place.column - 1], line[place.column - 1 : max(end, place.column + 1) - 1]
-    gutter = " " * (len(str(place.line)) + 1)
-    bar = paint("|", "dim", on=coloured)
-    yield f" {place.line} {bar} {_clean(line)}"
-    yield f"{gutter} {bar} {' ' * _width(before)}{paint('^' * max(1, _width(marked)), colour, on=coloured)}"
+class _Excerpts:
+    """Lines of a project's files, with a mark below what is meant."""
+
+    def __init__(self, found: Findings, coloured: bool) -> None:
+        self.found, self.coloured = found, coloured
+        self.texts: dict[str, list[str]] = {}
+
+    def where(self, place: Place) -> str:
+        """The place as a terminal can follow it."""
+        name = f"{clean(self.found.name(place.file))}:{place.line}:{place.column}"
+        return paint(name, "bold", on=self.coloured)
+
+    def of(self, place: Place, gutter: int, sign: str, colour: str) -> Iterator[str]:
+        """The line of that place and the mark below it; nothing of a line that holds nothing."""
+        lines = self.lines(place.file)
+        if place.line > len(lines) or not lines[place.line - 1].strip():
+            return
+        line, start, end = _cut(lines[place.line - 1], place)
+        marked = sign * max(1, width(line[start:end]))
+        bar = paint("|", "dim", on=self.coloured)
+        yield f" {place.line:>{gutter}} {bar} {clean(line)}"
+        yield f" {' ' * gutter} {bar} {' ' * width(line[:start])}{paint(marked, colour, on=self.coloured)}"
+
+    def lines(self, file: str) -> list[str]:
+        if file not in self.texts:
+            self.texts[file] = _BREAK.split(self.found.files.get(file, b"").decode("utf-8-sig", "replace"))
+        return self.texts[file]
 
 
-def _summary(diagnostics: Sequence[Diagnostic], files: int, coloured: bool) -> str:
-    errors = sum(d.severity is Severity.ERROR for d in diagnostics)
-    warnings = sum(d.severity is Severity.WARNING for d in diagnostics)
-    what = ", ".join(_count(n, word) for n, word in ((errors, "error"), (warnings, "warning")) if n) or "nothing wrong"
-    colour = "red" if errors else "yellow" if warnings else "green"
-    return f"{paint(what, 'bold', colour, on=coloured)} in {_count(files, 'file')}"
-
-
-def _count(number: int, word: str) -> str:
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"
-
-
-def _clean(text: str) -> str:
-    """The text with control characters, which could move a terminal's cursor, made visible; a tab is one space."""
-    return "".join(" " if c == "\t" else c if c.isprintable() else "\ufffd" for c in text)
-
-
-def _width(text: str) -> int:
-    """Columns that the text takes on a terminal."""
-    wide = sum(unicodedata.east_asian_width(c) in "WF" for c in text)
-    return len(text) + wide - sum(unicodedata.combining(c) > 0 for c in text)
+def _cut(line: str, place: Place) -> tuple[str, int, int]:
+    """The line, not longer than WIDTH, and from where to where the place is in it."""
+    start = min(place.column - 1, len(line))
+    end = place.end_column - 1 if place.end_line == place.line else len(line.rstrip())
+    if len(line) <= WIDTH:
+        return line, start, max(end, start + 1)
+    first = max(0, min(start - WIDTH // 3, len(line) - WIDTH))
+    shown = ("…" if first else "") + line[first : first + WIDTH] + ("…" if first + WIDTH < len(line) else "")
+    offset = first - (1 if first else 0)
+    return shown, start - offset, max(min(end, first + WIDTH) - offset, start - offset + 1)

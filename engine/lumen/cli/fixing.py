@@ -1,0 +1,74 @@
+"""`lumen lint --fix` and `--diff`: what can be repaired without asking."""
+
+import difflib
+import os
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from lumen.cli.findings import Findings
+from lumen.cli.linting import Asked, Wanted, checked
+from lumen.cli.render.words import clean, counted
+from lumen.cli.terminal import paint
+from lumen.errors import UsageError
+from lumen.rules.repairs import Repair, repaired
+
+
+def repair(what: Asked, wanted: Wanted) -> tuple[Mapping[str, bytes], Mapping[str, bytes], list[Repair]]:
+    """The files of a project as they are, as they would be, and what was repaired."""
+    before = what.files()
+    after, done = repaired(before, lambda files: checked(what.root, files), lambda d: wanted(d) and what.shown(d))
+    return before, after, done
+
+
+def diff(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes], on: bool) -> Iterator[str]:
+    """The lines of a unified diff of what a repair changes."""
+    for file in (file for file in after if after[file] != before[file]):
+        name = Findings((), {}, str(root)).name(file)
+        old, new = (files[file].decode("utf-8", "replace").splitlines() for files in (before, after))
+        for line in difflib.unified_diff(old, new, name, name, lineterm=""):
+            yield paint(clean(line), *_style(line), on=on)
+
+
+def _style(line: str) -> tuple[str, ...]:
+    if line.startswith(("---", "+++")):
+        return ("bold",)
+    return {"+": ("green",), "-": ("red",), "@": ("cyan",)}.get(line[:1], ())
+
+
+def write(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -> None:
+    """Put the files that changed in place of the old ones, each at once and with its old rights.
+
+    Raises UsageError where one can't be written, or was saved by somebody else meanwhile.
+    """
+    for file in (file for file in after if after[file] != before[file]):
+        path = (root / file).resolve()
+        try:
+            if path.read_bytes() != before[file]:
+                raise UsageError(f"{path} was saved meanwhile: nothing was written to it, call lint again")
+            _replace(path, after[file])
+        except OSError as error:
+            raise UsageError(f"can't write {path}: {(error.strerror or str(error)).lower()}") from None
+
+
+def _replace(path: Path, content: bytes) -> None:
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(name, path.stat().st_mode & 0o7777)
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def tell(done: Sequence[Repair], names: Findings) -> None:
+    """Say on standard error what was repaired."""
+    for diagnostic, fix in done:
+        where = f"{names.name(diagnostic.place.file)}:{diagnostic.place.line}"
+        print(clean(f"fixed {where} [{diagnostic.code}] {fix.title}"), file=sys.stderr)
+    print(f"{counted(len(done), 'finding')} fixed", file=sys.stderr)

@@ -1,0 +1,104 @@
+"""Which projects and files somebody asks lint about, and what it finds in them."""
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from lumen.cli.findings import Findings
+from lumen.errors import UsageError
+from lumen.language.diagnostics import Diagnostic
+from lumen.loading.packaged import MAIN_FILE, find_project
+from lumen.loading.project import read_files
+from lumen.rules import check_files
+
+Wanted = Callable[[Diagnostic], bool]
+STDIN = "-"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A project; `only` are the files of it that were named, none where it is meant as a whole.
+
+    `typed` are contents that stand in place of those on the disk.
+    """
+
+    root: Path
+    only: frozenset[str] = frozenset()
+    typed: tuple[tuple[str, bytes], ...] = ()
+
+    def files(self) -> dict[str, bytes]:
+        return dict(sorted({**read_files(self.root), **dict(self.typed)}.items()))
+
+    def shown(self, diagnostic: Diagnostic) -> bool:
+        return not self.only or diagnostic.place.file in self.only
+
+
+def asked(paths: Sequence[str], stdin_name: str | None = None) -> list[Asked]:
+    """The projects that these folders and files are or belong to; without any, the one here or above.
+
+    Raises UsageError for what is neither, and for a file that lint does not read.
+    """
+    if STDIN in paths:
+        return [_typed(paths, stdin_name)]
+    if stdin_name:
+        raise UsageError("--stdin-filename names what is read with `-`: write `lumen lint - --stdin-filename FILE`")
+    if not paths:
+        return [Asked(find_project())]
+    projects: dict[Path, set[str] | None] = {}
+    for path in paths:
+        root, files = _owner(path)
+        known = projects.setdefault(root.resolve(), set())
+        projects[root.resolve()] = known | files if files and known is not None else None
+    return [Asked(root, frozenset(only or ())) for root, only in projects.items()]
+
+
+def lint(what: Asked, wanted: Wanted, files: Mapping[str, bytes] | None = None) -> Findings:
+    """The findings of a project that are wanted, those in files that nobody asked about counted.
+
+    `files` are what it holds, where somebody has read them already.
+    """
+    files = what.files() if files is None else files
+    found = [d for d in checked(what.root, files) if wanted(d)]
+    shown = [d for d in found if what.shown(d)]
+    return Findings(shown, files, str(what.root), what.only, len(found) - len(shown))
+
+
+def checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
+    """Everything wrong with these files."""
+    return check_files(root, files)[1]
+
+
+def _owner(path: str) -> tuple[Path, set[str]]:
+    """The project of a folder or file, and which of its files are meant; empty for the whole."""
+    here = Path(path)
+    try:
+        alone = here.is_file() and here.name != MAIN_FILE
+        inside = here.is_dir() and not (here / MAIN_FILE).exists() and _root(here) is not None
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path} can't be read: {getattr(error, 'strerror', None) or error}") from None
+    if not (alone or inside):
+        return find_project(here), set()
+    root = _root(here)
+    if root is None:
+        raise UsageError(f"{path} belongs to no project: there is no {MAIN_FILE} beside it or above")
+    name = here.absolute().relative_to(root).as_posix()
+    files = {file for file in read_files(root) if file == name or file.startswith(f"{name}/")}
+    if not files:
+        raise UsageError(f"in {path} is nothing that lint reads: docs/yaml.md lists the files of a project")
+    return root, files
+
+
+def _root(path: Path) -> Path | None:
+    """The nearest project around a file or folder."""
+    return next((folder for folder in path.absolute().parents if (folder / MAIN_FILE).is_file()), None)
+
+
+def _typed(paths: Sequence[str], name: str | None) -> Asked:
+    if len(paths) > 1 or not name:
+        raise UsageError("`-` reads one file: write `lumen lint - --stdin-filename behaviors/NAME.yaml`")
+    root = _root(Path(name))
+    if root is None:
+        raise UsageError(f"{name} belongs to no project: there is no {MAIN_FILE} beside it or above")
+    file = Path(name).absolute().relative_to(root).as_posix()
+    return Asked(root, frozenset((file,)), ((file, sys.stdin.buffer.read()),))

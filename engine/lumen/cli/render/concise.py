@@ -1,0 +1,22 @@
+"""A line for each finding, which editors and `grep` can read."""
+
+from collections.abc import Sequence
+
+from lumen.cli.findings import Findings
+from lumen.cli.render.words import COLOURS, clean, summary
+from lumen.cli.terminal import paint
+from lumen.language.diagnostics import Diagnostic
+
+
+def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
+    """`file:line:column: severity[code] message (hint)`, and a line that counts them."""
+    lines = [_line(each, diagnostic, coloured) for each in found for diagnostic in each.diagnostics]
+    return "\n".join([*lines, summary(found, coloured)])
+
+
+def _line(found: Findings, diagnostic: Diagnostic, coloured: bool) -> str:
+    place = diagnostic.place
+    where = paint(f"{clean(found.name(place.file))}:{place.line}:{place.column}:", "bold", on=coloured)
+    what = paint(f"{diagnostic.severity}[{diagnostic.code}]", COLOURS[diagnostic.severity], on=coloured)
+    hint = f" ({clean(diagnostic.hint)})" if diagnostic.hint else ""
+    return f"{where} {what} {clean(diagnostic.message)}{hint}"

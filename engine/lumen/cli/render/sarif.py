@@ -1,0 +1,115 @@
+"""SARIF 2.1.0 (OASIS), which code scanning reads."""
+
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import lumen
+from lumen.cli.findings import Findings
+from lumen.language.diagnostics import Diagnostic, Place, Severity
+from lumen.rules.codes import CODES, FAMILIES
+from lumen.rules.fixes import Edit, fixes
+from lumen.rules.pages import page
+
+_LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
+_SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+
+
+def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
+    """One run for each project; files are relative to the project, and that to the repository around it."""
+    log = {"$schema": _SCHEMA, "version": "2.1.0", "runs": [_run(each) for each in found]}
+    return json.dumps(log, indent=2)
+
+
+def _run(found: Findings) -> dict[str, Any]:
+    codes = sorted({d.code for d in found.diagnostics})
+    run: dict[str, Any] = {
+        "tool": {
+            "driver": {
+                "name": "lumen lint",
+                "semanticVersion": lumen.__version__,
+                "rules": [_rule(code) for code in codes],
+            }
+        },
+        "columnKind": "unicodeCodePoints",
+        "results": [_result(found, d, codes) for d in found.diagnostics],
+    }
+    if found.root:
+        run["originalUriBaseIds"] = _bases(found)
+    return run
+
+
+def _bases(found: Findings) -> dict[str, Any]:
+    repository = Path(found.repository)
+    inside = os.path.relpath(os.path.abspath(found.root), repository).replace(os.sep, "/")
+    here = {"uri": "" if inside == "." else f"{quote(inside)}/", "uriBaseId": "SRCROOT"}
+    return {"PROJECT": here, "SRCROOT": {"uri": repository.absolute().as_uri() + "/"}}
+
+
+def _rule(code: str) -> dict[str, Any]:
+    """What is to be known of a code; of one of another tool no more than its name."""
+    if code not in CODES:
+        return {"id": code}
+    severity, summary = CODES[code]
+    found = page(code)
+    plain = f"{found.what}\n\n{found.why}"
+    example = "\n\n".join(f"Wrong:\n\n```{s.language}\n{s.text}```" for s in found.wrong[:1])
+    right = "\n\n".join(f"Right:\n\n```{s.language}\n{s.text}```" for s in found.right[:1])
+    return {
+        "id": code,
+        "shortDescription": {"text": f"{summary[0].upper()}{summary[1:]}."},
+        "fullDescription": {"text": found.what},
+        "help": {"text": plain, "markdown": f"{plain}\n\n{example}\n\n{right}"},
+        "defaultConfiguration": {"level": _LEVELS[severity]},
+        "properties": {"tags": [family for family, codes in FAMILIES.items() if code in codes]},
+    }
+
+
+def _result(found: Findings, diagnostic: Diagnostic, codes: Sequence[str]) -> dict[str, Any]:
+    said = f"{diagnostic.message}: {diagnostic.hint}" if diagnostic.hint else diagnostic.message
+    result: dict[str, Any] = {
+        "ruleId": diagnostic.code,
+        "ruleIndex": codes.index(diagnostic.code),
+        "level": _LEVELS[diagnostic.severity],
+        "message": {"text": said},
+        "locations": [_location(found, diagnostic.place)],
+    }
+    if diagnostic.related:
+        result["relatedLocations"] = [
+            _location(found, r.place) | {"id": i, "message": {"text": r.message}}
+            for i, r in enumerate(diagnostic.related, 1)
+        ]
+    if proposed := fixes(diagnostic, found.files):
+        result["fixes"] = [
+            {"description": {"text": fix.title}, "artifactChanges": _changes(found, fix.edits)} for fix in proposed
+        ]
+    return result
+
+
+def _changes(found: Findings, edits: Sequence[Edit]) -> list[dict[str, Any]]:
+    return [
+        {
+            "artifactLocation": _artifact(found, edit.place.file),
+            "replacements": [{"deletedRegion": _region(edit.place), "insertedContent": {"text": edit.text}}],
+        }
+        for edit in edits
+    ]
+
+
+def _location(found: Findings, place: Place) -> dict[str, Any]:
+    return {"physicalLocation": {"artifactLocation": _artifact(found, place.file), "region": _region(place)}}
+
+
+def _artifact(found: Findings, file: str) -> dict[str, str]:
+    uri = quote(file)
+    return {"uri": uri, "uriBaseId": "PROJECT"} if found.root else {"uri": uri}
+
+
+def _region(place: Place) -> dict[str, int]:
+    """The place with its end, which lies behind its last character."""
+    end = (place.end_line, place.end_column)
+    end_line, end_column = max(end, (place.line, place.column))
+    return {"startLine": place.line, "startColumn": place.column, "endLine": end_line, "endColumn": end_column}

@@ -1,0 +1,83 @@
+"""Repairs a project as far as it can be done without asking; pure, from files to files."""
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+from lumen.language.diagnostics import Diagnostic, Severity, has_errors
+from lumen.rules.codes import CODES, FAMILIES
+from lumen.rules.fixes import Edit, Fix, edited, fixes
+
+Files = Mapping[str, bytes]
+Check = Callable[[Files], Sequence[Diagnostic]]
+
+_HIDING = frozenset(("tab", "yaml-syntax", "duplicate-key"))
+"""What hides the rest of a file: repaired, it may show more."""
+
+ROUNDS = 10
+
+
+class Repair(NamedTuple):
+    """A finding, and the fix that made it go."""
+
+    diagnostic: Diagnostic
+    fix: Fix
+
+
+def repaired(files: Files, check: Check, wanted: Callable[[Diagnostic], bool]) -> tuple[Files, list[Repair]]:
+    """The files with every fix of a wanted finding that leaves them better, and what was done.
+
+    Better is: the finding is gone and none has come. All at once where that goes well, else one by one.
+    """
+    found, done = check(files), list[Repair]()
+    for _ in range(ROUNDS):
+        proposals = [(d, proposed) for d in found if wanted(d) and (proposed := fixes(d, files))]
+        firsts = [Repair(d, proposed[0]) for d, proposed in proposals]
+        steps = [firsts, *([Repair(d, fix)] for d, proposed in proposals for fix in proposed)]
+        before = len(done)
+        for step in filter(None, steps):
+            if not all(r.diagnostic in found for r in step):
+                continue  # repaired meanwhile, or moved: the next round sees it
+            after = applied(files, step)
+            then = check(after)
+            if _better(found, then, step):
+                files, found = after, then
+                done += step
+        if len(done) == before:
+            break
+    return files, done
+
+
+def applied(files: Files, repairs: Iterable[Repair]) -> dict[str, bytes]:
+    """The files with the edits of these repairs."""
+    edits: dict[str, list[Edit]] = {}
+    for repair in repairs:
+        for edit in repair.fix.edits:
+            edits.setdefault(edit.place.file, []).append(edit)
+    return {**files, **{file: edited(files[file], those) for file, those in edits.items()}}
+
+
+def _better(before: Sequence[Diagnostic], after: Sequence[Diagnostic], step: Sequence[Repair]) -> bool:
+    """Whether all that the step is about has gone, and nothing has come but what it hid."""
+    then, now = Counter(map(_what, before)), Counter(map(_what, after))
+    if any(now[_what(r.diagnostic)] >= then[_what(r.diagnostic)] for r in step):
+        return False
+    return all(_hidden(code, file, before, step) for file, code, _ in now - then)
+
+
+def _hidden(code: str, file: str, before: Sequence[Diagnostic], step: Sequence[Repair]) -> bool:
+    """Whether a finding that has come may have been there all the time, not to be seen for what the step repaired.
+
+    What is unused or never reached is looked for where there are no errors. Behind a word that could not be used may
+    be more of its file, and behind a file that could not be read more of the project; but never a new fault of form.
+    """
+    if code in CODES and CODES[code].severity is not Severity.ERROR:
+        return has_errors(before)
+    near = any(file == r.diagnostic.place.file or r.diagnostic.code in _HIDING for r in step)
+    return near and code not in FAMILIES["text"] and code not in FAMILIES["shape"]
+
+
+def _what(diagnostic: Diagnostic) -> tuple[str, str, str]:
+    """The finding without its place, which an edit above it moves."""
+    return diagnostic.place.file, diagnostic.code, re.sub(r"\d+", "0", diagnostic.message)

@@ -1,0 +1,145 @@
+"""`--fix` and `--diff`: what is repaired, what is left to its author, and that nothing gets worse."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from lumen.cli.main import main
+from lumen.loading.project import read_files
+from lumen.rules import check_files
+from lumen.rules.fixes import near
+from lumen.rules.repairs import repaired
+
+HERE = Path(__file__).parent
+BASE = read_files(HERE / "base")
+TOUR, WAVE = "behaviors/tour.yaml", "motions/wave.yaml"
+
+
+def fixed(file: str, old: str, new: str) -> bytes:
+    """That file of the small project after old became new, and then all was repaired that can be."""
+    text = BASE[file].decode()
+    assert text.count(old) == 1
+    files = {**BASE, file: text.replace(old, new).encode()}
+    return repaired(files, lambda f: check_files(HERE, f)[1], lambda d: True)[0][file]
+
+
+@pytest.mark.parametrize(
+    ("file", "right", "wrong"),
+    [
+        (TOUR, "onError: idle", "onError: idel"),
+        (TOUR, "onError: idle", "onError: idle   # lumen: ignore[no-effect] x"),
+        (TOUR, "onError: idle", "onError: idle\n    # lumen: ignore[no-effect] x"),
+        (TOUR, "    onDone: talk", "    ondone: talk"),
+        (TOUR, "play: wave", "paly: wave"),
+        (TOUR, "play: wave", "play: Wave"),
+        (TOUR, "posture: Stand", "posture: Stnad"),
+        (TOUR, "{{ context.visitor }}", "{{ context.visitr }}"),
+        (TOUR, "      - wait: 500ms", "\t\t\t- wait: 500ms"),
+        (TOUR, "    onError: idle\n", "    onError: idle\n    onDone: talk\n"),
+        (WAVE, "joints: {LShoulderPitch: -60}", 'joints: {LSholderPitch: "-60"}'),
+        ("fuzzy/head.yaml", "Turn is Left", "Turn is Lfet"),
+        ("lumen.yaml", "story: hello", "story: helo"),
+    ],
+)
+def test_a_slip_is_repaired(file: str, right: str, wrong: str) -> None:
+    assert fixed(file, right, wrong) == BASE[file]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        (WAVE, "LShoulderPitch: -60", "RShoulderPitch: -60"),
+        (TOUR, "onError: idle", "onError: somewhere"),
+        (TOUR, "onError: idle\n", "onError: idle\n    onDone: idle\n"),
+        (TOUR, "  talk:\n", "  greet: {}\n  talk:\n"),
+        (TOUR, "onDone: talk", "onDone: [talk"),
+        (TOUR, "{raise: over}", "{raise: unheard}"),
+    ],
+)
+def test_what_only_its_author_can_know_is_left(file: str, old: str, new: str) -> None:
+    assert fixed(file, old, new).decode() == BASE[file].decode().replace(old, new)
+
+
+def test_line_ends_comments_and_a_byte_order_mark_stay() -> None:
+    text = BASE[TOUR].decode().replace("onError: idle", "onError: idel   # home").replace("\n", "\r\n")
+    files = {**BASE, TOUR: b"\xef\xbb\xbf" + text.encode()}
+    after = repaired(files, lambda f: check_files(HERE, f)[1], lambda d: True)[0][TOUR]
+    assert after == files[TOUR].replace(b"idel", b"idle")
+
+
+def test_one_code_of_a_comment_goes_and_the_other_stays() -> None:
+    after = fixed(
+        TOUR,
+        "- {raise: over}",
+        "- {raise: over}\n          - {raise: hi}  # lumen: ignore[no-effect, unused-event] soon",
+    )
+    assert b"- {raise: hi}  # lumen: ignore[unused-event] soon" in after
+
+
+def test_every_repair_of_many_mistakes_leaves_less_to_say() -> None:
+    text = BASE[TOUR].decode().replace("idle", "idel", 1).replace("play:", "paly:").replace("Halo", "Halo\t")
+    files = {**BASE, TOUR: text.encode(), WAVE: BASE[WAVE].replace(b"Stand", b"Stnad")}
+    after, done = repaired(files, lambda f: check_files(HERE, f)[1], lambda d: True)
+    assert len(check_files(HERE, after)[1]) <= len(check_files(HERE, files)[1]) - len(done)
+    assert (
+        check_files(HERE, repaired(after, lambda f: check_files(HERE, f)[1], lambda d: True)[0])[1]
+        == (check_files(HERE, after)[1])
+    )
+
+
+@pytest.mark.parametrize(
+    ("word", "meant", "is_near"),
+    [
+        ("idel", "idle", True), ("gret", "greet", True), ("greeet", "greet", True), ("graet", "great", True),
+        ("Wave", "wave", True), ("LHand", "RHand", False), ("state1", "state2", False), ("in", "on", False),
+        ("danse", "goodbye", False), ("greting", "greet", False), ("wave", "waves", True), ("", "", True),
+    ],
+)  # fmt: skip
+def test_near(word: str, meant: str, is_near: bool) -> None:
+    assert near(word, meant) is is_near
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    shutil.copytree(HERE / "base", tmp_path / "p")
+    file = tmp_path / "p" / TOUR
+    file.write_text(file.read_text().replace("onError: idle", "onError: idel   # home"))
+    file.chmod(0o640)
+    return tmp_path / "p"
+
+
+def test_diff_shows_and_changes_nothing(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = (project / TOUR).read_bytes()
+    assert main(["lint", str(project), "--diff"]) == 1
+    shown = capsys.readouterr().out
+    assert "-    onError: idel   # home\n+    onError: idle   # home\n" in shown
+    assert f"--- {project}/{TOUR}" in shown
+    assert (project / TOUR).read_bytes() == before
+
+
+def test_fix_writes_what_diff_showed(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lint", str(project), "--fix"]) == 0
+    said = capsys.readouterr()
+    assert said.out.startswith("nothing wrong; ")
+    assert "[unknown-state] write idle\n1 finding fixed\n" in said.err
+    assert b"onError: idle   # home" in (project / TOUR).read_bytes()
+    assert (project / TOUR).stat().st_mode & 0o777 == 0o640
+    assert main(["lint", str(project), "--diff"]) == 0
+    assert sorted(file.name for file in (project / "behaviors").iterdir()) == ["stories", "tour.yaml"]
+
+
+def test_fix_keeps_to_what_is_selected_and_named(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lint", str(project), "--diff", "--select", "speech"]) == 0
+    assert main(["lint", str(project / WAVE), "--diff"]) == 0
+    assert main(["lint", str(project / TOUR), "--diff"]) == 1
+
+
+def test_a_folder_that_can_not_be_written_to(project: Path, capsys: pytest.CaptureFixture[str],
+                                             monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
+    def refuse(*_: object, **__: object) -> tuple[int, str]:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("tempfile.mkstemp", refuse)
+    assert main(["lint", str(project), "--fix"]) == 2
+    assert "can't write" in capsys.readouterr().err
