@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
 from lumen.interpreters.inference.memberships import SHAPES, membership
 from lumen.interpreters.inference.weighted import INVERSES, value
-from lumen.language.controllers import TERMS, Term
+from lumen.language.controllers import TERMS, VALUES, Term
 
 CASES = [
     ("triangle", (0, 4, 10), {-1: 0, 0: 0, 2: 0.5, 4: 1, 7: 0.5, 11: 0}),
@@ -52,7 +52,7 @@ def test_a_shape_at_known_points(kind: str, parameters: tuple[float, ...], point
 
 
 def test_every_kind_has_a_shape_and_a_case() -> None:
-    assert set(SHAPES) == set(TERMS) - {"constant", "linear"} == {kind for kind, _, _ in CASES}
+    assert set(SHAPES) == set(TERMS) - {*VALUES, "function"} == {kind for kind, _, _ in CASES}
 
 
 def test_the_height_scales_the_shape() -> None:

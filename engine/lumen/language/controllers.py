@@ -28,8 +28,12 @@ TERMS: Mapping[str, tuple[str, ...]] = {
     "discrete": ("points [x, membership]",),
     "constant": ("value",),
     "linear": ("one coefficient for each input", "a constant"),
+    "function": ("a formula",),
 }
 """The kinds of term, and what their parameters are called, in order; `discrete` and `linear` take any number."""
+
+VALUES = ("constant", "linear")
+"""The kinds of term that are a single value, for weighted defuzzifiers; `function` may be that as well as a set."""
 
 HEDGES = ("any", "not", "extremely", "seldom", "somewhat", "very")
 
@@ -62,13 +66,15 @@ DEFUZZIFIERS = INTEGRAL + WEIGHTED
 class Term:
     """A linguistic value: a membership function of `kind` with its parameters in the variable's unit.
 
-    `parameters` stand in the order of `TERMS`; `discrete` has x, membership, x, membership, …
+    `parameters` stand in the order of `TERMS`; `discrete` has x, membership, x, membership, … and `function` none, but
+    a `formula`.
     """
 
     name: str
     kind: str
     parameters: tuple[float, ...]
     height: float = 1.0
+    formula: str = ""
     where: Path = field(default=(), compare=False)
 
 
@@ -77,7 +83,8 @@ class Variable:
     """A linguistic variable over [`minimum`, `maximum`]; `default` is the output where no rule fires.
 
     `lock_range` keeps the value within the range; `lock_previous` keeps an output as it was where no rule fires.
-    `aggregation`, `defuzzifier` and `resolution` (points of the sampled set) are an output's.
+    `aggregation`, `defuzzifier`, `resolution` (points of the sampled set) and `accuracy` (how far the value may be
+    from the integral) are an output's.
     """
 
     name: str
@@ -93,6 +100,7 @@ class Variable:
     aggregation: str = "maximum"
     defuzzifier: str = "centroid"
     resolution: int = 1000
+    accuracy: float | None = None
     where: Path = field(default=(), compare=False)
 
 

@@ -9,6 +9,7 @@ from lumen.loading.bindings import Bindings
 from lumen.loading.numbers import without_extremes
 from lumen.loading.rulebook import Rulebook
 from lumen.loading.source import Report
+from lumen.loading.table import spread, termless
 from lumen.loading.units import ANGLES, seconds
 from lumen.loading.variables import build_variables
 
@@ -19,7 +20,9 @@ def build_controller(data: Any, report: Report, *, name: str, into: type[C] = Co
     """The controller that the data of `fuzzy/NAME.yaml` describes, None where it has no inputs or no outputs."""
     if not isinstance(data, Mapping) or not data.get("inputs") or not data.get("outputs"):
         return None
-    data = without_extremes(data, report, _endless)
+    without_extremes(data, report, _endless)
+    data = spread(report)
+    termless(data, report)
     angle = ANGLES.get((data.get("units") or {}).get("angle", "rad"), 1.0)
     inputs, outputs = build_variables(data, report, "inputs"), build_variables(data, report, "outputs")
     blocks = Rulebook(data, report, inputs, outputs).blocks()
@@ -38,7 +41,7 @@ def build_controller(data: Any, report: Report, *, name: str, into: type[C] = Co
 
 def _endless(path: Path) -> bool:
     """Whether a number there may be infinite: ranges and terms have their own rules."""
-    return path[0] in ("inputs", "outputs") and ("terms" in path or "range" in path)
+    return "terms" in path or "range" in path
 
 
 def _tracking(data: Mapping[str, Any], report: Report, angle: float) -> Tracking:

@@ -1,14 +1,13 @@
 """The rules of a fuzzy controller, in blocks, with each of their words checked against the variables."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from lumen.language.controllers import Activation, Block, Operators, Rule, Variable
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.loading.rules import Mention, RuleSyntaxError, Word, parse_rule
 from lumen.loading.source import Report
-from lumen.loading.words import place_of
+from lumen.loading.words import report_word
 
 
 class Rulebook:
@@ -86,8 +85,4 @@ class Rulebook:
 
     def at_word(self, code: str, path: Path, text: str, word: Word, message: str, hint: str) -> None:
         """Report something of one word of a rule."""
-        before = len(self.report.diagnostics)
-        self.report(code, path, message, hint=hint)
-        if len(self.report.diagnostics) > before:
-            place = place_of(self.report.document, path, text, word.offset, len(word.text))
-            self.report.diagnostics[-1] = replace(self.report.diagnostics[-1], place=place)
+        report_word(self.report, code, path, text, word.offset, len(word.text), message, hint)

@@ -1,11 +1,12 @@
 """The terms of a fuzzy variable: which kind, how many parameters, and whether they make a shape."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import inf, isfinite
 from typing import Any
 
 from lumen.language.controllers import TERMS, Term
 from lumen.language.diagnostics import Path
+from lumen.loading.formulas import check_formula
 from lumen.loading.rules import KEYWORDS
 from lumen.loading.source import Report
 
@@ -17,12 +18,15 @@ _DIFFERENT = ("ramp", "arc", "semi-ellipse", "concave", "binary", "s-shape", "z-
 _INFINITE = ("triangle", "trapezoid", "binary", "rectangle")
 
 
-def build_terms(data: Mapping[str, Any], report: Report, path: Path, inputs: int) -> dict[str, Term]:
+def build_terms(
+    data: Mapping[str, Any], report: Report, path: Path, inputs: int, names: Sequence[str] = ()
+) -> dict[str, Term]:
     """The usable ones of these terms, by name; what is wrong with the others is reported at its number.
 
-    `inputs` is how many inputs the controller has, of which each `linear` term takes a coefficient.
+    `inputs` is how many inputs the controller has, of which each `linear` term takes a coefficient; `names` are the
+    variables that a formula may ask for.
     """
-    terms = (_Term(name, shape, report, (*path, name), inputs).build() for name, shape in data.items())
+    terms = (_Term(name, shape, report, (*path, name), inputs, names).build() for name, shape in data.items())
     return {term.name: term for term in terms if term}
 
 
@@ -35,8 +39,11 @@ def plain_name(name: str, report: Report, path: Path) -> None:
 class _Term:
     """One term under construction."""
 
-    def __init__(self, name: str, shape: Mapping[str, Any], report: Report, path: Path, inputs: int) -> None:
-        self.name, self.shape, self.report, self.path, self.inputs = name, shape, report, path, inputs
+    def __init__(
+        self, name: str, shape: Mapping[str, Any], report: Report, path: Path, inputs: int, names: Sequence[str]
+    ) -> None:
+        self.name, self.shape, self.report, self.path = name, shape, report, path
+        self.inputs, self.names = inputs, names
         self.kinds = [kind for kind in shape if kind in TERMS]
 
     def build(self) -> Term | None:
@@ -45,10 +52,17 @@ class _Term:
             self.shapeless()
             return None
         kind = self.kinds[0]
+        if kind == "function":
+            return self.function(self.shape[kind])
         parameters = _flat(self.shape[kind])
         if not (self.counted(kind, parameters) and self.sound(kind, parameters)):
             return None
-        return Term(self.name, kind, parameters, float(self.shape.get("height", 1.0)), self.path)
+        return Term(self.name, kind, parameters, float(self.shape.get("height", 1.0)), where=self.path)
+
+    def function(self, text: str) -> Term | None:
+        if not check_formula(text, self.names, self.report, (*self.path, "function")):
+            return None
+        return Term(self.name, "function", (), float(self.shape.get("height", 1.0)), text, self.path)
 
     def shapeless(self) -> None:
         if len(self.kinds) > 1:

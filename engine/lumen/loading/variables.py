@@ -6,7 +6,7 @@ from math import isfinite
 from typing import Any
 
 from lumen.interpreters.inference.weighted import INVERSES
-from lumen.language.controllers import WEIGHTED, Variable
+from lumen.language.controllers import VALUES, WEIGHTED, Variable
 from lumen.language.diagnostics import Path
 from lumen.loading.source import Report
 from lumen.loading.terms import build_terms, plain_name
@@ -28,7 +28,7 @@ class _Variables:
 
     def variable(self, name: str, spec: Mapping[str, Any]) -> Variable | None:
         self.named(name)
-        if "range" not in spec or (self.side == "outputs" and "terms" not in spec):
+        if "range" not in spec or (self.side == "outputs" and not spec.get("terms")):
             return None
         low, high = (float(end) for end in spec["range"])
         if not self.spans(name, low, high):
@@ -38,7 +38,9 @@ class _Variables:
             name,
             low,
             high,
-            build_terms(spec.get("terms") or {}, self.report, (*path, "terms"), len(self.data["inputs"])),
+            build_terms(
+                spec.get("terms") or {}, self.report, (*path, "terms"), len(self.data["inputs"]), self.named_in(name)
+            ),
             unit=spec.get("unit", ""),
             direction=spec.get("direction", ""),
             default=spec.get("default"),
@@ -57,6 +59,14 @@ class _Variables:
         if self.side == "outputs" and name in self.data["inputs"]:
             message = f"`{name}` is an input already"
             self.report("duplicate-variable", ("outputs", name), message, hint="give one another name", key=True)
+
+    def named_in(self, name: str) -> tuple[str, ...]:
+        """The variables that a formula of this one's terms may ask for: with weights, what is known before it."""
+        spec = self.data[self.side][name]
+        if self.side == "inputs" or {**self.operators, **spec}.get("defuzzifier", "centroid") not in WEIGHTED:
+            return ()
+        outputs = list(self.data["outputs"])
+        return (*self.data["inputs"], *outputs[: outputs.index(name)])
 
     def spans(self, name: str, low: float, high: float) -> bool:
         """Whether the range holds something; an input's may be without end."""
@@ -81,6 +91,7 @@ class _Variables:
             defuzzifier=method,
             aggregation=said.get("aggregation", usual),
             resolution=int(said.get("resolution", 1000)),
+            accuracy=said.get("accuracy"),
         )
 
     def fits(self, variable: Variable) -> None:
@@ -89,11 +100,11 @@ class _Variables:
         weighted = output and variable.defuzzifier in WEIGHTED
         for term in variable.terms.values():
             path = (*term.where, term.kind)
-            if weighted and term.kind not in ("constant", "linear", *INVERSES):
+            if weighted and term.kind not in (*VALUES, "function", *INVERSES):
                 message = f"`{variable.defuzzifier}` can't use `{term.kind}`, which has no single value"
-                hint = f"use one of `constant`, `linear`, {', '.join(f'`{k}`' for k in INVERSES)}"
+                hint = f"use one of `constant`, `linear`, `function`, {', '.join(f'`{k}`' for k in INVERSES)}"
                 self.report("term-without-value", path, message, hint=hint, key=True)
-            elif not weighted and term.kind in ("constant", "linear"):
+            elif not weighted and term.kind in VALUES:
                 what = f"`{variable.defuzzifier}` needs sets" if output else "an input needs sets"
                 hint = "use `defuzzifier: weighted-average`" if output else "use a shape, as `triangle`"
                 message = f"{what}, and `{term.kind}` is a single value"

@@ -1,7 +1,20 @@
 """The place of a single word within a text of a document."""
 
+from dataclasses import replace
+
 from lumen.language.diagnostics import Path, Place
-from lumen.loading.source import Document
+from lumen.loading.source import Document, Report
+
+
+def report_word(
+    report: Report, code: str, path: Path, text: str, offset: int, length: int, message: str, hint: str
+) -> None:
+    """Report something of `text[offset : offset + length]`, where `text` is the scalar at `path`."""
+    before = len(report.diagnostics)
+    report(code, path, message, hint=hint)
+    if len(report.diagnostics) > before:
+        place = place_of(report.document, path, text, offset, length)
+        report.diagnostics[-1] = replace(report.diagnostics[-1], place=place)
 
 
 def place_of(document: Document, path: Path, text: str, offset: int, length: int) -> Place:

@@ -1,5 +1,6 @@
 """From the degrees of an output's conclusions to its value, by the cheapest way that is exact."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from lumen.interpreters.inference.arithmetic import NUMBERS
@@ -20,18 +21,24 @@ if TYPE_CHECKING:
 class Defuzzifier(Protocol):
     """Degrees of an output's conclusions to its value; NaN where nothing fires."""
 
-    def crisp(self, degrees: list[float], inputs: list[float]) -> float: ...
+    def crisp(self, degrees: list[float], values: list[float]) -> float: ...
 
-    def crisp_batch(self, degrees: "list[Array]", inputs: "list[Array]") -> "Array": ...
+    def crisp_batch(self, degrees: "list[Array]", values: "list[Array]") -> "Array": ...
 
 
-def defuzzifier(variable: Variable, conclusions: list[Conclusion]) -> Defuzzifier:
-    """The cheapest defuzzifier that is exact for what the rules conclude about an output."""
+def defuzzifier(
+    variable: Variable, conclusions: list[Conclusion], known: Sequence[str] = (), inputs: int = 0
+) -> Defuzzifier:
+    """The cheapest defuzzifier that is exact for what the rules conclude about an output.
+
+    It is handed, beside the degrees, the values of the variables called `known`; the first `inputs` are the inputs.
+    """
     names = list(dict.fromkeys(conclusion.term for conclusion in conclusions))
     which = [names.index(conclusion.term) for conclusion in conclusions]
     terms = [variable.terms[name] for name in names]
     if variable.defuzzifier in WEIGHTED:
-        return Weighted(terms, which, variable.aggregation, variable.defuzzifier == "weighted-average")
+        average = variable.defuzzifier == "weighted-average"
+        return Weighted(terms, which, variable.aggregation, average, known, inputs)
     points = midpoints(variable)
     memberships = [sampled(term, points) for term in terms]
     implications = [conclusion.implication for conclusion in conclusions]

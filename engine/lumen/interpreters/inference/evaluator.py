@@ -28,8 +28,9 @@ class Evaluator:
         self.controller = controller
         self.program = Program(controller, NUMBERS)
         self._names = tuple(controller.inputs)
+        names, count = (*controller.inputs, *controller.outputs), len(controller.inputs)
         self._outputs = [
-            (variable, defuzzifier(variable, self.program.conclusions[name]), self._slots(name))
+            (variable, defuzzifier(variable, self.program.conclusions[name], names, count), self._slots(name))
             for name, variable in controller.outputs.items()
         ]
 
@@ -40,14 +41,15 @@ class Evaluator:
         """
         values = self._values(inputs)
         tape = self.program.run(values)
-        result = {}
+        result: dict[str, float] = {}
         for variable, output, slots in self._outputs:
             value = output.crisp([tape[slot] for slot in slots], values) if slots else float("nan")
-            if value != value:
-                value = _fallback(variable, inputs, previous)
-            elif variable.lock_range:
+            if variable.lock_range:
                 value = min(max(value, variable.minimum), variable.maximum)
+            if value - value != 0.0:  # NaN, or infinite
+                value = _fallback(variable, inputs, previous)
             result[variable.name] = value
+            values.append(value)
         return result
 
     def evaluate_batch(
@@ -57,12 +59,12 @@ class Evaluator:
         import numpy as np
 
         columns = self._columns(inputs)
-        parts = [self._chunk([c[i : i + _CHUNK] for c in columns]) for i in range(0, len(columns[0]), _CHUNK)]
-        result = {}
-        for k, (variable, _, _) in enumerate(self._outputs):
-            values = np.concatenate([part[k] for part in parts]) if parts else np.zeros(0)
-            result[variable.name] = self._filled(variable, values, inputs, previous)
-        return result
+        before, parts = dict(previous or {}), []
+        for i in range(0, len(columns[0]), _CHUNK):
+            parts.append(self._chunk([c[i : i + _CHUNK] for c in columns], before))
+            before = {name: float(values[-1]) for name, values in parts[-1].items()}
+        empty = [dict.fromkeys(self.controller.outputs, np.zeros(0))]
+        return {name: np.concatenate([part[name] for part in parts or empty]) for name in self.controller.outputs}
 
     @cached_property
     def _array_program(self) -> Program:
@@ -105,32 +107,29 @@ class Evaluator:
                 hint = did_you_mean(name, self._names, "its inputs are")
                 raise UsageError(f"`{self.controller.name}` has no input `{name}`: {hint}")
 
-    def _chunk(self, columns: "list[Array]") -> "list[Array]":
+    def _chunk(self, columns: "list[Array]", previous: Mapping[str, float]) -> "dict[str, Array]":
         import numpy as np
 
-        shape = columns[0].shape
+        shape, values = columns[0].shape, list(columns)
+        result: dict[str, Array] = {}
         with np.errstate(all="ignore"):  # both sides of a `where` are computed; the one that counts is in its domain
             tape = self._array_program.run(columns)
-            return [
-                output.crisp_batch([np.broadcast_to(tape[slot], shape) for slot in slots], columns)
-                if slots
-                else np.full(shape, np.nan)
-                for _, output, slots in self._outputs
-            ]
+            for variable, output, slots in self._outputs:
+                degrees = [np.broadcast_to(tape[slot], shape) for slot in slots]
+                found = output.crisp_batch(degrees, values) if slots else np.full(shape, np.nan)
+                result[variable.name] = self._filled(variable, found, columns, previous)
+                values.append(result[variable.name])
+        return result
 
     def _filled(
-        self,
-        variable: Variable,
-        values: "Array",
-        inputs: "Mapping[str, ArrayLike]",
-        previous: Mapping[str, float] | None,
+        self, variable: Variable, values: "Array", columns: "list[Array]", previous: Mapping[str, float]
     ) -> "Array":
         """The values with their gaps filled: by the value before where the output locks it, else by the default."""
         import numpy as np
 
         if variable.lock_range:
             values = np.clip(values, variable.minimum, variable.maximum)
-        if not (gaps := np.isnan(values)).any():
+        if not (gaps := ~np.isfinite(values)).any():
             return values
         if variable.lock_previous:
             latest = np.maximum.accumulate(np.where(gaps, -1, np.arange(len(values))))
@@ -138,13 +137,13 @@ class Evaluator:
             gaps = np.isnan(values)
         if gaps.any():
             row = int(gaps.argmax())
-            first = {name: float(np.atleast_1d(np.asarray(inputs[name]))[row]) for name in self._names}
+            first = {name: float(column[row]) for name, column in zip(self._names, columns, strict=True)}
             values = np.where(gaps, _fallback(variable, first, previous), values)
         return values
 
 
 def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping[str, float] | None) -> float:
-    """The output where no rule fires."""
+    """The output where no rule fires, or none that fires has a value."""
     if variable.lock_previous and previous and not isnan(previous.get(variable.name, float("nan"))):
         return previous[variable.name]
     if variable.default is not None:

@@ -56,7 +56,7 @@ class LayeredCentroid:
         self._layers: dict[int, Layer] = {}
         self._tables: dict[int, _Table] = {}
 
-    def crisp(self, degrees: Sequence[float], inputs: Sequence[float] = ()) -> float:
+    def crisp(self, degrees: Sequence[float], values: Sequence[float] = ()) -> float:
         """The centroid; NaN where no term is clipped above zero."""
         area = moment = 0.0
         ordered = sorted(zip(degrees, self._terms, strict=True), reverse=True)
@@ -74,7 +74,7 @@ class LayeredCentroid:
                 moment += b
         return self._middle + moment / area if area > 0.0 else nan
 
-    def crisp_batch(self, degrees: "Sequence[Array]", inputs: "Sequence[Array]" = ()) -> "Array":
+    def crisp_batch(self, degrees: "Sequence[Array]", values: "Sequence[Array]" = ()) -> "Array":
         """The centroids, Shape (n,), of degrees of Shape (n,) each; NaN where no term is clipped above zero."""
         import numpy as np
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from math import inf, pi
 
 from lumen.interpreters.inference.arithmetic import Arithmetic, Number
+from lumen.interpreters.inference.formulas import formula
 from lumen.language.controllers import Term
 
 Membership = Callable[[Number], Number]
@@ -21,10 +22,21 @@ LARGE = 700.0
 
 def membership(m: Arithmetic, term: Term) -> Membership:
     """The membership function of a term, its height included; not for `constant` and `linear`, which have none."""
-    shape = SHAPES[term.kind](m, *term.parameters)
+    shape = function(m, term.formula) if term.kind == "function" else SHAPES[term.kind](m, *term.parameters)
     if term.height == 1.0:
         return shape
     return lambda x: term.height * shape(x)
+
+
+def function(m: Arithmetic, text: str) -> Membership:
+    """A formula of x, kept within 0 and 1, and 0 where it has no value."""
+    value = formula(m, text, ())
+
+    def shape(x: Number) -> Number:
+        found = value(x, ())
+        return m.where(found == found, m.clamp(found, 0.0, 1.0), 0.0)
+
+    return shape
 
 
 def _rising(m: Arithmetic, start: float, end: float) -> Membership:

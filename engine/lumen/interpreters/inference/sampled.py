@@ -36,13 +36,13 @@ class Sampled:
         self._aggregation = norm(arrays(), aggregation)
         self._method = METHODS[method]
 
-    def crisp(self, degrees: Sequence[float], inputs: Sequence[float] = ()) -> float:
+    def crisp(self, degrees: Sequence[float], values: Sequence[float] = ()) -> float:
         """The output; NaN where the set is empty."""
         import numpy as np
 
         return float(self.crisp_batch([np.array([degree]) for degree in degrees])[0])
 
-    def crisp_batch(self, degrees: "Sequence[Array]", inputs: "Sequence[Array]" = ()) -> "Array":
+    def crisp_batch(self, degrees: "Sequence[Array]", values: "Sequence[Array]" = ()) -> "Array":
         """The outputs, Shape (n,), of degrees of Shape (n,) each; NaN where a set is empty."""
         import numpy as np
 

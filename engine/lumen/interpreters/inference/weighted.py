@@ -6,6 +6,7 @@ from math import nan
 from typing import TYPE_CHECKING
 
 from lumen.interpreters.inference.arithmetic import NUMBERS, Arithmetic, Number, arrays, total
+from lumen.interpreters.inference.formulas import formula
 from lumen.interpreters.inference.norms import norm
 from lumen.language.controllers import Term
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 Value = Callable[[Number, Sequence[Number]], Number]
-"""What a term stands for at a degree, the controller's inputs being as they are."""
+"""What a term stands for at a degree, the controller's variables being as they are."""
 
 _TINY = 1e-300
 
@@ -53,14 +54,19 @@ INVERSES: Mapping[str, Callable[..., Callable[[Number], Number]]] = {
 """For each monotonic kind the x at which the membership is w, from the term's height and parameters."""
 
 
-def value(m: Arithmetic, term: Term) -> Value:
-    """The value of a term of `constant`, `linear` or a monotonic kind (`INVERSES`)."""
+def value(m: Arithmetic, term: Term, names: Sequence[str] = (), inputs: int = 0) -> Value:
+    """The value of a term of `constant`, `linear`, `function` or a monotonic kind (`INVERSES`).
+
+    It is handed the degree and the variables called `names`, of which the first `inputs` are the controller's inputs.
+    """
     if term.kind == "constant":
-        return lambda w, inputs: term.parameters[0]
+        return lambda w, values: term.parameters[0]
     if term.kind == "linear":
-        return lambda w, inputs: _line(term.parameters, inputs)
+        return lambda w, values: _line(term.parameters, values[:inputs])
+    if term.kind == "function":
+        return formula(m, term.formula, names)
     inverse = INVERSES[term.kind](m, term.height, *term.parameters)
-    return lambda w, inputs: inverse(w)
+    return lambda w, values: inverse(w)
 
 
 def _line(coefficients: tuple[float, ...], inputs: Sequence[Number]) -> Number:
@@ -69,27 +75,39 @@ def _line(coefficients: tuple[float, ...], inputs: Sequence[Number]) -> Number:
 
 
 class Weighted:
-    """Defuzzifies by weighted average or sum; `which` says for each degree handed in whose weight it is."""
+    """Defuzzifies by weighted average or sum; `which` says for each degree handed in whose weight it is.
 
-    def __init__(self, terms: Sequence[Term], which: Sequence[int], aggregation: str, average: bool) -> None:
+    `values` are the inputs and the outputs before this one, called `names`; `inputs` is how many of them are inputs.
+    """
+
+    def __init__(
+        self,
+        terms: Sequence[Term],
+        which: Sequence[int],
+        aggregation: str,
+        average: bool,
+        names: Sequence[str] = (),
+        inputs: int = 0,
+    ) -> None:
         self._terms, self._which, self._aggregation, self._average = terms, which, aggregation, average
-        self._on_numbers = [value(NUMBERS, term) for term in terms]
+        self._names, self._inputs = names, inputs
+        self._on_numbers = [value(NUMBERS, term, names, inputs) for term in terms]
         self._on_arrays: list[Value] = []
 
-    def crisp(self, degrees: Sequence[float], inputs: Sequence[float]) -> float:
-        """The output; NaN where no term has a weight."""
-        return float(self._crisp(NUMBERS, self._on_numbers, degrees, inputs))
+    def crisp(self, degrees: Sequence[float], values: Sequence[float]) -> float:
+        """The output; NaN where no term has a weight, or a formula no value."""
+        return float(self._crisp(NUMBERS, self._on_numbers, degrees, values))
 
-    def crisp_batch(self, degrees: "Sequence[Array]", inputs: "Sequence[Array]") -> "Array":
+    def crisp_batch(self, degrees: "Sequence[Array]", values: "Sequence[Array]") -> "Array":
         """The outputs, Shape (n,), of degrees of Shape (n,) each; NaN where no term has a weight."""
-        self._on_arrays = self._on_arrays or [value(arrays(), term) for term in self._terms]
-        return self._crisp(arrays(), self._on_arrays, degrees, inputs)  # type: ignore[no-any-return]
+        self._on_arrays = self._on_arrays or [value(arrays(), term, self._names, self._inputs) for term in self._terms]
+        return self._crisp(arrays(), self._on_arrays, degrees, values)  # type: ignore[no-any-return]
 
-    def _crisp(self, m: Arithmetic, values: list[Value], degrees: Sequence[Number], inputs: Sequence[Number]) -> Number:
+    def _crisp(self, m: Arithmetic, terms: list[Value], degrees: Sequence[Number], values: Sequence[Number]) -> Number:
         by_term = self._weights(m, degrees)
         whole = total(list(by_term.values()))
         some = whole > 0.0
-        sums = total([m.where(w > 0.0, w * values[k](w, inputs), 0.0) for k, w in by_term.items()])
+        sums = total([m.where(w > 0.0, w * terms[k](w, values), 0.0) for k, w in by_term.items()])
         return m.where(some, sums / m.where(some, whole, 1.0) if self._average else sums, nan)
 
     def _weights(self, m: Arithmetic, degrees: Sequence[Number]) -> dict[int, Number]:

@@ -1,0 +1,53 @@
+"""The formula of a `function` term: whether it can be read, and each of its words checked."""
+
+from collections.abc import Sequence
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions import parse_expression
+from lumen.interpreters.expressions.tree import Binary, Call, Choice, Literal, Logic, Name, Node, Unary, walk
+from lumen.interpreters.inference.formulas import FUNCTIONS
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.loading.source import Report
+from lumen.loading.words import report_word
+
+_PLAIN = (Name, Unary, Logic, Choice)
+
+
+def check_formula(text: str, names: Sequence[str], report: Report, path: Path) -> bool:
+    """Whether the text at `path` is a formula of x and the variables called `names`; what is wrong is reported."""
+    try:
+        tree = parse_expression(text)
+    except ExpressionError as error:
+        report_word(report, "expression-syntax", path, text, error.offset, 1, error.message, error.hint)
+        return False
+    found = [_sound(node, text, names, report, path) for node, _ in walk(tree)]
+    return all(found)
+
+
+def _sound(node: Node, text: str, names: Sequence[str], report: Report, path: Path) -> bool:
+    def refuse(code: str, offset: int, length: int, message: str, hint: str) -> bool:
+        report_word(report, code, path, text, offset, length, message, hint)
+        return False
+
+    match node:
+        case Name(name) if name not in (*names, "x", "pi"):
+            hint = did_you_mean(name, ("x", "pi", *names), "here can stand")
+            return refuse("unknown-name", node.offset, len(name), f"there is no `{name}` in this formula", hint)
+        case Call(name) if name not in FUNCTIONS:
+            hint = did_you_mean(name, FUNCTIONS, "the functions are")
+            return refuse("unknown-function", node.named, len(name), f"a formula has no function `{name}`", hint)
+        case Call(name, arguments) if len(arguments) != FUNCTIONS[name]:
+            wanted = FUNCTIONS[name]
+            message = f"`{name}` has {len(arguments)} argument{'s' * (len(arguments) != 1)}, it takes {wanted}"
+            hint = f"write {name}({', '.join('ab'[:wanted])})"
+            return refuse("wrong-argument-count", node.named, len(name), message, hint)
+        case Literal(value) if isinstance(value, bool) or not isinstance(value, int | float):
+            length = node.end - node.offset
+            return refuse("type-mismatch", node.offset, length, "a formula counts with numbers alone", "write a number")
+        case Binary("in"):
+            return refuse("type-mismatch", node.offset, 1, "a formula knows no lists", "compare with `==`")
+        case Call() | Literal() | Binary():
+            return True
+    if not isinstance(node, _PLAIN):
+        return refuse("type-mismatch", node.offset, 1, "a formula knows no lists and no fields", "use numbers alone")
+    return True

@@ -1,0 +1,72 @@
+"""The parameter table of a controller: `terms:` by shape, term and variable, as the paper prints it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.diagnostics import Path, did_you_mean
+from lumen.loading.source import Document, Report, Span
+
+
+def spread(report: Report) -> Any:
+    """The data with each cell of the table moved to the variable it belongs to; its place stays where it was written.
+
+    A cell of no variable, and one of a term that the variable has already, is reported.
+    """
+    document = report.document
+    if not document.data.get("terms"):
+        return document.data
+    table = _Table(report)
+    for kind, rows in document.data["terms"].items():
+        for term, row in rows.items():
+            for name, parameters in row.items():
+                table.cell(kind, term, name, parameters)
+    report.document = Document(document.file, table.data, table.places, document.text)
+    return table.data
+
+
+class _Table:
+    """Copies of the data and its places, into which cells are moved."""
+
+    def __init__(self, report: Report) -> None:
+        data = report.document.data
+        self.report = report
+        self.sides = {
+            side: {name: {**spec, "terms": dict(spec.get("terms") or {})} for name, spec in data[side].items()}
+            for side in ("inputs", "outputs")
+        }
+        self.data = {**data, **self.sides}
+        self.places: dict[Path, Span] = dict(report.document.spans)
+
+    def cell(self, kind: str, term: str, name: str, parameters: Any) -> None:
+        path: Path = ("terms", kind, term, name)
+        side = next((side for side, variables in self.sides.items() if name in variables), "")
+        if not side:
+            names = [name for variables in self.sides.values() for name in variables]
+            hint = did_you_mean(name, names, "the variables are")
+            self.report("unknown-variable", path, f"there is no variable `{name}`", hint=hint, key=True)
+            return
+        if term in self.sides[side][name]["terms"]:
+            message = f"`{name}` has a term `{term}` already: a term has one shape"
+            self.report("two-shapes", path, message, hint="delete one of them", key=True)
+            return
+        self.sides[side][name]["terms"][term] = {kind: parameters}
+        self.moved(path, (side, name, "terms", term), kind)
+
+    def moved(self, path: Path, to: Path, kind: str) -> None:
+        """The cell's place under its new path, and those of its numbers."""
+        found = self.report.document.spans.get(path)
+        if found is None:
+            return
+        self.places[to] = self.places[(*to, kind)] = found
+        for inner in (p for p in self.report.document.spans if p[: len(path)] == path and len(p) > len(path)):
+            self.places[(*to, kind, *inner[len(path) :])] = self.report.document.spans[inner]
+
+
+def termless(data: Mapping[str, Any], report: Report) -> None:
+    """Report outputs without a term."""
+    for name, spec in data["outputs"].items():
+        path: Path = ("outputs", name)
+        if not spec.get("terms") and not report.broken(path):
+            message = f"the output `{name}` has no terms"
+            hint = "write `terms:` in it, or a table `terms:` for all variables"
+            report("missing-key", path, message, hint=hint, key=True)
