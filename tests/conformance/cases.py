@@ -5,6 +5,7 @@ events. `scripts/conformance-data.sh` fetches them.
 """
 
 import json
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,8 +38,33 @@ class Case:
             return None, [error.diagnostic]
 
     def complaints(self) -> list[str]:
-        """What of the chart can't be carried over."""
-        return [d.message for d in self.read()[1] if d.severity is Severity.ERROR]
+        """What can't be carried over of the chart, and of those in other files that it invokes."""
+        found = [d.message for d in self.read()[1] if d.severity is Severity.ERROR]
+        for name in re.findall(r'<invoke [^>]*src="file:([^"]*)\.scxml"', self.chart.read_text("utf-8")):
+            for chart in sorted(self.chart.parent.glob(f"{name}.*scxml")):
+                found += _case(chart).complaints()
+        return found
+
+
+def machine_of(data: Mapping[str, Any]) -> Machine:
+    """The machine; behaviours that it invokes are there, and do nothing."""
+    rows = list(_invokes(data))
+    others: dict[str, dict[str, Any]] = {}
+    for row in rows:
+        keys = row.get("input", {})
+        others[row["behavior"]] = {
+            "context": dict.fromkeys(keys),
+            "types": {key: {} for key in keys},
+            "states": {"a": None},
+        }
+    return Machine.from_dict(dict(data), behaviors=others)
+
+
+def _invokes(state: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    found = state.get("invoke") or []
+    yield from found if isinstance(found, list) else [found]
+    for child in (state.get("states") or {}).values():
+        yield from _invokes(child or {})
 
 
 def table() -> Mapping[str, Any]:

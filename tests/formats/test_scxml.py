@@ -105,7 +105,9 @@ def test_values_that_change_their_kind_are_of_any() -> None:
 @pytest.mark.parametrize(
     ("body", "said"),
     [
-        ("<state>\n<invoke src='x'/></state>", ["3: `<invoke>`: other charts and services are not carried over"]),
+        ("<state>\n<invoke type='http'/></state>", ["3: `<invoke>`: the service `http` is not carried over"]),
+        ("<state>\n<invoke/></state>",
+         ["3: `<invoke>`: a chart that is computed or stands inside is not carried over"]),
         ("<state><onentry>\n<foreach array='x' item='y'/></onentry></state>",
          ["3: `<foreach>`: there are no loops here"]),
         ("<state id='a'/>\n<state id='a'/>", ["3: a second state has the id `a`"]),

@@ -108,12 +108,3 @@ def test_an_initial_state_deep_inside() -> None:
     ]
     again = Machine.from_dict(read_xstate("m", text.encode(), "m")[0])
     assert initial(again).snapshot.configuration == {"a", "a.b"}
-
-
-def test_an_invoked_behaviour_is_left_out_and_listed() -> None:
-    invoke = {"behavior": "quiz", "onDone": "b"}
-    quiz = {"states": {"q": {"type": "final"}}}
-    machine = Machine.from_dict({"id": "m", "states": {"a": {"invoke": invoke}, "b": None}}, behaviors={"quiz": quiz})
-    text, said = write_xstate(machine, dotted("m"))
-    assert [d.message for d in said] == ["`invoke` of `quiz` is left out"]
-    assert json.loads(text)["states"] == {"a": {}, "b": {}}

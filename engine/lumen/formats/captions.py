@@ -1,9 +1,14 @@
 """What stands at an arrow of a diagram."""
 
-from lumen.language.machines import Transition
+from lumen.language.machines import Invoke, Transition
 
 GUARD = 32
 """How many characters of a guard are shown."""
+
+
+def invocation(invoke: Invoke) -> str:
+    """`quiz`, or `first: quiz` where it has an id of its own."""
+    return invoke.behavior if invoke.id == invoke.behavior else f"{invoke.id}: {invoke.behavior}"
 
 
 def caption(transition: Transition) -> str:

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from lumen.formats.captions import caption
-from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.formats.captions import caption, invocation
+from lumen.language.machines import Invoke, Kind, Machine, State, Transition
 
 _HEAD = """\
 digraph {
@@ -15,7 +15,8 @@ digraph {
 def dot(machine: Machine) -> str:
     """The graph's text, ending with a newline; `dot -Tsvg` draws it.
 
-    A state with states within is a cluster; an arrow to or from it ends at its frame.
+    A state with states within is a cluster; an arrow to or from it ends at its frame. A behaviour that a state invokes
+    is a dashed cluster inside it: once, and wherever it is invoked again a box with its name.
     """
     return "\n".join([_HEAD, *_Drawing(machine).lines(), "}"]) + "\n"
 
@@ -23,28 +24,43 @@ def dot(machine: Machine) -> str:
 class _Drawing:
     """The lines of one graph; every state has an id `s1, s2, …` in document order."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, prefix: str = "", drawn: set[str] | None = None) -> None:
         self.machine = machine
-        self.ids = {path: f"s{number}" for number, path in enumerate(machine.states)}
+        self.drawn = set() if drawn is None else drawn
+        self.ids = {path: f"{prefix}s{number}" for number, path in enumerate(machine.states)}
 
-    def lines(self) -> Iterator[str]:
-        yield from self._cluster(self.machine.root, 1)
+    def lines(self, name: str = "") -> Iterator[str]:
+        """Everything; `name` is that of an invocation."""
+        yield from self._cluster(self.machine.root, 1, name)
         for state in self.machine.states.values():
             for transition in state.transitions:
                 yield from self._arrows(transition)
 
-    def _cluster(self, state: State, depth: int) -> Iterator[str]:
+    def _cluster(self, state: State, depth: int, name: str = "") -> Iterator[str]:
         indent = "  " * depth
         within = [s for s in self.machine.states.values() if s.parent == state.path and s.path]
-        region = state.parent is not None and self.machine.states[state.parent].kind is Kind.PARALLEL
+        parent = self.machine.states[state.parent] if state.parent is not None else None
+        look = "dashed" if name or (parent and parent.kind is Kind.PARALLEL) else "rounded"
         yield f"{indent}subgraph cluster_{self.ids[state.path]} {{"
-        yield f"{indent}  label={_quoted(_label(state, self.machine))}; style={'dashed' if region else 'rounded'}"
+        yield f"{indent}  label={_quoted(name or _label(state, self.machine))}; style={look}"
         yield f"{indent}  {self.ids[state.path]} [shape=point, style=filled, width=0.1]"
         for child in within:
-            yield from self._cluster(child, depth + 1) if child.children else self._box(child, depth + 1)
+            framed = child.children or child.invoke
+            yield from self._cluster(child, depth + 1) if framed else self._box(child, depth + 1)
+        for number, invoke in enumerate(state.invoke):
+            yield from self._inside(invoke, f"{self.ids[state.path]}i{number}", depth + 1)
         for path in state.initial:
             yield self._arrow(state.path, path, "", begins=True)
         yield f"{indent}}}"
+
+    def _inside(self, invoke: Invoke, id: str, depth: int) -> Iterator[str]:
+        """What is invoked, with its arrows."""
+        indent, machine = "  " * depth, self.machine.invoked.get(invoke.behavior)
+        if machine is None or invoke.behavior in self.drawn:
+            yield f"{indent}{id} [label={_quoted(invocation(invoke))}, style=dashed]"
+            return
+        self.drawn.add(invoke.behavior)
+        yield from (f"{indent}{line}" for line in _Drawing(machine, id, self.drawn).lines(invocation(invoke)))
 
     def _box(self, state: State, depth: int) -> Iterator[str]:
         shape = ""
@@ -64,7 +80,8 @@ class _Drawing:
         looks = [look] if look else []
         for end, path, other in (("ltail", source, target), ("lhead", target, source)):
             holds = other == path or not path or other.startswith(f"{path}.")
-            if self.machine.states[path].children and not holds and not begins:
+            framed = self.machine.states[path].children or self.machine.states[path].invoke
+            if framed and not holds and not begins:
                 looks.append(f"{end}=cluster_{self.ids[path]}")
         shown = f" [{', '.join(looks)}]" if looks else ""
         return f"  {self.ids[source]} -> {self.ids[target]}{shown}"

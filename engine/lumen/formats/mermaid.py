@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterator
 
-from lumen.formats.captions import caption
-from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.formats.captions import caption, invocation
+from lumen.language.machines import Invoke, Kind, Machine, State, Transition
 
 _SPECIAL = re.compile(r"[^\w .,!?()=+*/&|\'\[\]…-]|--+|\b_+")
 
@@ -13,7 +13,8 @@ def mermaid(machine: Machine) -> str:
     """The diagram's text, ending with a newline.
 
     Every state gets an id `s1, s2, …` in document order and its key as its label, since Mermaid takes few characters
-    in an id. Events that lead nowhere (no target) stand in the label of their state.
+    in an id. Events that lead nowhere (no target) stand in the label of their state. A behaviour that a state invokes
+    is drawn inside it, as a region of its own: once, and wherever it is invoked again as a box with its name.
     """
     return "\n".join(["stateDiagram-v2", *_Drawing(machine).lines()]) + "\n"
 
@@ -21,9 +22,10 @@ def mermaid(machine: Machine) -> str:
 class _Drawing:
     """The lines of one diagram. An arrow is drawn in the innermost compound state around both its ends."""
 
-    def __init__(self, machine: Machine) -> None:
-        self.machine = machine
-        self.ids = {path: f"s{number}" for number, path in enumerate(machine.states)}
+    def __init__(self, machine: Machine, prefix: str = "", drawn: set[str] | None = None) -> None:
+        self.machine, self.prefix = machine, prefix
+        self.drawn = set() if drawn is None else drawn
+        self.ids = {path: f"{prefix}s{number}" for number, path in enumerate(machine.states)}
         self.arrows: dict[str, list[str]] = {}
         self.framed = machine.root.kind is Kind.PARALLEL
         for transition in (t for state in machine.states.values() for t in state.transitions):
@@ -32,6 +34,7 @@ class _Drawing:
 
     def lines(self) -> Iterator[str]:
         root = self.machine.root
+        self.framed = self.framed or bool(root.invoke)
         if self.framed:
             yield from self._box(root, 1)
             yield from (f"  {arrow}" for arrow in self.arrows.get("", ()))
@@ -51,7 +54,7 @@ class _Drawing:
         return home or ""
 
     def _state(self, state: State, depth: int) -> Iterator[str]:
-        if state.children:
+        if state.children or state.invoke:
             yield from self._box(state, depth)
             return
         indent, id = "  " * depth, self.ids[state.path]
@@ -75,6 +78,22 @@ class _Drawing:
             yield f"{indent}[*] --> {self.ids[path]}"
         if state.path or not self.framed:
             yield from (f"{indent}{arrow}" for arrow in self.arrows.get(state.path, ()))
+        for number, invoke in enumerate(state.invoke):  # after the arrows: those belong to the region before
+            if number or state.children:
+                yield f"{indent}--"
+            yield from self._inside(invoke, f"{self.ids[state.path]}i{number}", depth)
+
+    def _inside(self, invoke: Invoke, id: str, depth: int) -> Iterator[str]:
+        """What is invoked, in a box of its own."""
+        indent, machine = "  " * depth, self.machine.invoked.get(invoke.behavior)
+        name = _escaped(invocation(invoke))
+        if machine is None or invoke.behavior in self.drawn:
+            yield f'{indent}state "{name}" as {id}'
+            return
+        self.drawn.add(invoke.behavior)
+        yield f'{indent}state "{name}" as {id} {{'
+        yield from (f"{indent}{line}" for line in _Drawing(machine, id, self.drawn).lines())
+        yield f"{indent}}}"
 
 
 def _label(state: State) -> str:

@@ -8,6 +8,8 @@ from lumen.formats.findings import broken
 from lumen.language.diagnostics import Place
 
 SCXML = "http://www.w3.org/2005/07/scxml"
+SERVICE = "http://www.w3.org/TR/scxml/"
+"""The type of an `<invoke>` of another chart (SCXML 6.4.3)."""
 LUMEN = "urn:lumen:behavior"
 """The namespace of what only Lumen knows: `do`, robot verbs, phrases, answers."""
 
@@ -101,9 +103,7 @@ class _Reader:
     def start(self, name: str, attributes: dict[str, str]) -> None:
         self.count += 1
         if len(self.open) >= MAX_DEPTH or self.count > self.most:
-            what = (
-                f"more than {MAX_DEPTH} levels" if len(self.open) >= MAX_DEPTH else f"more than {self.most:,} parts"
-            )
+            what = f"more than {MAX_DEPTH} levels" if len(self.open) >= MAX_DEPTH else f"more than {self.most:,} parts"
             raise broken(self.here, "too-large", f"the file is too large to be read: it has {what}")
         known = {_local(key): value for key, value in attributes.items() if not key.startswith(_XML)}
         element = Element(_local(name), known, self.here)

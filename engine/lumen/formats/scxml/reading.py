@@ -5,9 +5,11 @@ from typing import Any
 from lumen.formats.ecmascript import ScriptError
 from lumen.formats.findings import Findings, broken
 from lumen.formats.nodes import Node, passing_key
+from lumen.formats.scxml.candidates import single
 from lumen.formats.scxml.contents import Action, Contents, LeftOutError, own
 from lumen.formats.scxml.context import Context
-from lumen.formats.scxml.elements import LUMEN, Element, parse_xml
+from lumen.formats.scxml.elements import LUMEN, SCXML, Element, parse_xml
+from lumen.formats.scxml.invocations import invocation
 from lumen.formats.scxml.outline import STATES, Outline, regular
 from lumen.formats.scxml.transitions import Transitions
 from lumen.language.diagnostics import Diagnostic
@@ -23,6 +25,9 @@ def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], l
     root = parse_xml(file, content)
     if root.tag != "scxml":
         name = root.tag.rpartition("}")[2]
+        if name == "scxml":
+            hint = f'write xmlns="{SCXML}"'
+            raise broken(root.place, "not-scxml", "this is <scxml> of another namespace, not W3C's", hint)
         raise broken(root.place, "not-scxml", f"the file begins with <{name}>, not with <scxml>")
     return _Document(root, title).data()
 
@@ -86,9 +91,7 @@ class _Document:
 
     def _foreign(self, node: Node) -> None:
         for element in node.source.children:
-            if element.tag == "invoke":
-                self.findings.lost(element.place, "`<invoke>`: other charts and services are not carried over")
-            elif element.tag == "script":
+            if element.tag == "script":
                 self.findings.lost(element.place, "`<script>`: ECMAScript is not run here")
             elif element.tag not in _KNOWN and not element.tag.startswith(f"{{{LUMEN}}}"):
                 self.findings.lost(element.place, f"`<{element.tag.rpartition('}')[2]}>` has no counterpart")
@@ -160,6 +163,8 @@ class _Document:
             self._several(blocks)
         if do := self._own(node.source, "do", []):
             data["do"] = do
+        if invokes := self._invokes(node):
+            data["invoke"] = single(invokes)
         data.update(self.transitions.of(node, afters["events"]))
         if node.source.tag == "final" and (output := self._output(node)) is not None:
             data["output"] = output
@@ -167,6 +172,19 @@ class _Document:
         if isinstance(reload, str) and (home := self.outline.by_id.get(reload)):
             data["onReload"] = node.calls(home, self.outline.title)
         return data
+
+    def _invokes(self, node: Node) -> list[dict[str, Any]]:
+        """The charts in other files that it invokes; what else it invokes is reported."""
+        rows = []
+        for element in node.source.of("invoke"):
+            try:
+                rows.append(invocation(element, self.contents))
+            except (LeftOutError, ScriptError) as error:
+                self.findings.lost(element.place, f"`<invoke>`: {error}")
+                continue
+            message = f"`<invoke>` of `{element.get('src')}` becomes the behaviour `{rows[-1]['behavior']}`"
+            self.findings.changed(element.place, message, "import that file too")
+        return rows
 
     def _several(self, blocks: list[Element]) -> None:
         for block in blocks[:-1]:

@@ -10,7 +10,7 @@ from lumen.formats.ecmascript.kinds import kinds_of
 from lumen.formats.ecmascript.parsing import is_reserved
 from lumen.formats.findings import Placing, Report
 from lumen.formats.plain import plain_block
-from lumen.formats.scxml.elements import LUMEN, SCXML
+from lumen.formats.scxml.elements import LUMEN, SCXML, SERVICE
 from lumen.formats.scxml.orders import Orders
 from lumen.formats.scxml.xml import Tag
 from lumen.language.diagnostics import Diagnostic
@@ -108,7 +108,7 @@ class _Document:
             return Tag("history", attributes, default)
         if state.kind is Kind.COMPOUND:
             attributes["initial"] = self._ids(state.initial)
-        children = [*self._blocks(state), *self._transitions(state)]
+        children = [*self._blocks(state), *self._transitions(state), *self._invokes(state)]
         if state.output is not None:
             children += self._output(state)
         children += [self._state(self.machine.states[path]) for path in self._below(state)]
@@ -121,8 +121,6 @@ class _Document:
         if state.on_reload:
             self.report.foreign("`onReload`", (*state.where, "onReload"))
             yield _json("state", {"onReload": self.ids[state.on_reload]})
-        for invoke in state.invoke:
-            self.report.lost(f"`invoke` of `{invoke.behavior}` is left out", (*state.where, "invoke"))
         timers = {t.event: t.delay for t in state.transitions if t.delay is not None}
         for event, delay in timers.items():
             name = self._event(state, event)
@@ -132,6 +130,21 @@ class _Document:
         for tag, steps in (("onentry", state.entry), ("onexit", state.exit)):
             if block := self.orders.block(steps):
                 yield Tag(tag, {}, block)
+
+    def _invokes(self, state: State) -> Iterator[Tag]:
+        """The behaviours that run within it, by the names of the files that they are in when exported too."""
+        for invoke in state.invoke:
+            file = f"{invoke.behavior}.scxml"
+            try:
+                params = [
+                    Tag("param", {"name": key, "expr": self.orders.value(value)}) for key, value in invoke.input.items()
+                ]
+            except ScriptError as error:
+                self.report.lost(f"`invoke` of `{invoke.behavior}` is left out: {error}", invoke.where)
+                continue
+            hint = f"lumen export scxml {invoke.behavior} -o {file}"
+            self.report.changed(f"`invoke` of `{invoke.behavior}` looks for `{file}`", invoke.where, hint)
+            yield Tag("invoke", {"type": SERVICE, "id": invoke.id, "src": file, "autoforward": "true"}, params)
 
     def _event(self, state: State, event: str) -> str:
         """An event of the state's own (`after`, `onDone`), by its id in the document."""

@@ -39,11 +39,16 @@ class Parts:
 
     def actions(self, data: Any, where: Path) -> list[Action]:
         """A name, an object, or a list of these."""
+        if data is None:
+            return []
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
-        return [action for place, row in rows if row is not None and (action := self._action(row, place))]
+        return [action for place, row in rows if (action := self._action(row, place))]
 
     def _action(self, data: Any, where: Path) -> Action | None:
         kind = data.get("type") if isinstance(data, dict) else data
+        if data is None:
+            self.lost(where, "an action is null: JSON has no place for its code", "give it a name in `setup`")
+            return None
         if not isinstance(kind, str):
             self.lost(where, "this is no action", 'write "name" or {"type": "name", "params": …}')
             return None

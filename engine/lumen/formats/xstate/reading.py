@@ -35,6 +35,9 @@ def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], 
     ):
         hint = "the file should be the object that `createMachine` is given"
         raise broken(source.place(()), "not-xstate", "this is no machine of XState: it has no `states`", hint)
+    if isinstance(source.data.get("order"), int) and isinstance(source.data.get("transitions"), list):
+        hint = "write JSON.stringify(machine.config)"
+        raise broken(source.place(()), "not-xstate", "this is a machine taken apart: JSON.stringify(machine)", hint)
     findings = Findings()
     outline = Outline(source, title, findings)
     if not outline.root.regular:
@@ -105,6 +108,8 @@ class _Machine:
                 self.parts.changed(where, "`tags` mean nothing here", "ask for the state itself with `In('state')`")
             elif key == "meta" and set(value if isinstance(value, dict) else {"": 0}) != {"lumen"}:
                 self.parts.changed(where, "`meta` is not carried over")
+            elif key == "output" and state.kind != "final":
+                self.parts.lost(where, "`output` of a machine", "give each of its final states an `output`")
             elif key not in _MEANT:
                 self.parts.lost(where, f"`{key}` has no counterpart")
 
@@ -203,19 +208,37 @@ class _Machine:
         return data
 
     def _do(self, state: State) -> dict[str, Any]:
-        """The `do` that Lumen wrote as an invocation; other invocations are left out."""
+        """What Lumen wrote as invocations, `do` and `invoke`; others are left out."""
         data: dict[str, Any] = {}
+        invokes: list[dict[str, Any]] = []
         for where, row in self._invocations(state):
             given = row.get("input")
+            if own := self._invoked(state, row):
+                invokes.append({**own, **self._ends(state, where, row)})
+                continue
             steps = self.parts.do(given.get("steps")) if row.get("src") == DO and isinstance(given, dict) else None
             if steps is None or "do" in data:
                 self.parts.lost(where, f"`invoke` of `{row.get('src')}`: its code is not in the file")
                 continue
             data["do"] = steps
-            for key in ("onDone", "onError"):
-                if key in row and (rows := self.transitions.under(state, (*where, key), row[key])):
-                    data[key] = single(rows)
-        return data
+            data.update(self._ends(state, where, row))
+        return data | ({"invoke": single(invokes)} if invokes else {})
+
+    def _ends(self, state: State, where: Path, row: Mapping[str, Any]) -> dict[str, Any]:
+        """What follows the end of something that is invoked."""
+        found = {
+            key: self.transitions.under(state, (*where, key), row[key]) for key in ("onDone", "onError") if key in row
+        }
+        return {key: single(rows) for key, rows in found.items() if rows}
+
+    def _invoked(self, state: State, row: Mapping[str, Any]) -> dict[str, Any] | None:
+        """The behaviour that Lumen wrote as an actor; None where this is another one."""
+        inputs, id, behavior = _lumen(state).get("invoke"), row.get("id"), row.get("src")
+        if not isinstance(inputs, dict) or id not in inputs or not isinstance(behavior, str):
+            return None
+        data = {"behavior": behavior} | ({"id": id} if id != behavior else {})
+        data |= {"input": inputs[id]} if inputs[id] else {}
+        return data if self.parts.fits({"invoke": data}) else None
 
     def _invocations(self, state: State) -> Iterator[tuple[Path, Mapping[str, Any]]]:
         data, where = state.source.get("invoke"), (*state.where, "invoke")

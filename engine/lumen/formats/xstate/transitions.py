@@ -39,6 +39,8 @@ class Transitions:
             return None
         for key in data.keys() - _MEANT:
             self.parts.lost((*where, key), f"`{key}` of a transition has no counterpart")
+        if "meta" in data:
+            self.parts.changed((*where, "meta"), "`meta` is not carried over")
         row: Row = {}
         guard = data.get("guard", data.get("cond"))
         if guard is not None:

@@ -12,7 +12,7 @@ from lumen.interpreters.expressions import ExpressionError, parse_expression
 from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import Expression, Step, Value
 from lumen.language.diagnostics import Diagnostic
-from lumen.language.machines import Answer, Kind, Machine, State, Transition
+from lumen.language.machines import Answer, Invoke, Kind, Machine, State, Transition
 
 _HINT = "give XState an implementation of that name"
 
@@ -98,12 +98,13 @@ class _Config:
             if steps:
                 data[key] = self._actions(steps)
         rows = self._rows(state)
-        for invoke in state.invoke:
-            self.report.lost(f"`invoke` of `{invoke.behavior}` is left out", (*state.where, "invoke"))
+        invokes = [self._invoke(invoke, rows) for invoke in state.invoke]
         name = state.name
         done, failed = rows.pop(f"!done.do.{name}", []), rows.pop(f"!error.do.{name}", [])
         if state.do:
-            data["invoke"] = self._do(state, done, failed)
+            invokes.append(self._do(state, done, failed))
+        if invokes:
+            data["invoke"] = invokes[0] if len(invokes) == 1 else invokes
         if ended := rows.pop(f"!done.state.{name}", []):
             data["onDone"] = ended
         if on := {event: row for event, row in rows.items() if not event.startswith("!")}:
@@ -130,6 +131,18 @@ class _Config:
                 length = round(transition.delay * 1000, 6)
                 key = f"{int(length)}" if length == int(length) else f"{length}"
                 data.setdefault(key, []).append(self._row(state, transition))
+        return data
+
+    def _invoke(self, invoke: Invoke, rows: dict[str, list[Any]]) -> dict[str, Any]:
+        """An actor called as the behaviour; what its input has to be computed from stands in `meta`."""
+        hint = f"give `setup` the actor `{invoke.behavior}`: lumen export xstate {invoke.behavior}"
+        self.report.changed(f"`invoke` of `{invoke.behavior}` names an actor", invoke.where, hint)
+        data: dict[str, Any] = {"id": invoke.id, "src": invoke.behavior}
+        if invoke.input:
+            data["input"] = {key: _constant(value) for key, value in invoke.input.items()}
+        for key, kind in (("onDone", "done"), ("onError", "error")):
+            if found := rows.pop(f"!{kind}.invoke.{invoke.id}", []):
+                data[key] = found
         return data
 
     def _do(self, state: State, done: list[Any], failed: list[Any]) -> dict[str, Any]:
@@ -174,6 +187,8 @@ class _Config:
             yield "onReload", self._target(state, state.on_reload)
         if state.output is not None:
             yield "output", plain_value(state.output)
+        if state.invoke:
+            yield "invoke", {invoke.id: plain_value(invoke.input) for invoke in state.invoke}
 
     def _machine(self) -> Iterator[tuple[str, Any]]:
         machine = self.machine

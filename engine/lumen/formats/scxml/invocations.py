@@ -1,0 +1,36 @@
+"""`<invoke>` of a chart in another file (SCXML 6.4) as our `invoke`."""
+
+import re
+from pathlib import PurePosixPath
+from typing import Any
+
+from lumen.formats.scxml.contents import PROCESSORS, Contents, LeftOutError
+from lumen.formats.scxml.elements import Element
+
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
+_ID = re.compile(r"[^\s@*]+")
+
+
+def invocation(element: Element, contents: Contents) -> dict[str, Any]:
+    """The behaviour named as the file, with its id and its input; raises LeftOutError or ScriptError for all else."""
+    kind, source = element.get("type"), element.get("src").removeprefix("file:")
+    if kind.rstrip("/") not in {p.rstrip("/") for p in PROCESSORS} or "typeexpr" in element.attributes:
+        raise LeftOutError(f"the service `{kind or element.get('typeexpr')}` is not carried over")
+    if "srcexpr" in element.attributes or not source:
+        raise LeftOutError("a chart that is computed or stands inside is not carried over", "put it into its own file")
+    if "idlocation" in element.attributes:
+        raise LeftOutError("`idlocation` has no counterpart", "give it an `id`")
+    if any(child.children for child in element.of("finalize")):
+        raise LeftOutError("`<finalize>` has no counterpart")
+    name = PurePosixPath(source).stem
+    if not _NAME.fullmatch(name):
+        raise LeftOutError(f"`{source}` can't be the name of a behaviour", "rename the file")
+    row: dict[str, Any] = {"behavior": name}
+    id = element.get("id")
+    if id and not _ID.fullmatch(id):
+        raise LeftOutError(f"`{id}` can't be an id here")
+    if id and id != name:
+        row["id"] = id
+    if data := contents.data(element):
+        row["input"] = data
+    return row
