@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from lumen.clocks.virtual import VirtualClock
-from lumen.errors import LumenError, SnapshotError, UsageError
+from lumen.errors import LumenError, ProjectError, SnapshotError, UsageError
 from lumen.statechart import Event, Interpreter, Machine, Step, due, initial, step
 
 TOUR = {
@@ -162,3 +162,35 @@ def test_a_send_that_answers_itself_ends_in_an_error() -> None:
     it.start()
     with pytest.raises(LumenError, match="`go` is sent over and over"):
         it.send("go")
+
+
+def test_a_context_key_keeps_to_its_whole_schema() -> None:
+    counting = {"assign": {"n": "context.n + 1"}}
+    types = {"n": {"type": "integer", "maximum": 1}, "way": {"enum": ["left", "right"]}}
+    turning = {"on": {"go": {"actions": counting}, "turn": {"actions": {"assign": {"way": "event.data"}}}}}
+    machine = Machine.from_dict({"context": {"n": 0, "way": "left"}, "types": types, "states": {"a": turning}})
+    it = Interpreter(machine)
+    it.start()
+    assert not it.send("go").raised
+    assert "`n` can't become 2: 2 is greater than the maximum of 1" in it.send("go").raised[0].data["reason"]
+    assert not it.send("turn", "right").raised
+    assert "`way` can't become 'up'" in it.send("turn", "up").raised[0].data["reason"]
+    assert it.context == {"n": 1, "way": "right"}
+    with pytest.raises(UsageError, match="`n` can't be 7"):
+        initial(machine, input={"n": 7})
+
+
+@pytest.mark.parametrize(
+    ("context", "types", "code"),
+    [
+        ({"n": "x"}, {"n": {"type": "integer"}}, "wrong-value"),
+        ({"n": 7}, {"n": {"type": "integer", "maximum": 1}}, "wrong-value"),
+        ({"n": 7}, {"n": {"type": "intger"}}, "wrong-value"),
+        ({"n": 7}, {"n": {"minimum": "x"}}, "wrong-type"),
+        ({"n": [0, float("inf")]}, {}, "not-a-number"),
+    ],
+)
+def test_a_context_that_can_not_be_is_told(context: Any, types: Any, code: str) -> None:
+    with pytest.raises(ProjectError) as caught:
+        Machine.from_dict({"context": context, "types": types, "states": {"a": None}})
+    assert code in {d.code for d in caught.value.diagnostics}

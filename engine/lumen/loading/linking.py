@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Generic, TypeVar
 
-from lumen.interpreters.statechart.types import fits, type_checks, type_name
+from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import Invoke, Machine
@@ -73,7 +73,7 @@ class _Linker(Generic[M]):
             where, check = (*invoke.where, "input", key), checks.get(key)
             if key in checks:
                 if not (isinstance(value, Expression) or value is None or fits(value, check)):
-                    message = f"`{key}` of `{called}` is {check} and can't be a {type_name(value)}"
+                    message = f"`{key}` of `{called}` {refusal(value, check)}"
                     report("type-mismatch", where, message, hint="give it a value of that type")
             elif key not in self.reports[called].lost:
                 hint = did_you_mean(key, checks, "it has")

@@ -9,6 +9,7 @@ from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import Machine
 from lumen.loading.behaviors import build_machine
 from lumen.loading.linking import link
+from lumen.loading.memory import check_memory
 from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
 from lumen.loading.source import Document, Report, parse
@@ -76,5 +77,6 @@ class _Family(Generic[M]):
             if not has_errors([*diagnostics, *report.diagnostics]):
                 report("missing-key", (), "a behaviour needs `states`", hint="write `states:` with at least one state")
             return []
+        check_memory(machine, report)
         self.machines[name] = machine
         return [invoke.behavior for state in machine.states.values() for invoke in state.invoke]

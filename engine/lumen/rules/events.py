@@ -9,6 +9,7 @@ from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import Kind, Machine, Transition
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
+from lumen.rules.endings import ending_fault
 from lumen.rules.finding import find, first
 from lumen.rules.walk import sites
 
@@ -96,13 +97,18 @@ def _waited(draft: Draft, machine: Machine, report: Report) -> None:
         return
     known = {*declared(draft, machine), *raised(report.document.data), *draft.main.lost, *report.lost}
     said: set[str] = set()
+    sound = not report.diagnostics
     for state in machine.states.values():
         for transition in state.transitions:
             event = transition.event
             if not event or transition.exact or event in said or any(hears(event, name) for name in known):
                 continue
             said.add(event)
-            if not _of_the_engine(event):
+            if _of_the_engine(event):
+                if sound and not report.lost.intersection(event.split(".")) and (hint := ending_fault(machine, event)):
+                    path, message = _descriptor(transition.where, event), f"nothing raises the event `{event}`"
+                    find(report, "unknown-event", path, message, hint, key=True)
+            else:
                 path = _descriptor(transition.where, event)
                 lost = draft.main.lost | report.lost
                 hint = did_you_mean(event, {*known, *(f.removesuffix(".") for f in FAMILIES)} - lost)

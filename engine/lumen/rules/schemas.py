@@ -1,14 +1,11 @@
-"""JSON Schemas inside behaviours: those of context keys and of events."""
+"""JSON Schemas inside behaviours: those of context keys and of events; and the first values of the context."""
 
 from lumen.loading.draft import Draft
-from lumen.loading.messages import examine
+from lumen.loading.memory import check_memory
 
 
 def check(draft: Draft) -> None:
-    """Report what is wrong with the schemas under `types:` and `events:`."""
+    """Report what is wrong under `context:`, `types:` and `events:`."""
     for name, machine in draft.behaviors.items():
-        report = draft.report("behaviors", name)
-        for part, schemas in (("types", machine.types), ("events", machine.events)):
-            for key, schema in schemas.items():
-                if schema is not None and not examine(schema, report, (part, key)):
-                    draft.unsound.add((name, part, key))
+        unsound = check_memory(machine, draft.report("behaviors", name))
+        draft.unsound.update((name, part, key) for part, key in unsound)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.interpreters.statechart.inside import INSIDE, meant
-from lumen.interpreters.statechart.types import fits, type_checks, type_name
+from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect, Happen, Send, Story, Touch
@@ -87,7 +87,7 @@ class _Script:
             find(self.report, "unknown-context-key", path, message, hint, key=True, cause=cause)
         elif self.sound and not fits(value, check := type_checks(self.machine)[key]):
             hint = f"it begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}"
-            find(self.report, "wrong-type", path, f"`{key}` is {check} and can't be a {type_name(value)}", hint)
+            find(self.report, "wrong-type", path, f"`{key}` {refusal(value, check)}", hint)
 
     def sensor(self, path: Path, sensor: str) -> None:
         body = self.draft.body

@@ -7,7 +7,7 @@ from lumen.errors import SnapshotError
 from lumen.interpreters.statechart.doing import Awaited, Choice, Deed, Pause, Together
 from lumen.interpreters.statechart.parts import Part
 from lumen.interpreters.statechart.program import compiled
-from lumen.interpreters.statechart.types import Check, fits, type_name
+from lumen.interpreters.statechart.types import Check, fits, refusal
 from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Invoked, Position, Snapshot, Timer, Within
 from lumen.language.machines import Kind, Machine, State
 
@@ -90,7 +90,7 @@ class _Reader:
             if key not in found:
                 raise part.refused("is no key of the context")
             if not fits(found[key], checks[key]):
-                raise part.refused(f"is {checks[key]} and can't be a {type_name(found[key])}")
+                raise part.refused(refusal(found[key], checks[key]))
         return found
 
     def timer(self, data: Part) -> Timer:

@@ -1,11 +1,14 @@
 """Which values a context key keeps: those of its first value's type, or of its `types:` entry."""
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import Machine
+
+if TYPE_CHECKING:
+    from jsonschema import Draft202012Validator
 
 _TESTS: Mapping[str, Callable[[Any], bool]] = {
     "null": lambda v: v is None,
@@ -29,20 +32,62 @@ _QUICK: Mapping[str, tuple[type, ...]] = {
 }
 
 
+_NOTES = {
+    "type",
+    "title",
+    "description",
+    "default",
+    "examples",
+    "deprecated",
+    "readOnly",
+    "writeOnly",
+    "$comment",
+    "$id",
+}
+"""Keywords that say nothing of a value beyond its type."""
+
+
 class Check:
-    """The JSON types that a context key may hold; `quick` are Python types that are certain to be among them."""
+    """The values that a context key may hold; `quick` are Python types of which every value is certain to be one.
 
-    __slots__ = ("names", "quick")
+    Where its `types:` entry says more than a type, the whole JSON Schema holds.
+    """
 
-    def __init__(self, names: tuple[str, ...]) -> None:
+    __slots__ = ("_schema", "_validator", "names", "quick")
+
+    def __init__(self, names: tuple[str, ...], schema: Mapping[str, Any] | None = None) -> None:
         self.names = names
-        self.quick = frozenset(kind for name in names for kind in _QUICK[name])
+        self.quick = frozenset(() if schema else (kind for name in names for kind in _QUICK[name]))
+        self._schema = schema or {}
+        self._validator: Draft202012Validator | None = None
 
     def accepts(self, value: Any) -> bool:
-        return any(_TESTS[name](value) for name in self.names)
+        if self.names and not any(_TESTS[name](value) for name in self.names):
+            return False
+        return not self._schema or not self._faults(value)
+
+    def refusal(self, value: Any, verb: str = "be") -> str:
+        """Why a key can't hold that value, to follow the key's name; `verb` is `be` or `become`."""
+        if self.names and not any(_TESTS[name](value) for name in self.names):
+            return f"is {self} and can't {verb} {_with_article(type_name(value))}"
+        shown = repr(value)
+        return f"can't {verb} {shown[:40]}: {self._faults(value)[0]}"
+
+    def _faults(self, value: Any) -> list[str]:
+        """What the schema says against the value; nothing where it is unsound itself, which lint tells."""
+        from jsonschema import Draft202012Validator, SchemaError  # takes 0.1 s: only where a schema asks for it
+        from referencing.exceptions import Unresolvable
+
+        try:
+            if self._validator is None:
+                Draft202012Validator.check_schema(self._schema)
+                self._validator = Draft202012Validator(self._schema)
+            return [error.message[:100] for error in self._validator.iter_errors(value)]
+        except (SchemaError, Unresolvable, RecursionError):
+            return []
 
     def __str__(self) -> str:
-        return f"a {' or '.join(self.names)}"
+        return _with_article(" or ".join(self.names))
 
 
 def type_checks(machine: Machine) -> dict[str, Check | None]:
@@ -51,13 +96,18 @@ def type_checks(machine: Machine) -> dict[str, Check | None]:
     A first value of null without an entry in `types:` says nothing of what comes later. An integer may become any
     number, as in CEL.
     """
-    allowed = {key: _allowed(value, machine.types.get(key)) for key, value in machine.context.items()}
-    return {key: Check(names) if names else None for key, names in allowed.items()}
+    return {key: _check(value, machine.types.get(key)) for key, value in machine.context.items()}
 
 
 def fits(value: Any, check: Check | None) -> bool:
     """Whether a context key with that check may hold the value."""
     return check is None or type(value) in check.quick or check.accepts(value)
+
+
+def refusal(value: Any, check: Check | None) -> str:
+    """Why a context key with that check can't hold a value that does not fit."""
+    assert check is not None  # without a check everything fits
+    return check.refusal(value)
 
 
 def checked(name: str, checks: Mapping[str, Check | None], given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -67,7 +117,7 @@ def checked(name: str, checks: Mapping[str, Check | None], given: Mapping[str, A
             hint = did_you_mean(key, checks)
             raise UsageError(f"`{name}` has no `{key}` in its context to be given" + f": {hint}" * bool(hint))
         if not fits(value, checks[key]):
-            raise UsageError(f"`{key}` is {checks[key]} and can't be a {type_name(value)}")
+            raise UsageError(f"`{key}` {refusal(value, checks[key])}")
     return given
 
 
@@ -76,9 +126,15 @@ def type_name(value: Any) -> str:
     return next((name for name, test in _TESTS.items() if name != "integer" and test(value)), type(value).__name__)
 
 
-def _allowed(first: Any, schema: Mapping[str, Any] | None) -> tuple[str, ...]:
-    if schema is not None:
-        names = schema.get("type", ())
-        names = (names,) if isinstance(names, str) else tuple(names)
-        return names if all(name in _TESTS for name in names) else ()
-    return () if first is None else (type_name(first),)
+def _check(first: Any, schema: Mapping[str, Any] | None) -> Check | None:
+    if schema is None:
+        return None if first is None else Check((type_name(first),))
+    said = schema.get("type")
+    names = tuple(said) if isinstance(said, list | tuple) else (said,)
+    names = names if all(isinstance(name, str) and name in _TESTS for name in names) else ()
+    whole = None if schema.keys() <= _NOTES else schema
+    return Check(names, whole) if names or whole else None
+
+
+def _with_article(name: str) -> str:
+    return f"an {name}" if name[:1] in "aeiou" else f"a {name}"

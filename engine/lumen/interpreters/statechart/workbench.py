@@ -9,7 +9,6 @@ from lumen.interpreters.statechart.blocks import ActionError, Block
 from lumen.interpreters.statechart.chart import Node
 from lumen.interpreters.statechart.plans import Configuration
 from lumen.interpreters.statechart.program import Program
-from lumen.interpreters.statechart.types import type_name
 from lumen.interpreters.statechart.values import Counters, Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import Path
@@ -109,7 +108,7 @@ class Workbench:
         """Give a context key another value; raises ActionError where it is of another type."""
         check = self.chart.checks.get(key)
         if check and type(value) not in check.quick and not check.accepts(value):
-            raise ActionError(f"`{key}` is {check} and can't become a {type_name(value)}")
+            raise ActionError(f"`{key}` {check.refusal(value, 'become')}")
         self.context = {**self.context, key: value}
         self.scope = None
 

@@ -1,0 +1,36 @@
+"""What a behaviour remembers: first values and JSON Schemas of context keys and events, checked to be sound."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from lumen.interpreters.statechart.types import fits, refusal, type_checks
+from lumen.language.diagnostics import Path
+from lumen.language.machines import Machine
+from lumen.loading.messages import examine
+from lumen.loading.numbers import finite
+from lumen.loading.source import Report
+
+
+def check_memory(machine: Machine, report: Report) -> list[tuple[str, str]]:
+    """Report what is wrong under `context:`, `types:` and `events:`; the part and key of each unsound schema."""
+    unsound = [
+        (part, key)
+        for part, schemas in (("types", machine.types), ("events", machine.events))
+        for key, schema in schemas.items()
+        if schema is not None and not examine(schema, report, (part, key))
+    ]
+    checks = type_checks(machine)
+    for key, value in machine.context.items():
+        odd = [path for path, number in _numbers(value, ("context", key)) if not finite(number, report, path)]
+        if not odd and key in machine.types and ("types", key) not in unsound and not fits(value, checks[key]):
+            hint = "begin with a value that fits, or widen its schema under `types:`"
+            report("wrong-value", ("context", key), f"`{key}` {refusal(value, checks[key])}", hint=hint)
+    return unsound
+
+
+def _numbers(value: Any, path: Path) -> Iterator[tuple[Path, float]]:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        yield path, value
+    items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in items:
+        yield from _numbers(item, (*path, key))

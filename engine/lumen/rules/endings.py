@@ -1,0 +1,47 @@
+"""Events of the engine that speak of one state or invoke, `done.state.talk`: whether there is one that could end so."""
+
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.machines import Kind, Machine, State
+
+_LACKS = {
+    "done.state": "it has no final state to end in",
+    "done.do": "it has no `do`",
+    "error.do": "it has no `do`",
+}
+
+
+def ending_fault(machine: Machine, descriptor: str) -> str:
+    """Why a descriptor can't be heard: a hint where it names nothing that could end; else empty."""
+    words = descriptor.removesuffix(".*").split(".")
+    family, name = ".".join(words[:2]), ".".join(words[2:])
+    able = _able(machine, family)
+    if not name or able is None or any(_begins(name, other) for other in able):
+        return ""
+    if family in _LACKS and any(name in (state.name, state.path) for state in machine.states.values()):
+        return f"`{name}` never ends: {_LACKS[family]}"
+    return did_you_mean(f"{family}.{name}", [f"{family}.{other}" for other in able]) or f"nothing ends with `{family}`"
+
+
+def _begins(descriptor: str, name: str) -> bool:
+    return name == descriptor or name.startswith(f"{descriptor}.")
+
+
+def _able(machine: Machine, family: str) -> set[str] | None:
+    """The names after that family; None for a family that does not speak of states or invokes."""
+    states = machine.states.values()
+    match family:
+        case "done.state":
+            return {state.name for state in states if _ends(machine, state)}
+        case "done.do" | "error.do":
+            return {state.name for state in states if state.do}
+        case "done.invoke" | "error.invoke":
+            return {invoke.id for state in states for invoke in state.invoke}
+    return None
+
+
+def _ends(machine: Machine, state: State) -> bool:
+    """Whether a state can come to its end (`isInFinalState`)."""
+    children = [machine.states[path] for path in state.children]
+    if state.kind is Kind.PARALLEL:
+        return all(_ends(machine, child) for child in children if child.kind is not Kind.HISTORY)
+    return any(child.kind is Kind.FINAL for child in children)
