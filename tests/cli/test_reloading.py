@@ -140,7 +140,7 @@ def test_a_state_that_is_active_is_not_taken_away(storyless: Path, running: Runn
         ("onError: ask_name", "onError: asking"),
     ):
         running.edit(old, new)
-    running.until_told("waiting: state `guide.talking.ask_name` is active and no longer there")
+    running.until_told("waiting for `ask_name`: `ask_name` is active and gone")
     walker.speak("my name is Ada")
     running.until_told("in force")
     assert "how_are_you" in running.states

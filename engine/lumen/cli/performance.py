@@ -6,10 +6,12 @@ from pathlib import Path
 
 from lumen.cli.cast import Cast
 from lumen.cli.main import STARTED
+from lumen.cli.premises import Premises
 from lumen.cli.reloading import Reloading
 from lumen.cli.show import Show, film
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedSpeech
+from lumen.cli.why import innermost
 from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -24,8 +26,10 @@ FAREWELL = 5.0
 class Performance:
     """Runs once; `run` returns the exit code."""
 
-    def __init__(self, project: Project, chosen: Cast, bus_url: str, story: Story | None) -> None:
+    def __init__(self, project: Project, chosen: Cast, bus_url: str, story: Story | None, premises: Premises) -> None:
         self._show = Show(project, chosen, bus_url, story, self._deed)
+        self._premises, self._url = premises, bus_url
+        self._leaving = False
         self._transcript = Transcript(chosen.clock.now, lambda: self._show.exhibition.project.machine)
         self._show.exhibition.observers.append(self._transcript)
         self._story, self._blind = story, chosen.blind
@@ -34,9 +38,10 @@ class Performance:
         self._show.exhibition.parts.append(self._rest)
         self._face: float | None = None
 
-    def interrupt(self, times: int = 1) -> None:
-        """Ctrl-C: once rests the robot, twice ends."""
+    def interrupt(self, times: int = 1, *, leave: bool = False) -> None:
+        """Ctrl-C: once rests the robot, twice ends. With `leave` the next run goes on where this one ended."""
         self._interrupts += times
+        self._leaving = leave
 
     def _rest(self, now: float) -> None:
         """What the first Ctrl-C asks for, at the tick after it."""
@@ -46,25 +51,48 @@ class Performance:
             self._show.exhibition.happen(Event("stop", {}))
             self._transcript.line("operator", "Ctrl-C: the robot rests; again to end")
 
-    def run(self, speed: str, period: float | None, language: str, video: Path | None, *, watch: bool) -> int:
+    def run(
+        self, speed: str, period: float | None, language: str, video: Path | None, *, mode: str, fresh: bool
+    ) -> int:
         """Perform until the story ends, the period [s] is over, the visitor has left or the operator ends it."""
         show, now = self._show, 0.0
         try:
             if video:
                 film(show, video)
-            if watch:
-                reloading = Reloading(show, self._transcript)
-                show.exhibition.parts.append(reloading.tick)
-                show.closing.insert(0, reloading.close)
+            self._settle(mode)
             self._introduce(speed)
-            show.start(language)
+            self._start(language, fresh=fresh)
             began = time.monotonic()
             while not self._over(now, period):
                 now = show.tick()
             took = time.monotonic() - began
         finally:
             show.close()
+        self._premises.close(forget=not self._leaving)
         return self._summary(now, took, video)
+
+    def _settle(self, mode: str) -> None:
+        """Be found by other terminals, and take saved files."""
+        show, records = self._show, self._premises.records
+        self._premises.open(show.bus, self._url, show.exhibition.project)
+        reloading = Reloading(show, self._transcript, mode=mode, records=records, applied=self._premises.announce)
+        show.exhibition.parts.append(reloading.tick)
+        show.closing.insert(0, reloading.close)
+        if records.keeper and self._story is None:
+            show.after.append(lambda now: records.keep(show.exhibition))
+
+    def _start(self, language: str, *, fresh: bool) -> None:
+        """Enter the initial states, or go on where a run ended that nobody meant to end."""
+        show = self._show
+        found = "" if fresh or self._story else self._premises.resumption(show.exhibition.project)
+        if isinstance(found, str):
+            print(found, end="\n" * bool(found))
+            show.start(language)
+            return
+        states = ", ".join(sorted(innermost(show.exhibition.project.machine, found.snapshot.configuration)))
+        print(f"The last run ended without notice {found.away:.0f} s ago: this one goes on from there, in {states}.")
+        print(f"`lumen run --fresh` begins anew.{''.join(f' {note}.' for note in found.notes)}")
+        show.exhibition.resume(found)
 
     def _introduce(self, speed: str) -> None:
         project = self._show.exhibition.project
@@ -73,6 +101,8 @@ class Performance:
         print(f"{project.name}: {project.robot} performs `{project.behavior}` {pace}, ready after {ready:.1f} s.")
         if Path(project.root) == shipped_root() != Path.cwd():
             print(f"There is no lumen.yaml here: this is the shipped project, {project.root}.")
+        if self._premises.taken:
+            print("Another run of this project is going on: `lumen reload` and its like reach that one.")
         if self._blind:
             print(f"It runs without camera images: {self._blind}.")
         if self._story:

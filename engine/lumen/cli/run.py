@@ -3,17 +3,23 @@
 import argparse
 import os
 import signal
+import sys
 from pathlib import Path
 
-import lumen
 from lumen.cli.cast import ROBOTS, SPEEDS, cast
 from lumen.cli.choosing import home_of, stories_of
 from lumen.cli.performance import Performance
-from lumen.errors import UsageError
+from lumen.cli.premises import Premises
+from lumen.cli.reloading import MODES
+from lumen.cli.report import report
+from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
+from lumen.loading.files import read_files
+from lumen.loading.packaged import find_project
 from lumen.loading.units import seconds
+from lumen.rules import check_files
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -26,12 +32,23 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--for", dest="period", metavar="60s", help="end after so much simulated time")
     add("--language", metavar="LANG", help="which language it speaks first")
     add("--video", metavar="FILE.mp4", type=Path, help="write a film of the run (simulation, needs OpenGL)")
-    add("--reload", choices=("auto", "off"), default="auto", help="take saved files while it runs (default: auto)")
+    add("--reload", choices=MODES, default="auto", help="take saved files while it runs, or wait for `lumen reload`")
+    add("--last-good", action="store_true", help="where the files have errors, start with the last that had none")
+    add("--fresh", action="store_true", help="begin anew, even where the last run ended without notice")
 
 
 def run(options: argparse.Namespace) -> int:
     named = () if options.story is None else (options.story,)
-    project = lumen.load(options.project or home_of(named))
+    root = find_project(options.project or home_of(named))
+    premises = Premises(root)
+    try:
+        return _run(options, root, premises)
+    finally:
+        premises.close(forget=False)
+
+
+def _run(options: argparse.Namespace, root: Path, premises: Premises) -> int:
+    project = _load(root, premises, last_good=options.last_good)
     story = _story(project, options.story)
     if story and story.robot and options.robot != "recording":
         raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
@@ -44,10 +61,29 @@ def run(options: argparse.Namespace) -> int:
         cast(options.robot, project, options.speed, story),
         options.bus or os.environ.get("LUMEN_BUS") or project.bus,
         story,
+        premises,
     )
     signal.signal(signal.SIGINT, lambda *_: performance.interrupt())
-    signal.signal(signal.SIGTERM, lambda *_: performance.interrupt(2))
-    return performance.run(options.speed, period, language, video, watch=options.reload == "auto")
+    signal.signal(signal.SIGTERM, lambda *_: performance.interrupt(2, leave=True))
+    return performance.run(options.speed, period, language, video, mode=options.reload, fresh=options.fresh)
+
+
+def _load(root: Path, premises: Premises, *, last_good: bool) -> Project:
+    """The project in that folder; where its files have errors and that is wanted, the last good one."""
+    files = read_files(root)
+    project, diagnostics = check_files(root, files)
+    if project:
+        premises.begin(project, files)
+        return project
+    good = premises.last_good()
+    if good is None:
+        raise ProjectError(diagnostics)
+    if not last_good:
+        print("`lumen run --last-good` starts with the last files that had no errors.", file=sys.stderr)
+        raise ProjectError(diagnostics)
+    report(diagnostics)
+    print("\nTHE FILES HAVE ERRORS: IT STARTS WITH THE LAST THAT HAD NONE, AND NOT WITH YOURS.\n", file=sys.stderr)
+    return good
 
 
 def _story(project: Project, name: str | None) -> Story | None:

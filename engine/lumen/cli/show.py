@@ -1,6 +1,6 @@
 """An exhibition with everything around it: senses on the bus, a visitor in the hall, files that may change."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from datetime import datetime
@@ -9,12 +9,14 @@ from pathlib import Path
 from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.cli.cast import Cast
+from lumen.interpreters.migration import Plan, Verdict
+from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Deed, Story
 from lumen.ports import Sense
 from lumen.robots.server import Server
-from lumen.runtime.exhibition import Exhibition, Observer
+from lumen.runtime.exhibition import Exhibition, Observer, Part
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.story import StoryPlayer, staged
 from lumen.runtime.visitor import Walker
@@ -28,7 +30,8 @@ class Show(Observer):
 
     With a story its visitor plays it (`player`); without one the visitor (`walker`) does what whoever holds the show
     makes them do. Both are None where the robot is in no world of ours. `tell` hears what the visitor does. Where
-    `sensing` is off, only those senses are on the bus that the behaviour hears of as events.
+    `sensing` is off, only those senses are on the bus that the behaviour hears of as events. What is in `after` lives
+    at the end of each tick, when all that it asked for has been performed.
     """
 
     def __init__(
@@ -51,6 +54,7 @@ class Show(Observer):
         self.faces: FaceDetector | None = None
         self.player: StoryPlayer | None = None
         self.closing: list[Callable[[], None]] = [self.server.close, self.bus.close, chosen.robot.close]
+        self.after: list[Part] = []
         self.exhibition.observers.append(self)
         self.exhibition.parts.append(self._sense)
         if chosen.hall:
@@ -73,19 +77,43 @@ class Show(Observer):
 
     def tick(self) -> float:
         """Live through a tick; its time [s]."""
-        return self.exhibition.tick()
+        now = self.exhibition.tick()
+        for part in self.after:
+            part(now)
+        return now
 
-    def reload(self, project: Project) -> str:
-        """Go on with another bundle; empty, or why not and nothing has changed."""
-        project = staged(project, self._story)
-        reason = self.exhibition.reload(project)
-        if not reason:
-            self.bus.use(project)
-            self.server.use(self._sensed(project))
-            for part in (self.walker, self.faces):
-                if part:
-                    part.use(project)
-        return reason
+    def plan(self, project: Project, *, now: bool = False, back: bool = False) -> Verdict:
+        """How another bundle would go on from here, or why it can't; nothing changes."""
+        return self.exhibition.plan(staged(project, self._story), now=now, back=back)
+
+    def apply(self, project: Project, plan: Plan) -> None:
+        """Go on with another bundle as planned for this moment.
+
+        Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
+        """
+        self._change(self.exhibition.apply, staged(project, self._story), plan)
+
+    def rescue(self, project: Project, plan: Plan) -> Sequence[Command]:
+        """Go on with another bundle in the middle of a tick; what has to be performed for that."""
+        self._change(self.exhibition.switch, staged(project, self._story), plan)
+        return plan.commands
+
+    def _change(self, change: Callable[[Project, Plan], None], project: Project, plan: Plan) -> None:
+        old = self.exhibition.project
+        try:
+            self._use(project)
+            change(project, plan)
+        except Exception:
+            self._use(old)
+            raise
+
+    def _use(self, project: Project) -> None:
+        """Let everything around the behaviour go by this bundle from now on."""
+        self.bus.use(project)
+        self.server.use(self._sensed(project))
+        for part in (self.walker, self.faces):
+            if part:
+                part.use(project)
 
     def close(self) -> None:
         """End what has threads, files or windows open, whatever one of them may raise."""

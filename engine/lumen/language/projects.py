@@ -11,6 +11,8 @@ from lumen.language.robots import Body
 from lumen.language.routes import Route
 from lumen.language.stories import Story
 
+PATIENCE = 60.0
+
 
 @dataclass(frozen=True, slots=True)
 class Stage:
@@ -26,7 +28,7 @@ class Project:
 
     `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has
     the default first; `messages` maps a message's name to its JSON Schema; `documents`
-    know where in each file what stands.
+    know where in each file what stands. `patience` [s] is how long saved files wait for what is under way.
     """
 
     root: str
@@ -45,6 +47,7 @@ class Project:
     story: str = ""
     stage: Stage | None = None
     bus: str = "memory://"
+    patience: float = PATIENCE
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import PurePosixPath
 from typing import Any, TypeVar
 
-from lumen.language.diagnostics import Severity
+from lumen.language.diagnostics import Severity, has_errors
 from lumen.language.machines import Machine
 from lumen.language.motions import Motion
 from lumen.language.projects import Project
@@ -17,6 +17,7 @@ from lumen.loading.linking import link
 from lumen.loading.messages import ENDING, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.recollection import again
 from lumen.loading.schema import check_schema
 from lumen.loading.settings import build_settings
 from lumen.loading.source import Report, parse
@@ -52,6 +53,9 @@ def draft(files: Mapping[str, bytes]) -> Draft:
     found.controllers = _each(sources["fuzzy"], build_controller)
     found.motions = _motions(found, sources["motions"])
     _messages(found)
+    torn = {d.place.file for d in found.loose if d.severity is Severity.ERROR}
+    for file, report in found.reports.items():
+        report.whole = not (report.pruned or file in torn or has_errors(report.diagnostics))
     return found
 
 
@@ -77,6 +81,7 @@ def assemble(found: Draft, root: str) -> Project:
         story=settings.story,
         stage=settings.stage,
         bus=settings.bus,
+        patience=settings.patience,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )
@@ -105,7 +110,7 @@ def _read(found: Draft, file: str, content: bytes, kind: str) -> tuple[Any, Repo
         hint = "put a readable file there, or delete it"
         found.say("unreadable-file", file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)
         return None
-    document, diagnostics = parse(file, content)
+    document, diagnostics = again(("parse", file), content, lambda: parse(file, content))
     found.loose += diagnostics
     if document is None:
         return None
@@ -131,7 +136,13 @@ def _motions(found: Draft, sources: Mapping[str, tuple[Any, Report]]) -> dict[st
         return {}
     for report in reports:
         report.lost |= found.report("models", model).lost
-    return _built(reports[0], lambda: build_motions(sources, found.bodies[model])) or {}
+    given = tuple(found.contents("motions", "models", MAIN_FILE))
+    return again(
+        ("motions",),
+        given,
+        lambda: _built(reports[0], lambda: build_motions(sources, found.bodies[model])) or {},
+        worth=lambda _: not any(report.diagnostics for report in reports),
+    )
 
 
 def _built(report: Report, build: Callable[[], T | None]) -> T | None:

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
-from lumen.language.projects import Stage
+from lumen.language.projects import PATIENCE, Stage
 from lumen.language.routes import Route
-from lumen.loading.routes import build_routes
+from lumen.loading.routes import build_routes, duration
 from lumen.loading.source import Report
 from lumen.loading.units import LENGTHS
 
@@ -26,6 +26,7 @@ class Settings:
     routes: Mapping[str, Route] = field(default_factory=dict)
     stage: Stage | None = None
     bus: str = "memory://"
+    patience: float = PATIENCE
 
 
 def build_settings(data: Any, report: Report) -> Settings:
@@ -44,7 +45,13 @@ def build_settings(data: Any, report: Report) -> Settings:
         routes=build_routes(data.get("routes", {}), report),
         stage=_stage(data, report),
         bus=data.get("bus", Settings.bus),
+        patience=_patience(data, report),
     )
+
+
+def _patience(data: Mapping[str, Any], report: Report) -> float:
+    length = duration(data.get("reload", {}), "patience", report, ("reload",))
+    return PATIENCE if length is None else length
 
 
 def _stage(data: Mapping[str, Any], report: Report) -> Stage | None:

@@ -49,7 +49,7 @@ class Orders:
         self._running: dict[str, Message] = {}
         self._numbers = count(1)
         self._language = ""
-        self._key = _key(project)
+        self._key = command_key(project)
         self._undo = bus.subscribe(self._key, self._receive)
 
     def begin(self) -> None:
@@ -84,7 +84,7 @@ class Orders:
         and the old one stays: the robot is never out of reach.
         """
         self._project = project
-        key = _key(project)
+        key = command_key(project)
         if key == self._key:
             return
         try:
@@ -159,7 +159,7 @@ class Orders:
             _log.warning("an answer to a command was not sent: %s", error)
 
 
-def _key(project: Project) -> str:
+def command_key(project: Project) -> str:
     """Under which key a project's robot takes commands."""
     route = project.routes.get(ROUTE)
     return route.key_for(project.robot) if route else KEY.replace("{robot}", project.robot)

@@ -3,16 +3,16 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from lumen.errors import BusError
+from lumen.interpreters.migration import Plan, Verdict
 from lumen.interpreters.statechart import Step
-from lumen.language.commands import Command
+from lumen.language.commands import Command, Track
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot
 from lumen.runtime.inbox import Inbox
 from lumen.runtime.performer import Performer
-from lumen.runtime.reload import Refusal
-from lumen.runtime.runtime import Runtime
+from lumen.runtime.resuming import Resumption
+from lumen.runtime.runtime import Rescue, Runtime
 from lumen.runtime.tracking import Tracking
 
 TICK = 0.02
@@ -39,14 +39,16 @@ class Exhibition:
     """A project on a robot, a bus and a clock.
 
     At each tick: the clock waits, the `parts` live, what happened becomes events, the behaviour steps, its commands are
-    performed; `observers` are told. Where ticks stop for 5 s of the clock the behaviour is told (`brain.lost`).
+    performed; `observers` are told. Where ticks stop for 5 s of the clock the behaviour is told (`brain.lost`). Where a
+    tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
     """
 
     def __init__(self, project: Project, robot: Robot, bus: Bus, clock: Clock) -> None:
         self.robot, self.bus, self.clock = robot, bus, clock
         self.parts: list[Part] = []
         self.observers: list[Observer] = []
-        self.runtime = Runtime(project, self._stepped)
+        self.rescue: Rescue = lambda _: None
+        self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
         self.inbox = Inbox(bus)
         self.tracking = Tracking(project, robot, bus)
         self._performer = Performer(robot, bus, self.tracking.switch)
@@ -63,6 +65,17 @@ class Exhibition:
         first = self.runtime.start(self._last, language=language, epoch=epoch, context=context)
         self._perform(first, self._last)
 
+    def resume(self, resumption: Resumption) -> None:
+        """Listen, and go on from where this project's behaviour stood before the engine was away."""
+        self.inbox.listen(self.project)
+        self.runtime.apply(self.project, resumption.snapshot)
+        for name in resumption.tracking:
+            self.tracking.switch(Track(name))
+        self._perform(resumption.commands, self._last)
+        self._events += resumption.answers(self._last)
+        if resumption.away > BRAIN_LOST:
+            self.happen(Event("brain.lost", {"seconds": resumption.away}, self._last))
+
     def happen(self, event: Event) -> None:
         """Let something happen at the next tick."""
         self._events.append(event)
@@ -76,24 +89,38 @@ class Exhibition:
         self._last = now
         for part in self.parts:
             part(now)
-        self.tracking.tick(now)
+        try:
+            self.tracking.tick(now)
+        except Exception as error:
+            self._recover(error, now)
         self._perform(self.runtime.tick(now, self._gather(now)), now)
         return now
 
-    def reload(self, project: Project) -> str:
-        """Go on with another bundle from the next tick on; empty, or why not."""
-        plan = self.runtime.plan(project)
-        if isinstance(plan, Refusal):
-            return plan.reason
+    def plan(self, project: Project, *, now: bool = False, back: bool = False) -> Verdict:
+        """How another bundle would go on from here, or why it can't; nothing changes."""
+        return self.runtime.plan(project, self._last, now=now, back=back)
+
+    def apply(self, project: Project, plan: Plan) -> None:
+        """Go on with another bundle as planned for this moment, between two macrosteps; what that asks for is done.
+
+        Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
+        """
+        old = self.project
+        self.switch(project, plan)
+        self._perform(plan.leaving, self._last, old)
+        self._perform(plan.entering, self._last)
+
+    def switch(self, project: Project, plan: Plan) -> None:
+        """What `apply` does, but for what has to be performed."""
+        old = self.project
         try:
             self.inbox.listen(project)
             self.tracking.reload(project)
-        except BusError as error:
-            self.inbox.listen(self.project)
-            self.tracking.reload(self.project)
-            return f"the bus refuses its routes: {error}"
-        self.runtime.apply(project, plan)
-        return ""
+        except Exception:
+            self.inbox.listen(old)
+            self.tracking.reload(old)
+            raise
+        self.runtime.apply(project, plan.snapshot)
 
     def _stepped(self, step: Step) -> None:
         for observer in self.observers:
@@ -109,11 +136,21 @@ class Exhibition:
         heard = [event for event in answers if _ours(event)]
         return [*ended, *heard, *(e._replace(at=now) for e in happened), *self.inbox.drain(now)]
 
-    def _perform(self, commands: Sequence[Command], now: float) -> None:
+    def _perform(self, commands: Sequence[Command], now: float, project: Project | None = None) -> None:
         for command in commands:
             for observer in self.observers:
                 observer.performing(command, now)
-            self._performer.perform(self.project, command, now)
+            try:
+                self._performer.perform(project or self.project, command, now)
+            except Exception as error:
+                self._recover(error, now)
+
+    def _recover(self, error: Exception, now: float) -> None:
+        """Go on with another bundle after a fault; raises it where there is none."""
+        commands = self.rescue(error)
+        if commands is None:
+            raise error
+        self._perform(commands, now)
 
 
 def _ours(event: Event) -> bool:

@@ -1,30 +1,39 @@
 """The one thread's core: events in, commands out, and never a wait."""
 
 import logging
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from lumen.errors import LumenError
+from lumen.interpreters.migration import Verdict, plan
 from lumen.interpreters.statechart import Snapshot, Step, elapse, initial, step
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.runtime.reload import Refusal, migrate
 
 _log = logging.getLogger(__name__)
+
+Rescue = Callable[[Exception], Sequence[Command] | None]
+"""Asked after a failure: goes on with another bundle, and tells what has to be done for that; None where it can't."""
 
 
 class Runtime:
     """A running behaviour: its bundle, its snapshot, and what happens to them at a tick.
 
-    An event or timer after which the behaviour would never come to rest is dropped, and logged.
+    Where a step fails, `rescue` may go on with another bundle, under which the event happens again. Without one, an
+    event or timer after which the behaviour would never come to rest is dropped, and logged.
 
     `observe` is shown every step in the order taken. `epoch` is the local time of day at time 0 [s since midnight].
     """
 
-    def __init__(self, project: Project, observe: Callable[[Step], None] = lambda _: None) -> None:
+    def __init__(
+        self,
+        project: Project,
+        observe: Callable[[Step], None] = lambda _: None,
+        rescue: Rescue = lambda _: None,
+    ) -> None:
         self.project = project
-        self._observe = observe
+        self._observe, self._rescue = observe, rescue
         self._snapshot: Snapshot | None = None
 
     @property
@@ -46,31 +55,51 @@ class Runtime:
         commands: list[Command] = []
         for event in sorted(events, key=lambda e: e.at):
             commands += self._timers(min(event.at, now))
-            try:
-                commands += self._take(step(self.project.machine, self.snapshot, event))
-            except LumenError as error:
-                _log.error("the event `%s` is dropped: %s", event.name, error)
+            commands += self._hear(event)
         return commands + self._timers(now)
 
-    def plan(self, project: Project) -> Snapshot | Refusal:
-        """Where the behaviour would go on under another bundle, or why it can't now; nothing changes."""
-        return migrate(self.project.machine, project.machine, self.snapshot)
+    def plan(self, project: Project, at: float, *, now: bool = False, back: bool = False) -> Verdict:
+        """How the behaviour would go on under another bundle at `at` [s], or why it can't; nothing changes.
+
+        `now` cancels what it would have to wait for; `back` says that the bundle ran before.
+        """
+        return plan(self.project, project, self.snapshot, at=at, now=now, back=back)
 
     def apply(self, project: Project, planned: Snapshot) -> None:
         """Go on with another bundle as planned, between two macrosteps."""
         self.project, self._snapshot = project, planned
+
+    def _hear(self, event: Event) -> list[Command]:
+        try:
+            return self._take(step(self.project.machine, self.snapshot, event))
+        except Exception as error:
+            rescued = self._rescue(error)
+            if rescued is not None:
+                return [*rescued, *self._hear(event)]
+            if not isinstance(error, LumenError):
+                raise
+            _log.error("the event `%s` is dropped: %s", event.name, error)
+            return []
 
     def _timers(self, until: float) -> list[Command]:
         commands: list[Command] = []
         try:
             for taken in elapse(self.project.machine, lambda: self.snapshot, until):
                 commands += self._take(taken)
-        except LumenError as error:
-            first = min(self.snapshot.timers, key=lambda t: t.due)
-            _log.error("the timer `%s` is dropped: %s", first.event, error)
-            kept = tuple(timer for timer in self.snapshot.timers if timer is not first)
-            self._snapshot = self.snapshot._replace(timers=kept)
+        except Exception as error:
+            rescued = self._rescue(error)
+            if rescued is not None:
+                return [*commands, *rescued, *self._timers(until)]
+            if not isinstance(error, LumenError):
+                raise
+            self._drop_timer(error)
         return commands
+
+    def _drop_timer(self, error: LumenError) -> None:
+        first = min(self.snapshot.timers, key=lambda t: t.due)
+        _log.error("the timer `%s` is dropped: %s", first.event, error)
+        kept = tuple(timer for timer in self.snapshot.timers if timer is not first)
+        self._snapshot = self.snapshot._replace(timers=kept)
 
     def _take(self, taken: Step) -> list[Command]:
         self._snapshot = taken.snapshot

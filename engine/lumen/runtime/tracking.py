@@ -39,6 +39,11 @@ class Tracking:
                 self._trackers[name] = Tracker(controller, project.body)
         self._listen()
 
+    @property
+    def on(self) -> tuple[str, ...]:
+        """The names of the controllers that are on."""
+        return tuple(self._trackers)
+
     def switch(self, track: Track) -> None:
         """Switch a controller on or off; one that is on already goes on."""
         if not track.on:

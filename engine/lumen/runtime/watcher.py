@@ -1,83 +1,183 @@
-"""Sees that a project's files were saved, and loads them where nobody waits for it."""
+"""Sees that a project's files were saved, and has them judged where nobody waits for it."""
 
 import logging
 import queue
+import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping
+from contextlib import closing
 from pathlib import Path
+from typing import Generic, NamedTuple, TypeVar
 
-from lumen.language.diagnostics import Diagnostic
-from lumen.language.projects import Project
-from lumen.loading.files import FOLDERS, fingerprint, read_files
-from lumen.rules import check_files
+from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_files
 
 QUIET = 0.3
 LOOK = 1.0
+HINTING = 20
+"""How long the operating system's notices are gathered [ms]."""
+SLICE = 0.001
+"""How long other threads may keep the running exhibition from its work while files are judged [s]."""
+
+INSIDE = ("behaviors/stories", "schemas/messages")
 
 _log = logging.getLogger(__name__)
-Bundle = tuple[Project | None, Sequence[Diagnostic]]
+Files = Mapping[str, bytes]
+T = TypeVar("T")
 
 
-class Watcher:
-    """A thread that loads and lints the project anew whenever the content of its files has changed and stayed quiet.
+class Saved(NamedTuple):
+    """Files as they were once quiet, `changed` those that differ from what was judged before, by path.
 
-    The operating system's notice of a saved file is a hint that hurries it; what decides is the content, read at least
-    once a second. `hash` is that of the bundle that runs. `results` yields what `check_files` made of each new content,
-    good or bad.
+    `seen` [s, monotonic] is when the first change was noticed, `quiet` when the last had been for the quiet period.
+    `asked` is what was handed to `ask`, None where nobody asked.
     """
 
-    def __init__(self, root: Path, hash: str) -> None:
-        self._root, self._hash = root, hash
-        self._stop = threading.Event()
-        self.results: queue.SimpleQueue[Bundle] = queue.SimpleQueue()
-        self._thread = threading.Thread(target=self._run, name="lumen-watcher", daemon=True)
+    files: Files
+    changed: tuple[str, ...]
+    seen: float
+    quiet: float
+    asked: object = None
+
+
+class Watcher(Generic[T]):
+    """Judges the project's files anew whenever their content has changed and stayed quiet, or when somebody asks.
+
+    The operating system's notice of a saved file is a hint that hurries it; what decides is the content, read at least
+    once a second. `files` are those before, `hash` that of the bundle that runs where it is another. `results` yields
+    what `judge` makes of each new content, good or bad. `leisure` is then given what was judged, and a function that
+    says whether there is something more urgent. Without `hints` only who asks is served.
+    """
+
+    def __init__(
+        self,
+        root: Path,
+        files: Files,
+        judge: Callable[[Saved], T],
+        *,
+        hash: str = "",
+        quiet: float = QUIET,
+        hints: bool = True,
+        leisure: Callable[[T, Callable[[], bool]], None] = lambda judged, urgent: None,
+    ) -> None:
+        self._root, self._files, self._hash = root, files, hash or fingerprint(files)
+        self._judge, self._leisure, self._quiet, self._watching = judge, leisure, quiet, hints
+        self._stop, self._hint = threading.Event(), threading.Event()
+        self._asked: queue.SimpleQueue[object] = queue.SimpleQueue()
+        self.results: queue.SimpleQueue[T] = queue.SimpleQueue()
+        self._threads = [threading.Thread(target=self._load, name="lumen-loading", daemon=True)]
+        if hints:
+            self._threads.append(threading.Thread(target=self._watch, name="lumen-watching", daemon=True))
 
     def start(self) -> None:
-        self._thread.start()
+        for thread in self._threads:
+            thread.start()
+
+    def ask(self, what: object) -> None:
+        """Judge the files as they are now, changed or not; `what` comes back with it."""
+        self._asked.put(what)
+        self._hint.set()
 
     def close(self) -> None:
-        """End the thread; returns when it has ended."""
+        """End the threads; returns when they have ended."""
         self._stop.set()
-        self._thread.join()
+        self._hint.set()
+        for thread in self._threads:
+            thread.join()
 
-    def _run(self) -> None:
-        from watchfiles import watch
-
-        folders = [folder for name in FOLDERS if (folder := self._root / name).is_dir()]
-        changes = watch(
-            *folders,
-            stop_event=self._stop,
-            step=50,
-            debounce=200,
-            rust_timeout=int(LOOK * 1000),
-            yield_on_timeout=True,
-            raise_interrupt=False,
-        )
-        try:
-            for _ in changes:
-                self._look()
-        except OSError as error:
-            _log.warning("files are no longer watched, only read once a second: %r", error)
-            while not self._stop.wait(LOOK):
+    def _load(self) -> None:
+        while not self._stop.is_set():
+            self._hint.wait(LOOK if self._watching else None)
+            self._hint.clear()
+            while not self._asked.empty():
+                self._look(self._asked.get())
+            if self._watching:
                 self._look()
 
-    def _look(self) -> None:
+    def _look(self, asked: object = None) -> None:
+        seen = time.monotonic()
         files = read_files(self._root)
-        if fingerprint(files) == self._hash:
+        new = fingerprint(files) != self._hash
+        if new:
+            files = self._settled(files)
+            new = fingerprint(files) != self._hash
+        if self._stop.is_set() or not (new or asked):
             return
-        files = self._settled(files)
-        self._hash = fingerprint(files)
+        changed = tuple(path for path in sorted({*files, *self._files}) if files.get(path) != self._files.get(path))
+        if not asked or self._watching:
+            self._files, self._hash = files, fingerprint(files)
+        usual = sys.getswitchinterval()
+        sys.setswitchinterval(SLICE)
         try:
-            self.results.put(check_files(self._root, files))
+            judged = self._judge(Saved(files, changed, seen, time.monotonic(), asked))
+            self.results.put(judged)
+            self._leisure(judged, self._urgent)
         except Exception:  # a fault of ours must not end the watching
-            _log.exception("the saved files could not be checked")
+            _log.exception("the saved files could not be judged")
+        finally:
+            sys.setswitchinterval(usual)
+
+    def _urgent(self) -> bool:
+        return self._hint.is_set()
 
     def _settled(self, files: dict[str, bytes]) -> dict[str, bytes]:
-        """The files once they have not changed for the quiet period."""
+        """The files once they have not changed for the quiet period.
+
+        Twice as long where one is gone, empty or can't be read: somebody may be about to write it.
+        """
         since = time.monotonic()
-        while time.monotonic() - since < QUIET and not self._stop.wait(QUIET / 6):
+        while time.monotonic() - since < self._needed(files) and not self._stop.wait(self._quiet / 6):
+            self._hint.clear()
             again = read_files(self._root)
             if again != files:
                 files, since = again, time.monotonic()
         return files
+
+    def _needed(self, files: Files) -> float:
+        half = any(not files.get(path) or isinstance(files[path], Unreadable) for path in self._files)
+        return 2 * self._quiet if half else self._quiet
+
+    def _watch(self) -> None:
+        from watchfiles import watch
+
+        while not self._stop.is_set():
+            folders = _folders(self._root)
+            changes = watch(
+                *folders,
+                watch_filter=None,
+                recursive=False,
+                stop_event=self._stop,
+                step=HINTING,
+                debounce=HINTING,
+                rust_timeout=int(LOOK * 1000),
+                yield_on_timeout=True,
+                raise_interrupt=False,
+            )
+            try:
+                with closing(changes):
+                    for _ in changes:
+                        self._hint.set()
+                        if _folders(self._root) != folders:
+                            break
+            except OSError as error:
+                _log.warning("files are no longer watched, only read once a second: %r", error)
+                return
+
+
+def _folders(root: Path) -> dict[Path, tuple[int, int]]:
+    """The folders to be watched that are there now, and which they are: one of the same name may take their place.
+
+    Where the project's folder is a link, the one that the link is in counts too.
+    """
+    wanted = [root, *(root / name for name in (*FOLDERS, *INSIDE))]
+    if root.is_symlink():
+        wanted.append(root.absolute().parent)
+    found = {}
+    for folder in wanted:
+        try:
+            status = folder.stat()
+        except OSError:
+            continue
+        if folder.is_dir():
+            found[folder] = (status.st_dev, status.st_ino)
+    return found

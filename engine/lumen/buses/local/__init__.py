@@ -2,7 +2,7 @@
 
 Who runs an exhibition opens a `Door` to its bus; whoever wants to talk to it connects a `LocalBus`. Both speak JSON in
 frames over a socket that only the same user can open (a file of mode 0600, or loopback where there are no such
-sockets), after each has proved that it knows the key in the address file. Nothing that comes in is ever executed.
+sockets), after each has proved that it knows the key of the address. Nothing that comes in is ever executed.
 """
 
 from lumen.buses.local.addresses import Address

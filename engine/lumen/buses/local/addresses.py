@@ -1,13 +1,14 @@
-"""Where a door is: a small file in the project's own folder, readable by its owner alone."""
+"""Where a door is, and the key to it."""
 
-import json
 import os
 import secrets
 import socket
 import tempfile
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from lumen.errors import BusError
 
@@ -26,22 +27,12 @@ class Address:
     key: str = ""
 
     @staticmethod
-    def read(file: Path) -> "Address":
-        """The address in that file; raises BusError where there is none, or none that can be used."""
+    def of(data: Mapping[str, Any]) -> "Address":
+        """The address in what a file says; raises BusError where it holds none."""
         try:
-            found = json.loads(file.read_text("utf-8"))
-            return Address(str(found["path"]), int(found["port"]), str(found["key"]))
-        except FileNotFoundError:
-            raise BusError(f"there is no {file}") from None
-        except (OSError, ValueError, TypeError, KeyError) as error:
-            raise BusError(f"{file} holds no address: {error}") from None
-
-    def write(self, file: Path) -> None:
-        """Write it for others of the same user, as a whole or not at all."""
-        draft = file.with_name(f"{file.name}.{os.getpid()}")
-        with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w", encoding="utf-8") as written:
-            json.dump(asdict(self), written)
-        os.replace(draft, file)
+            return Address(str(data["path"]), int(data["port"]), str(data["key"]))
+        except (KeyError, TypeError, ValueError) as error:
+            raise BusError(f"this is no address: {error!r}") from None
 
     def connect(self) -> socket.socket:
         """A connection to whoever listens there; raises OSError where nobody does."""

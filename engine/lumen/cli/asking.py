@@ -1,0 +1,32 @@
+"""A question to a running exhibition, and the answers that come back."""
+
+import queue
+import uuid
+from collections.abc import Iterator
+from typing import Any
+
+from lumen.errors import BusError
+from lumen.ports import Bus
+
+PATIENCE = 10.0
+"""How long the first answer may take [s]: files are loaded for it."""
+
+
+def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = PATIENCE) -> Iterator[Any]:
+    """The answers to a message, as they come; who takes them decides which is the last.
+
+    Raises BusError where there is none within `first` [s].
+    """
+    answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    mark = str(uuid.uuid4())
+    undo = bus.subscribe(reply_to, lambda m: answers.put(m.body) if m.correlation_id == mark else None)
+    bus.publish(key, body, reply_to=reply_to, correlation_id=mark)
+    timeout: float | None = first
+    try:
+        while True:
+            yield answers.get(timeout=timeout)
+            timeout = None
+    except queue.Empty:
+        raise BusError(f"nobody answers on `{key}`: is an exhibition running on that bus?") from None
+    finally:
+        undo()

@@ -1,0 +1,120 @@
+"""What is told of a reload: as JSON on the bus and in the journal, and as lines for people."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumen.cli.judging import Judged, told
+from lumen.interpreters.changes import Change, Risk, risk, summary
+from lumen.interpreters.migration import Refusal, Wait
+from lumen.language.diagnostics import Severity
+from lumen.language.projects import Project
+
+MOST = 100
+"""Changes and diagnostics that a bulletin lists."""
+OPEN = ("waiting", "judging")
+"""Verdicts after which another one follows."""
+
+
+@dataclass
+class Bulletin:
+    """One verdict on files: `unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run`, `status`.
+
+    `who` asked for it: `files`, `command`, `probation`. `before` and `after` are hashes of bundles, `restart` sentences
+    about what comes into force only then, `took` times [s] by what took them.
+    """
+
+    verdict: str
+    who: str
+    before: str = ""
+    after: str = ""
+    revision: int = 0
+    changes: tuple[Change, ...] = ()
+    judged: Judged | None = None
+    waiting_for: str = ""
+    reason: str = ""
+    hint: str = ""
+    notes: tuple[str, ...] = ()
+    took: dict[str, float] = field(default_factory=dict)
+    more: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def well(self) -> bool:
+        return self.verdict != "refused"
+
+    @property
+    def restart(self) -> list[str]:
+        return [str(change) for change in self.changes if change.risk is Risk.RESTART]
+
+    def lines(self) -> Iterator[str]:
+        """What a person is told, the reasons before the verdict."""
+        if self.judged:
+            errors = (d for d in self.judged.diagnostics if d.severity is Severity.ERROR)
+            yield from map(str, list(errors)[:MOST])
+            yield from (f"{told(rehearsal)}" for rehearsal in self.judged.failed)
+        yield from self._verdict()
+        yield from self.notes
+        if self.verdict in ("applied", "dry run"):
+            yield from self.restart
+
+    def _verdict(self) -> Iterator[str]:
+        match self.verdict:
+            case "applied":
+                yield f"the saved files are in force: {self._what()}"
+            case "rolled back":
+                yield f"{self.reason}: back to the files before, revision {self.revision}"
+            case "refused":
+                yield f"refused: {self._why()}the exhibition goes on as it was"
+            case "waiting":
+                yield f"waiting for `{self.waiting_for}`: {self.reason}"
+            case "staged":
+                yield f"staged: {self._what()}; `lumen reload --apply` puts it in force"
+            case "unchanged":
+                yield self.reason or "the saved files are those that run"
+            case "dry run":
+                yield f"{self._what()}; {self.reason}"
+            case _:
+                yield self.reason
+
+    def _what(self) -> str:
+        return f"{summary(self.changes)} (risk: {risk(self.changes)})"
+
+    def _why(self) -> str:
+        if self.judged and self.judged.failed:
+            names = ", ".join(f"`{rehearsal.story.name}`" for rehearsal in self.judged.failed)
+            return f"the saved story {names} fails with these files; "
+        hint = f" ({self.hint})" if self.hint else ""
+        return f"{self.reason}{hint}; " if self.reason else ""
+
+    def to_json(self) -> dict[str, Any]:
+        """The body on `lumen.config.status`, and the entry in the journal."""
+        found: dict[str, Any] = {
+            "verdict": self.verdict,
+            "final": self.verdict not in OPEN,
+            "who": self.who,
+            "before": self.before,
+            "after": self.after,
+            "revision": self.revision,
+        }
+        if self.changes or self.verdict in ("applied", "staged", "dry run"):
+            found["risk"] = str(risk(self.changes))
+            found["changes"] = [str(change) for change in self.changes[:MOST]]
+            found["restart"] = self.restart
+        if self.judged:
+            found["diagnostics"] = [d.to_json() for d in self.judged.diagnostics[:MOST]]
+            found["stories"] = [told(rehearsal) for rehearsal in self.judged.failed]
+            found["took"] = {"loading": self.judged.loading, "stories": self.judged.playing, **self.took}
+        named = {"waiting_for": self.waiting_for, "reason": self.reason, "hint": self.hint, "notes": list(self.notes)}
+        return {**found, **{name: value for name, value in named.items() if value}, **self.more}
+
+
+def refusal_of(refusal: Refusal, project: Project, who: str) -> Bulletin:
+    """A refusal with the place in the new files where it could be said."""
+    place = project.place(f"behaviors/{refusal.behavior}.yaml", refusal.where) if refusal.behavior else None
+    reason = f"{place}: {refusal.reason}" if place else refusal.reason
+    return Bulletin("refused", who, after=project.hash, reason=reason, hint=refusal.hint)
+
+
+def what_for(verdict: Wait | Refusal) -> str:
+    """The state that has to be left first."""
+    return verdict.what if isinstance(verdict, Wait) else verdict.state

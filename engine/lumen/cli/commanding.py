@@ -1,0 +1,25 @@
+"""A command to the robot of a running exhibition, as any module would send it."""
+
+import argparse
+import sys
+from typing import Any
+
+from lumen.cli.asking import ask
+from lumen.cli.reach import reach
+
+ANSWERS = "lumen.operator.answer"
+PATIENCE = 30.0
+
+
+def command(options: argparse.Namespace, body: Any, done: str) -> int:
+    """Send it and wait for the answer: prints `done` and gives 0, or says why not and gives 1."""
+    reached = reach(options)
+    try:
+        answer = str(next(ask(reached.bus, reached.command, body, ANSWERS, first=PATIENCE)))
+    finally:
+        reached.bus.close()
+    if answer == "command finished":
+        print(done)
+        return 0
+    print(f"lumen {options.verb}: {answer}", file=sys.stderr)
+    return 1

@@ -1,0 +1,127 @@
+"""Saved files on trial: loaded, linted, compared with what runs, and played on the recording robot."""
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from lumen.cli.rehearsal import Rehearsal, rehearse
+from lumen.interpreters.changes import Change, Risk, changes
+from lumen.interpreters.statechart.program import compiled
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.loading.files import fingerprint
+from lumen.rules import check_files
+from lumen.runtime.watcher import Saved
+
+BUDGET = 2.0
+"""How long the stories that were saved may take, all together [s]."""
+STORIES = "behaviors/stories"
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What came of saved files: a bundle, or what is wrong with them.
+
+    `failed` are stories that were saved with them and do not hold; `fault` is a failure of ours. `changes` are against
+    the bundle that ran when they were judged. Times [s]: `seen` and `quiet` on the monotonic clock, `loading` and
+    `playing` how long each took.
+    """
+
+    saved: Saved
+    hash: str
+    project: Project | None = None
+    diagnostics: tuple[Diagnostic, ...] = ()
+    changes: tuple[Change, ...] = ()
+    failed: tuple[Rehearsal, ...] = ()
+    fault: str = ""
+    loading: float = 0.0
+    playing: float = 0.0
+
+    @property
+    def good(self) -> bool:
+        return self.project is not None and not self.failed and not self.fault
+
+    @property
+    def took(self) -> float:
+        """How long our own work took [s], without the quiet period."""
+        return self.loading + self.playing
+
+
+class Judge:
+    """Judges files against the bundle that runs, which `running` tells; called on a thread that may take its time."""
+
+    def __init__(self, root: Path, running: Callable[[], Project], budget: float = BUDGET) -> None:
+        self._root, self._running, self._budget = root, running, budget
+
+    def __call__(self, saved: Saved) -> Judged:
+        """What came of them; nothing here raises for what they say."""
+        hash = fingerprint(saved.files)
+        began = time.perf_counter()
+        try:
+            project, diagnostics = check_files(self._root, saved.files)
+            if project is None:
+                return Judged(saved, hash, None, diagnostics, loading=time.perf_counter() - began)
+            compiled(project.machine)
+            found = changes(self._running(), project)
+            loaded = time.perf_counter()
+            failed = tuple(self._play(project, _saved_stories(project, saved.changed), loaded + self._budget))
+            took = loaded - began, time.perf_counter() - loaded
+            return Judged(saved, hash, project, diagnostics, found, failed, "", *took)
+        except Exception as error:  # a fault of ours costs the reload, and nothing else
+            return Judged(saved, hash, fault=f"Lumen failed on these files: {error!r}")
+
+    def advise(self, judged: Judged, urgent: Callable[[], bool]) -> list[Rehearsal]:
+        """The stories of what was changed that would not hold any more, as far as there is leisure to play them."""
+        if not judged.good or judged.project is None:
+            return []
+        others = _touched_stories(judged.project, judged.changes, judged.saved.changed)
+        return list(self._play(judged.project, others, time.perf_counter() + self._budget, urgent))
+
+    def _play(
+        self, project: Project, stories: Iterable[Story], until: float, urgent: Callable[[], bool] = lambda: False
+    ) -> Iterable[Rehearsal]:
+        """Those that fail; one for which there is no time left is left out."""
+
+        def hurry(_: float) -> None:
+            if urgent() or time.perf_counter() > until:
+                raise _EnoughError
+
+        try:
+            for story in stories:
+                rehearsal = rehearse(project, story, parts=[hurry])
+                if rehearsal.failed:
+                    yield rehearsal
+        except _EnoughError:
+            return
+
+
+class _EnoughError(Exception):
+    """There is no time left for this story."""
+
+
+def _saved_stories(project: Project, changed: Iterable[str]) -> list[Story]:
+    names = [PurePosixPath(path).stem for path in changed if str(PurePosixPath(path).parent) == STORIES]
+    return [project.stories[name] for name in names if name in project.stories]
+
+
+def _touched_stories(project: Project, found: Iterable[Change], changed: Iterable[str]) -> list[Story]:
+    """Stories of behaviours that changed, the shown one first and then the shortest; all where gestures changed."""
+    saved = _saved_stories(project, changed)
+    files = {change.file for change in found if change.risk is not Risk.COSMETIC or change.kind == "text"}
+    behaviors = {PurePosixPath(file).stem for file in files if file.startswith("behaviors/")}
+    everything = any(change.risk in (Risk.MOTION, Risk.WIRING) for change in found)
+    touched = [
+        story
+        for story in project.stories.values()
+        if story not in saved and (everything or (story.behavior or project.behavior) in behaviors)
+    ]
+    return sorted(touched, key=lambda story: (story.name != project.story, len(story.scenes)))
+
+
+def told(rehearsal: Rehearsal) -> str:
+    """A failure in a line, with its place."""
+    place = f"{rehearsal.place}: " if rehearsal.place else ""
+    failed = rehearsal.failed
+    return f"{place}{failed.what if failed else ''}"

@@ -1,0 +1,66 @@
+"""The first seconds of a bundle: where it fails in them, the one before comes back."""
+
+import logging
+from collections.abc import Callable, Sequence
+
+from lumen.cli.show import Show
+from lumen.interpreters.changes import live
+from lumen.interpreters.migration import Plan
+from lumen.language.commands import Command
+from lumen.language.projects import Project
+from lumen.runtime.resuming import anew
+
+PERIOD = 10.0
+"""Of the exhibition's clock [s]."""
+
+_log = logging.getLogger(__name__)
+
+
+class Probation:
+    """Watches over the bundle that was applied last.
+
+    A failure is an exception out of the interpreter or of what performs its commands, or a behaviour that does not come
+    to rest. It brings back `good`, the bundle that has stood its probation, by the plan from the new to the old one;
+    the event that failed happens again under it. `before` is what ran before the last reload. `back` is told.
+    """
+
+    def __init__(self, show: Show, back: Callable[[str, Project], None]) -> None:
+        self._show, self._back = show, back
+        self.good = show.exhibition.project
+        self.before: Project | None = None
+        self._until: float | None = None
+        show.exhibition.rescue = self._rescue
+
+    def begin(self, before: Project, now: float) -> None:
+        """Another bundle runs since `now` [s]."""
+        self.before, self._until = before, now + PERIOD
+
+    def over(self, now: float) -> bool:
+        """Whether the bundle has stood it just now."""
+        if self._until is None or now < self._until:
+            return False
+        self._until, self.good = None, self._show.exhibition.project
+        return True
+
+    def left(self, now: float) -> float | None:
+        """How long it still lasts [s], None where none is under way."""
+        return None if self._until is None else max(0.0, round(self._until - now, 3))
+
+    def _rescue(self, error: Exception) -> Sequence[Command] | None:
+        if self._until is None:
+            return None
+        self._until = None
+        bad = self._show.exhibition.project
+        good = live(bad, self.good)
+        _log.debug("a reload failed", exc_info=error)
+        commands = self._show.rescue(good, self._plan(good))
+        self.before = bad
+        self._back(str(error) or repr(error), bad)
+        return commands
+
+    def _plan(self, good: Project) -> Plan:
+        plan = self._show.plan(good, now=True, back=True)
+        if isinstance(plan, Plan):
+            return plan
+        exhibition = self._show.exhibition
+        return anew(good, exhibition.runtime.snapshot, exhibition.clock.now())

@@ -1,0 +1,49 @@
+"""What a running exhibition writes into its home: journal, bundles, and where its behaviour stands."""
+
+import logging
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.projects import Project
+from lumen.runtime.exhibition import Exhibition
+from lumen.runtime.home import Home
+from lumen.runtime.journal import Journal
+from lumen.runtime.keeping import Keeper
+
+_log = logging.getLogger(__name__)
+
+
+class Records:
+    """The records in a home; without one (another run of the same project has it) nothing is written."""
+
+    def __init__(self, home: Home | None) -> None:
+        self._told = False
+        self.keeper = Keeper(home) if home else None
+        self.journal = Journal(home.folder if home else None)
+
+    def write(self, entry: Mapping[str, Any]) -> None:
+        self.journal.write(entry)
+
+    def store(self, files: Mapping[str, bytes]) -> None:
+        """Keep the files of a good bundle."""
+        if self.keeper:
+            self.keeper.store(files)
+
+    def approve(self, hash: str) -> None:
+        """A bundle has stood its probation."""
+        if self.keeper:
+            self.keeper.approve(hash)
+
+    def prune(self, *projects: Project | None) -> None:
+        """Forget all bundles but these."""
+        if self.keeper:
+            self.keeper.prune(*(project.hash for project in projects if project))
+
+    def keep(self, exhibition: Exhibition) -> None:
+        """Write where the behaviour stands, where that is news."""
+        if self.keeper is None:
+            return
+        self.keeper.keep(exhibition.project, exhibition.runtime.snapshot, exhibition.tracking.on)
+        if self.keeper.trouble and not self._told:
+            self._told = True
+            _log.warning("where the behaviour stands can't be kept: %s", self.keeper.trouble)

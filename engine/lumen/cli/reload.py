@@ -1,0 +1,54 @@
+"""`lumen reload`: have a running exhibition take its files, or say how it stands with them."""
+
+import argparse
+import json
+from typing import Any
+
+from lumen.cli.asking import ask
+from lumen.cli.orders import COMMAND, STATUS
+from lumen.cli.reach import configure_reach, reach
+
+VERBS = {
+    "status": "say which files run, what is staged, and what came of the last ones",
+    "apply": "put in force what is staged",
+    "rollback": "go back to the files that ran before",
+    "dry-run": "only say what the saved files would change",
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    configure_reach(parser)
+    which = parser.add_mutually_exclusive_group()
+    for verb, summary in VERBS.items():
+        which.add_argument(f"--{verb}", dest="command", action="store_const", const=verb, help=summary)
+    parser.add_argument("--now", action="store_true", help="do not wait for what the robot is doing: cancel it")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 where the files are in force or staged, 1 where they were refused; while they wait, so does this."""
+    body = {"command": options.command or "reload", "now": options.now}
+    reached = reach(options)
+    try:
+        for answer in ask(reached.bus, COMMAND, body, STATUS):
+            _show(answer, options.format)
+            if not isinstance(answer, dict) or answer.get("final", True):
+                return int(not isinstance(answer, dict) or answer.get("verdict") == "refused")
+    finally:
+        reached.bus.close()
+    return 1
+
+
+def _show(answer: Any, format: str) -> None:
+    """One object for each verdict; a person reads its lines."""
+    if format == "json" or not isinstance(answer, dict):
+        shown = {key: value for key, value in answer.items() if key != "lines"} if isinstance(answer, dict) else answer
+        print(json.dumps(shown, ensure_ascii=False), flush=True)
+        return
+    lines = answer.get("lines") or [str(answer.get("reason") or answer.get("verdict"))]
+    print("\n".join(_clean(str(line)) for line in lines), flush=True)
+
+
+def _clean(text: str) -> str:
+    """A text from elsewhere: no signs that would steer the terminal."""
+    return "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)

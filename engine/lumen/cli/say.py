@@ -1,0 +1,18 @@
+"""`lumen say TEXT`: the robot of a running exhibition says something."""
+
+import argparse
+
+from lumen.cli.commanding import command
+from lumen.cli.reach import configure_reach
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("text", metavar="TEXT", help="what it says")
+    parser.add_argument("--language", metavar="LANG", default="", help="in which language (default: the one it speaks)")
+    configure_reach(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 once it has said it, 1 where it could not."""
+    parameter = {"text": options.text, "language": options.language}
+    return command(options, {"type": "texttospeech", "method": "say", "parameter": parameter}, "said")

@@ -1,0 +1,124 @@
+"""Where a running exhibition keeps what it needs to be found, and to go on: `.lumen/` of its project."""
+
+import hashlib
+import os
+import sys
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+
+from lumen.errors import UsageError
+
+NAME = ".lumen"
+DOOR = "door.json"
+
+
+class Home:
+    """The folder of one running exhibition; `hold` takes it, and the system gives it back however the process ends.
+
+    Nothing here raises for what a disk does while the exhibition runs: `write` tells whether it could.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._lock: int | None = None
+
+    def hold(self) -> bool:
+        """Make the folder, and take it; false where another process has it.
+
+        Raises UsageError where it can't be made.
+        """
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            lock = os.open(self.folder / "lock", os.O_RDWR | os.O_CREAT, 0o600)
+        except OSError as error:
+            raise UsageError(f"{self.folder} can't be written: {error.strerror}") from None
+        if not _locked(lock):
+            os.close(lock)
+            return False
+        self._lock = lock
+        return True
+
+    def held(self) -> bool:
+        """Whether some process has it now."""
+        try:
+            lock = os.open(self.folder / "lock", os.O_RDWR)
+        except OSError:
+            return False
+        free = _locked(lock)
+        os.close(lock)
+        return not free
+
+    def release(self) -> None:
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
+
+    def write(self, name: str, data: bytes) -> str:
+        """Write a file as a whole or not at all, for its owner alone; empty, or why it could not be.
+
+        It is not forced to the disk: a crash of the process loses nothing, a power cut may bring back the file before.
+        """
+        draft = self.folder / f"{name}.new"
+        try:
+            with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb", buffering=0) as file:
+                file.write(data)
+            os.replace(draft, self.folder / name)
+        except OSError as error:
+            return (error.strerror or str(error)).lower()
+        return ""
+
+    def read(self, name: str) -> bytes | None:
+        """What is in a file, None where there is none that can be read."""
+        try:
+            return (self.folder / name).read_bytes()
+        except OSError:
+            return None
+
+    def remove(self, name: str) -> None:
+        with suppress(OSError):
+            (self.folder / name).unlink()
+
+
+def home_of(root: Path) -> Path:
+    """The folder for an exhibition of the project in `root`.
+
+    It is inside the project, unless that can't be written or is a link that may lead elsewhere tomorrow: then it is
+    among the user's own files, under a name made from the project's path.
+    """
+    inside = root / NAME
+    if not root.is_symlink() and (os.access(inside, os.W_OK) if inside.is_dir() else os.access(root, os.W_OK)):
+        return inside
+    digest = hashlib.sha256(os.fsencode(root.absolute())).hexdigest()[:12]
+    return _own() / f"{root.name}-{digest}"
+
+
+def homes() -> list[Home]:
+    """All homes that are not inside their projects."""
+    folder = _own()
+    return [Home(one) for one in sorted(folder.iterdir())] if folder.is_dir() else []
+
+
+def _own() -> Path:
+    """Where this user's programs keep what they need from run to run."""
+    given = os.environ.get("XDG_STATE_HOME") or os.environ.get("LOCALAPPDATA")
+    try:
+        return Path(given) / "lumen" if given else Path.home() / ".local" / "state" / "lumen"
+    except RuntimeError:  # a user without a home
+        return Path(tempfile.gettempdir()) / f"lumen-{os.getuid() if hasattr(os, 'getuid') else ''}"
+
+
+def _locked(file: int) -> bool:
+    """Whether this process has the file for itself now; a process that ends, however, has it no more."""
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            msvcrt.locking(file, msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True

@@ -1,0 +1,44 @@
+"""What was reloaded, when, by whom, and what came of it: a line of JSON for each, bounded."""
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+NAME = "journal.jsonl"
+BYTES = 1_000_000
+"""After which a new file is begun; the one before is kept, and none older."""
+
+
+class Journal:
+    """Appends entries to `journal.jsonl` of a folder; without a folder they are forgotten.
+
+    A line is written as a whole. A disk that is full costs the entry, and nothing else.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self._file = folder and folder / NAME
+
+    def write(self, entry: Mapping[str, Any]) -> None:
+        """Append an entry, with the date and time (UTC) before it."""
+        if self._file is None:
+            return
+        line = json.dumps({"time": datetime.now(UTC).isoformat(timespec="milliseconds"), **entry}, ensure_ascii=False)
+        with suppress(OSError):
+            if self._file.exists() and self._file.stat().st_size > BYTES:
+                os.replace(self._file, self._file.with_suffix(".jsonl.1"))
+            with self._file.open("ab") as file:
+                file.write(line.encode("utf-8", "replace") + b"\n")
+
+    def entries(self) -> Iterator[dict[str, Any]]:
+        """All that is kept, the oldest first; a line that a crash cut off is left out."""
+        if self._file is None:
+            return
+        for file in (self._file.with_suffix(".jsonl.1"), self._file):
+            with suppress(OSError):
+                for line in file.read_bytes().splitlines():
+                    with suppress(ValueError):
+                        yield json.loads(line)

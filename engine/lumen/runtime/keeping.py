@@ -1,0 +1,138 @@
+"""What an exhibition needs to go on after a crash: where its behaviour stood, and the very files it ran on."""
+
+import io
+import json
+import time
+import zipfile
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from lumen.errors import LumenError
+from lumen.interpreters.statechart import Snapshot, freeze
+from lumen.language.projects import Project
+from lumen.loading.files import fingerprint
+from lumen.runtime.home import Home
+
+SNAPSHOT = "snapshot.json"
+GOOD = "good.json"
+VERSION = 1
+SPACING = 0.02
+"""How long after a snapshot the next is written at the earliest [s]: a simulation may take a hundred steps in that."""
+
+
+class Kept(NamedTuple):
+    """A snapshot as it was written: of which bundle and behaviour, at which time (Unix), frozen.
+
+    `tracking` are the controllers that were on.
+    """
+
+    bundle: str
+    behavior: str
+    time: float
+    frozen: Mapping[str, Any]
+    tracking: tuple[str, ...] = ()
+
+
+class Keeper:
+    """Writes snapshots and bundles into a home; `trouble` says why it could not, once.
+
+    Where only the time of a snapshot differs from the one before, nothing is written: its timers have deadlines.
+    """
+
+    def __init__(self, home: Home) -> None:
+        self._home = home
+        self._last: Snapshot | None = None
+        self._written = 0.0
+        self.trouble = ""
+        self.count, self.spent = 0, 0.0
+
+    def keep(self, project: Project, snapshot: Snapshot, tracking: Sequence[str]) -> None:
+        """Write where the project's behaviour stands, if that is news and the last was not written just now."""
+        if self._last is snapshot or (self._last is not None and _same(self._last, snapshot)):
+            return
+        began = time.perf_counter()
+        if began - self._written < SPACING:
+            return
+        try:
+            frozen = freeze(project.machine, snapshot)
+        except LumenError as error:
+            self._wrote(str(error))
+            return
+        data = {
+            "version": VERSION,
+            "bundle": project.hash,
+            "behavior": project.behavior,
+            "time": time.time(),
+            "tracking": list(tracking),
+            "snapshot": frozen,
+        }
+        self._wrote(self._home.write(SNAPSHOT, json.dumps(data).encode()))
+        self._last, self._written = snapshot, began
+        self.count, self.spent = self.count + 1, self.spent + time.perf_counter() - began
+
+    def kept(self) -> Kept | None:
+        """The snapshot of a run that did not end by itself, None where there is none that can be read."""
+        try:
+            data = json.loads(self._home.read(SNAPSHOT) or b"")
+            if data["version"] != VERSION:
+                return None
+            tracking = tuple(map(str, data["tracking"]))
+            return Kept(
+                str(data["bundle"]), str(data["behavior"]), float(data["time"]), dict(data["snapshot"]), tracking
+            )
+        except (ValueError, TypeError, KeyError):
+            return None
+
+    def forget(self) -> None:
+        """The run has ended as it should: there is nothing to go on with."""
+        self._home.remove(SNAPSHOT)
+        self._last = None
+
+    def store(self, files: Mapping[str, bytes]) -> str:
+        """Keep the files of a bundle; its hash."""
+        hash = fingerprint(files)
+        if not (self._home.folder / _name(hash)).exists():
+            packed = io.BytesIO()
+            with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+                for path, content in files.items():
+                    archive.writestr(path, content)
+            self._wrote(self._home.write(_name(hash), packed.getvalue()))
+        return hash
+
+    def files(self, hash: str) -> dict[str, bytes] | None:
+        """The files of a bundle that was kept, None where they are not there as they were."""
+        try:
+            with zipfile.ZipFile(io.BytesIO(self._home.read(_name(hash)) or b"")) as archive:
+                found = {name: archive.read(name) for name in archive.namelist()}
+        except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError):
+            return None
+        return found if fingerprint(found) == hash else None
+
+    def approve(self, hash: str) -> None:
+        """This bundle has proved itself: it is the last good one."""
+        self._wrote(self._home.write(GOOD, json.dumps({"version": VERSION, "bundle": hash}).encode()))
+
+    def good(self) -> str:
+        """The hash of the last good bundle, empty where there is none."""
+        try:
+            return str(json.loads(self._home.read(GOOD) or b"")["bundle"])
+        except (ValueError, TypeError, KeyError):
+            return ""
+
+    def prune(self, *hashes: str) -> None:
+        """Delete the files of all bundles but these."""
+        names = {_name(hash) for hash in hashes}
+        for path in self._home.folder.glob("bundle-*.zip"):
+            if path.name not in names:
+                self._home.remove(path.name)
+
+    def _wrote(self, trouble: str) -> None:
+        self.trouble = self.trouble or trouble
+
+
+def _same(one: Snapshot, other: Snapshot) -> bool:
+    return one._replace(at=0.0) == other._replace(at=0.0)
+
+
+def _name(hash: str) -> str:
+    return f"bundle-{hash[:16]}.zip"

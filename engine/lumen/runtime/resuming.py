@@ -1,0 +1,68 @@
+"""A behaviour that goes on after its engine was away: time on another clock, and what became of commands."""
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from lumen.interpreters.migration import Plan, Refusal, plan
+from lumen.interpreters.statechart import Snapshot, initial, retimed
+from lumen.interpreters.statechart.answers import outside
+from lumen.interpreters.statechart.doing import awaited
+from lumen.interpreters.statechart.types import fits, type_checks
+from lumen.language.commands import Cancel, Command
+from lumen.language.events import Event
+from lumen.language.projects import Project
+
+REASON = "the engine was restarted while it ran"
+
+
+class Resumption(NamedTuple):
+    """How a behaviour goes on: from `snapshot`, with what has to be performed first.
+
+    `lost` are the commands that were under way, `tracking` the controllers that were on, `away` [s] how long the engine
+    was. `notes` say what somebody could miss.
+    """
+
+    snapshot: Snapshot
+    away: float
+    commands: tuple[Command, ...] = ()
+    lost: tuple[str, ...] = ()
+    tracking: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def answers(self, now: float) -> list[Event]:
+        """An answer for each command that was under way: it failed, for the robot has forgotten it."""
+        return [Event(f"error.command.{id}", {"reason": REASON}, now) for id in self.lost]
+
+
+def resume(
+    old: Project, new: Project, snapshot: Snapshot, away: float, tracking: Iterable[str]
+) -> Resumption | Refusal:
+    """How `new` goes on at time 0 of a new clock from a snapshot of `old`, whose timers went on while it was away [s].
+
+    Newer files are a reload that waits for nothing: what was under way has ended anyway.
+    """
+    later = retimed(snapshot._replace(at=snapshot.at + away), 0.0, "remaining")
+    verdict = Plan(later) if old is new else plan(old, new, later, now=True)
+    if not isinstance(verdict, Plan):
+        return verdict if isinstance(verdict, Refusal) else Refusal(verdict.reason)
+    lost, known = tuple(_awaited(snapshot)), tuple(name for name in tracking if name in new.controllers)
+    return Resumption(verdict.snapshot, away, verdict.entering, lost, known, verdict.notes)
+
+
+def anew(project: Project, snapshot: Snapshot, now: float) -> Plan:
+    """How a project that can't go on from a snapshot begins anew at `now` [s]: with all that fits of its context."""
+    checks = type_checks(project.machine)
+    kept = {key: value for key, value in snapshot.context.items() if key in checks and fits(value, checks[key])}
+    language = snapshot.language if snapshot.language in project.languages else project.languages[0]
+    first = initial(project.machine, now, kept, language, epoch=snapshot.epoch)
+    counted = first.snapshot._replace(generator=snapshot.generator)
+    leaving = tuple(Cancel(id) for id in _awaited(snapshot))
+    return Plan(counted, leaving, first.commands, entered=first.entered, notes=("the behaviour begins anew",))
+
+
+def _awaited(snapshot: Snapshot) -> Iterator[str]:
+    """The ids of commands, not of waits, as they are called outside."""
+    for position in snapshot.doing.values():
+        yield from (id for id in awaited(position) if id.startswith("d"))
+    for owner, child in snapshot.invoked.items():
+        yield from (outside(id, owner) for id in _awaited(child.snapshot))
