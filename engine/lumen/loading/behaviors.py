@@ -17,6 +17,9 @@ from lumen.loading.transitions import Transitions
 
 M = TypeVar("M", bound=Machine)
 
+CONTEXT = "context"
+"""How `renamed` calls keys of the context: `context.name: context.visitor`."""
+
 
 def build_machine(data: Any, report: Report, *, name: str, into: type[M]) -> M | None:
     """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
@@ -59,7 +62,7 @@ class _Builder:
             "events": dict(data.get("events") or {}),
             "phrases": {key: _phrases(body) for key, body in (data.get("phrases") or {}).items()},
             "answers": {key: _answers(rows) for key, rows in (data.get("answers") or {}).items()},
-            "renamed": {o: n for o, n in (data.get("renamed") or {}).items() if self.renamed(n, ("renamed", o))},
+            "renamed": {was: now for was in data.get("renamed") or {} if (now := self.renamed(was))},
             "hash": fingerprint(data),
         }
 
@@ -130,12 +133,32 @@ class _Builder:
         found = self.outline.resolve(entry, entry.data["onReload"], (*entry.where, "onReload"))
         return found.path if found else ""
 
-    def renamed(self, path: str, where: Path) -> bool:
-        if path in self.outline.entries:
-            return True
-        hint = did_you_mean(path, self.outline.entries)
-        self.report("unknown-state", where, f"there is no state `{path}`", hint=hint)
-        return False
+    def renamed(self, was: str) -> str:
+        """What is called otherwise now, by its path: what is gone by now may have been renamed again."""
+        table: Mapping[str, str] = self.data["renamed"]
+        seen, now = {was}, table[was]
+        while not (found := self.known(now)) and now in table and now not in seen:
+            seen.add(now)
+            now = table[now]
+        if not found:
+            self.unknown(table[was], ("renamed", was))
+        return found
+
+    def known(self, name: str) -> str:
+        """The path of a state by its path or id, or `context.KEY` of a key; empty where there is neither."""
+        entry = self.outline.entries.get(name) or self.outline.aliases.get(name)
+        key = name.removeprefix(f"{CONTEXT}.")
+        return entry.path if entry else name if key != name and key in (self.data.get("context") or {}) else ""
+
+    def unknown(self, name: str, where: Path) -> None:
+        """Report a name under `renamed` that nothing has."""
+        head, _, key = name.partition(".")
+        if head == CONTEXT:
+            known = [f"{CONTEXT}.{other}" for other in self.data.get("context") or {}]
+            self.report("unknown-context-key", where, f"`context` has no `{key}`", hint=did_you_mean(name, known))
+        else:
+            hint = did_you_mean(name, filter(None, self.outline.entries))
+            self.report("unknown-state", where, f"there is no state `{name}`", hint=hint)
 
 
 def _children(entry: Entry) -> tuple[str, ...]:

@@ -1,7 +1,8 @@
 """What has become of a project's files so far."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from lumen.language.controllers import Controller
@@ -22,7 +23,7 @@ class Draft:
     `names` has for each folder the names of all files in it, whether they could be built or not; `reports` the report
     of each document by its file; `missing` the folders that were reported as missing; `unsound` the JSON Schemas in
     behaviours that were reported as broken: behaviour, `types` or `events`, name. `settings` is None where lumen.yaml
-    could not be read at all.
+    could not be read at all. `root` is the project's folder, for what is needed of files that are not read.
     """
 
     files: Mapping[str, bytes]
@@ -38,6 +39,7 @@ class Draft:
     loose: list[Diagnostic] = field(default_factory=list)
     missing: set[str] = field(default_factory=set)
     unsound: set[tuple[str, str, str]] = field(default_factory=set)
+    root: Path | None = None
 
     @property
     def main(self) -> Report | None:
@@ -54,6 +56,10 @@ class Draft:
         """Everything found so far, each cause once, by file and line."""
         found = [d for r in self.reports.values() for d in r.diagnostics if not r.follows(d.code, d.message)]
         return gathered([*found, *self.loose])
+
+    def contents(self, *beginnings: str) -> Iterator[tuple[str, bytes]]:
+        """The files whose paths begin so."""
+        return ((file, content) for file, content in self.files.items() if file.startswith(beginnings))
 
     def report(self, folder: str, name: str) -> Report:
         """The report of `FOLDER/NAME.yaml`."""

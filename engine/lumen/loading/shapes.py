@@ -39,6 +39,7 @@ def _check_keys(entry: Entry, report: Report) -> None:
         hint = did_you_mean(key, allowed - _MACHINE, "it may have")
         if key in ("history", "target"):
             hint = "add `type: history`" if key == "history" else "transitions stand under `on`, `always` or `after`"
+        report.missed.update(filter(lambda value: isinstance(value, str), [entry.data[key]]))
         message = f"{_ARTICLES.get(entry.kind, f'a {entry.kind}')} state has no `{key}`"
         report("misplaced-key", (*entry.where, key), message, hint=hint, key=True)
 

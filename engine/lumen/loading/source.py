@@ -8,6 +8,7 @@ at the author's text by the path of the node.
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from math import inf, nan
 from typing import Any, NamedTuple
 
@@ -17,6 +18,8 @@ from lumen.language.diagnostics import Diagnostic, Path, Place, Related, Severit
 
 MAX_DEPTH = 100
 MAX_NODES = 200_000
+REMEMBERED = 100_000
+"""Bytes of a file above which it is read every time."""
 
 _NULL = frozenset(("", "~", "null", "Null", "NULL"))
 _BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
@@ -84,7 +87,8 @@ class Report:
     `pruned` are the paths of nodes that were taken out because they are broken, and `lost` the names that stood in
     them: that such a name is unknown (`unknown-…`) follows from what has been said, and is not said. A key that was
     misspelt counts as pruned under the name that was meant. `missed` are names that stand for nothing: something of
-    a like name may have been meant, and looks unused.
+    a like name may have been meant, and looks unused. `whole` is whether everything that the file says was built:
+    what is absent in another was perhaps meant by what is broken.
     """
 
     def __init__(self, document: Document) -> None:
@@ -93,6 +97,7 @@ class Report:
         self.pruned: set[Path] = set()
         self.lost: set[str] = set()
         self.missed: set[str] = set()
+        self.whole = True
 
     def __call__(
         self,
@@ -126,7 +131,23 @@ class Report:
 
 
 def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
-    """The document in `content`, or None, and what is wrong with it; never raises for what the file holds."""
+    """The document in `content`, or None, and what is wrong with it; never raises for what the file holds.
+
+    It depends on nothing else, so that a file of ordinary size that did not change is not read again.
+    """
+    document, found = (_remembered if len(content) <= REMEMBERED else _parsed)(file, content)
+    return document, list(found)
+
+
+def _parsed(file: str, content: bytes) -> tuple[Document | None, tuple[Diagnostic, ...]]:
+    document, found = _read(file, content)
+    return document, tuple(found)
+
+
+_remembered = lru_cache(maxsize=2_000)(_parsed)
+
+
+def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

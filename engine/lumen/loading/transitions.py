@@ -92,6 +92,7 @@ class Transitions:
         guard = self.expressions.expression(row["guard"], (*where, "guard")) if "guard" in row else None
         actions = self.actions.block(row.get("actions"), (*where, "actions"))
         if targets is None or (guard is None and "guard" in row):
+            self.report.missed.update(text for _, text in _rows(row.get("target", []), place))
             return None
         if not (event or targets or guard):
             hint = "give it a `target` or a `guard`"

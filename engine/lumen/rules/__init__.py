@@ -13,28 +13,44 @@ from lumen.rules import (
     effects,
     events,
     expressions,
+    guards,
+    models,
     motions,
     references,
+    renaming,
     routes,
     schemas,
     speech,
     statecharts,
     stories,
+    timing,
+    traps,
+    units,
+    unused,
+    ways,
 )
 from lumen.rules.ignores import obey
 
 FAMILIES = (
+    traps,
     schemas,
     references,
+    models,
     expressions,
     events,
     routes,
     speech,
     controllers,
     motions,
+    units,
+    guards,
     statecharts,
+    ways,
+    timing,
     stories,
+    renaming,
     effects,
+    unused,
 )
 """The rules, in the order they look: what is unused or never reached is looked for where nothing else is wrong."""
 
@@ -63,6 +79,7 @@ def check(path: str | Path | None = None) -> list[Diagnostic]:
 def check_files(root: Path, files: Mapping[str, bytes]) -> tuple[Project | None, tuple[Diagnostic, ...]]:
     """The project that these files make, None where they have errors, and everything wrong with them."""
     found = draft(files)
+    found.root = root
     for family in FAMILIES:
         family.check(found)
     diagnostics = obey(found.diagnostics, {file: report.document for file, report in found.reports.items()})

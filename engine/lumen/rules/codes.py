@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from lumen.language.diagnostics import Severity
 
-ERROR, WARNING = Severity.ERROR, Severity.WARNING
+ERROR, WARNING, INFO = Severity.ERROR, Severity.WARNING, Severity.INFO
 
 
 class Code(NamedTuple):
@@ -32,6 +32,9 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "tab": Code(ERROR, "a tab stands in the indentation"),
         "too-large": Code(ERROR, "a file is too large, or nested too deeply"),
         "unreadable-file": Code(ERROR, "a file can't be opened"),
+        "curly-quotes": Code(WARNING, "quotes of a printed text stand where YAML's should"),
+        "looks-like-number": Code(WARNING, "a number or text is not the number that it looks like"),
+        "looks-like-truth": Code(WARNING, "`yes`, `no`, `on` or `off` is a text, and looks like true or false"),
         "yaml-syntax": Code(ERROR, "a file is not YAML"),
         "yaml-tag": Code(ERROR, "a tag stands before a value"),
     },
@@ -64,6 +67,11 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "unknown-sensor": Code(ERROR, "the robot has no tactile sensor of that name"),
         "unknown-state": Code(ERROR, "a state is named that does not exist"),
         "unknown-story": Code(ERROR, "a story is named that is not in behaviors/stories/"),
+        "same-but-case": Code(WARNING, "two names differ in capital letters only"),
+        "unused-answers": Code(WARNING, "answers are written that nothing looks up"),
+        "unused-context-key": Code(WARNING, "a key of the context is never read"),
+        "unused-file": Code(INFO, "a motion, behaviour or controller is named nowhere"),
+        "unused-phrases": Code(WARNING, "phrases are written that nothing listens for"),
     },
     "statecharts": {
         "conflicting-targets": Code(ERROR, "the states of a target can't be active together"),
@@ -75,7 +83,15 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "no-states": Code(ERROR, "a compound or parallel state has no states"),
         "not-within": Code(ERROR, "a state is named that does not lie in the one meant"),
         "never-done": Code(ERROR, "an `onDone` stands in a state that has no `do`"),
+        "still-there": Code(ERROR, "something is said to be renamed that still has its old name"),
         "only-in-do": Code(ERROR, "a verb that waits stands outside `do`"),
+        "always-loop": Code(WARNING, "an `always` would run for ever while its guard is true"),
+        "dead-end": Code(WARNING, "nothing leads on from a state"),
+        "no-way-back": Code(WARNING, "no way leads back from a state to where the behaviour begins"),
+        "cut-short": Code(WARNING, "an `after` comes before the `do` beside it can be done"),
+        "waits-for-ever": Code(WARNING, "a state is left only if a visitor does something"),
+        "constant-guard": Code(WARNING, "a guard is always true, or never"),
+        "overlapping-guards": Code(INFO, "phrases are taken for others that are asked for earlier"),
         "shadowed-transition": Code(WARNING, "a transition is never taken, because one before it always is"),
         "unreachable-state": Code(WARNING, "no transition leads to a state"),
         "unsupported": Code(ERROR, "something that can't be run yet"),
@@ -95,6 +111,8 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "wrong-argument-count": Code(ERROR, "a function is given too few or too many arguments"),
     },
     "speech": {
+        "not-filled-in": Code(WARNING, "the name of a value is said in place of the value"),
+        "shadowed-answer": Code(WARNING, "an answer is never given, because one before it always is"),
         "missing-language": Code(WARNING, "a text is missing in one of the project's languages"),
     },
     "controllers": {
@@ -137,6 +155,8 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "joint-in-two-parts": Code(ERROR, "a joint stands in two parts of the body"),
         "joint-without-part": Code(ERROR, "a joint stands in no part of the body"),
         "unsorted-rows": Code(ERROR, "the rows of a table do not rise"),
+        "broken-model": Code(ERROR, "a model is no MJCF, or lacks a file or a joint"),
+        "wrong-unit": Code(WARNING, "an angle or a length is given in another unit than the file's"),
         "bad-stage": Code(ERROR, "the stage does not hold the place where the robot starts"),
     },
     "routes": {
@@ -144,6 +164,8 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "endless-reference": Code(ERROR, "a reference in a message schema leads back to itself"),
         "foreign-reference": Code(ERROR, "a message schema refers to something outside itself"),
         "missing-route": Code(WARNING, "a route is missing that something the behaviour does needs"),
+        "no-ttl": Code(WARNING, "a command may come late, and is done all the same"),
+        "wrong-direction": Code(WARNING, "a route is used the other way round than it goes"),
         "route-key": Code(ERROR, "a routing key has a form that no message could have"),
         "unused-route": Code(WARNING, "the messages of a route become an event that nothing waits for"),
     },

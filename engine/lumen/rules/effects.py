@@ -22,13 +22,11 @@ def check(draft: Draft) -> None:
 
 
 def _reload(machine: Machine, report: Report) -> None:
-    if machine.renamed:
-        message = "`renamed` has no effect yet: a reload waits until a state that is gone has been left"
-        find(report, "no-effect", ("renamed",), message, "delete it", key=True)
     for state in machine.states.values():
-        if state.on_reload:
-            message = "`onReload` has no effect yet: a reload waits until a state that is gone has been left"
-            find(report, "no-effect", (*state.where, "onReload"), message, "delete it", key=True)
+        if state.on_reload and not state.children:
+            message = "`onReload` has no effect in a state without states: nothing within it can be gone"
+            hint = "let the state around it have it"
+            find(report, "no-effect", (*state.where, "onReload"), message, hint, key=True)
 
 
 def _cues(motion: Motion, report: Report) -> None:

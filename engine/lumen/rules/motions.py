@@ -3,8 +3,11 @@
 from math import ceil
 
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
+from lumen.language.motions import Motion
 from lumen.language.robots import Body
 from lumen.loading.draft import Draft
+from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.recollection import again
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES
 from lumen.rules.finding import find, value_at
@@ -14,15 +17,22 @@ def check(draft: Draft) -> None:
     """Report where a joint would be too fast, or beyond its limits between two keys or beside another joint."""
     if draft.body is None:
         return
+    given = tuple(draft.contents("motions", "models", MAIN_FILE))
     for name, motion in draft.motions.items():
         report = draft.report("motions", name)
         if report.diagnostics:
             continue
         unit = value_at(report, ("units", "angle")) or "rad"
-        for excess in overspeed(motion, draft.body):
+        fast, far = again(("excess", name), given, lambda m=motion, b=draft.body: _excesses(m, b))
+        for excess in fast:
             _too_fast(report, excess, unit, draft.body)
-        for excess in beyond_limits(motion, draft.body):
+        for excess in far:
             _too_far(report, excess, unit, draft.body)
+
+
+def _excesses(motion: Motion, body: Body) -> tuple[tuple[Excess, ...], tuple[Excess, ...]]:
+    """Where a joint is too fast, and where it goes too far."""
+    return tuple(overspeed(motion, body)), tuple(beyond_limits(motion, body))
 
 
 def _too_fast(report: Report, excess: Excess, unit: str, body: Body) -> None:

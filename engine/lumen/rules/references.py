@@ -2,9 +2,11 @@
 
 from lumen.language.actions import PublishBody
 from lumen.language.commands import Play, Posture, Track
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import Diagnostic, Path, Related, did_you_mean
+from lumen.language.routes import Direction
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
+from lumen.rules.codes import CODES
 from lumen.rules.finding import References, find, first
 from lumen.rules.walk import Site, sites
 
@@ -46,6 +48,19 @@ def _main(draft: Draft, references: References) -> None:
         _model_file(draft, report, ("hall",), settings.hall)
 
 
+def _published(draft: Draft, report: Report, path: Path, name: str) -> None:
+    assert draft.settings is not None
+    assert draft.main is not None
+    route = draft.settings.routes[name]
+    if route.direction is Direction.IN:
+        message = f"`{name}` is a route on which messages come in"
+        hint = "publish on one with `direction: out`"
+        declared = Related(draft.main.document.place(route.where, key=True), "it is declared here")
+        severity = CODES["wrong-direction"].severity
+        place = report.document.place(path)
+        report.diagnostics.append(Diagnostic("wrong-direction", message, place, hint, severity, (declared,)))
+
+
 def _model_file(draft: Draft, report: Report, path: Path, name: str) -> None:
     there = [
         file.removeprefix("models/") for file in draft.files if file.startswith("models/") and file.endswith(".xml")
@@ -65,7 +80,9 @@ def _action(draft: Draft, report: Report, references: References, site: Site) ->
                 report, first(report, long, short), "controller", name, key=long in report.document.spans
             )
         case PublishBody(name):
-            known_route(draft, report, first(report, (*where, "publish", "route"), (*where, "publish")), name)
+            path = first(report, (*where, "publish", "route"), (*where, "publish"))
+            if known_route(draft, report, path, name):
+                _published(draft, report, path, name)
         case Posture(name) if draft.body and name not in draft.body.postures:
             path = first(report, (*where, "posture", "name"), (*where, "posture"))
             hint = did_you_mean(name, draft.body.postures, f"{draft.body.name} knows")

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from lumen.language.commands import Track
 from lumen.language.diagnostics import did_you_mean, has_errors
-from lumen.language.routes import HEARD, JOINT, MEANINGS, Direction, Route
+from lumen.language.routes import COMMAND, HEARD, JOINT, MEANINGS, Direction, Route
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.events import descriptors, hears
@@ -30,6 +30,7 @@ def check(draft: Draft) -> None:
     for name, route in settings.routes.items():
         if not _key(report, route):
             continue
+        _ways(draft, report, route)
         if route.schema:
             references.look_up(report, (*route.where, "schema"), "message", route.schema)
         if route.event:
@@ -75,6 +76,16 @@ def _fault(key: str) -> tuple[str, str]:
     if len(key.encode("utf-8", "replace")) > MAX_BYTES:
         return f"the key is longer than {MAX_BYTES} bytes", "shorten it"
     return "", ""
+
+
+def _ways(draft: Draft, report: Report, route: Route) -> None:
+    """A route goes one way; a command that comes late is worse than one that does not come."""
+    if route.direction is Direction.OUT and route.event:
+        message = f"nobody tells Lumen of `{route.event}`: messages on this route go out"
+        find(report, "wrong-direction", (*route.where, "event"), message, "write `direction: in`", key=True)
+    if route.direction is Direction.IN and route.name == COMMAND and route.ttl is None and "ttl" not in report.lost:
+        message = "a command that waited for long is done all the same"
+        find(report, "no-ttl", route.where, message, "say how long it is good for, such as `ttl: 2s`", key=True)
 
 
 def _event(draft: Draft, report: Report, route: Route) -> None:

@@ -1,16 +1,24 @@
 """Speech: languages that are missing, or that the project does not speak."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from lumen.interpreters.expressions.phrases import is_heard
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
-from lumen.language.diagnostics import Path, did_you_mean
-from lumen.language.machines import Machine
+from lumen.language.diagnostics import Diagnostic, Path, Place, Related, did_you_mean, nearest
+from lumen.language.machines import Answer, Machine
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
+from lumen.rules.codes import CODES
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import sites
+
+FEW = 4
+"""With fewer texts it is the texts that lack a language; with more it is the language that has none."""
+
+MOST = 200
+"""Rows of an answers table that are compared with one another."""
 
 
 def check(draft: Draft) -> None:
@@ -19,7 +27,14 @@ def check(draft: Draft) -> None:
         return
     if any(path[:1] == ("languages",) for path in draft.main.pruned):
         return
-    speech = _Speech(draft.settings.languages, draft.main.lost)
+    silent = _silent(draft, draft.settings.languages)
+    speech = _Speech(tuple(n for n in draft.settings.languages if n not in silent), draft.main.lost | silent.keys())
+    for language, (meant, related) in silent.items():
+        path = ("languages", draft.settings.languages.index(language))
+        hint = f"did you mean `{meant}`?" if meant else f"write the texts in `{language}`, or delete it"
+        message = f"nothing is said in `{language}`"
+        draft.main.diagnostics.append(_silence(draft.main, path, message, hint, related))
+        speech.lost |= {meant}
     for name, machine in draft.behaviors.items():
         speech.behavior(machine, draft.report("behaviors", name))
     for name, motion in draft.motions.items():
@@ -33,9 +48,42 @@ def check(draft: Draft) -> None:
             speech.known(report, ("language",), story.language)
 
 
+def _silent(draft: Draft, languages: tuple[str, ...]) -> dict[str, tuple[str, list[Related]]]:
+    """The languages in which no text is, where others have some; each with the one meant instead, and a place of it."""
+    found: dict[str, Place] = {}
+    count = 0
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        for where in _spoken(machine):
+            count += 1
+            for language in _written(report, where):
+                found.setdefault(language, report.document.place((*where, language), key=True))
+    spoken = found.keys() - {"", "any"}
+    if not spoken or count < FEW:
+        return {}
+    strangers = sorted(spoken - set(languages))
+    near = {language: nearest(language, strangers) for language in languages if language not in spoken}
+    return {
+        language: (meant, [Related(found[meant], f"this is said in `{meant}`")] if meant else [])
+        for language, meant in near.items()
+    }
+
+
+def _spoken(machine: Machine) -> Iterator[Path]:
+    """Where texts stand that the machine says or answers."""
+    yield from ((*s.step.where, "say") for s in sites(machine) if isinstance(s.step.action, SayText))
+    for table, rows in machine.answers.items():
+        yield from (("answers", table, i, "value") for i, row in enumerate(rows) if isinstance(row.value, Mapping))
+
+
+def _silence(report: Report, path: Path, message: str, hint: str, related: list[Related]) -> Diagnostic:
+    severity = CODES["missing-language"].severity
+    return Diagnostic("missing-language", message, report.document.place(path), hint, severity, tuple(related))
+
+
 class _Speech:
     def __init__(self, languages: tuple[str, ...], lost: Iterable[str]) -> None:
-        self.languages, self.lost = languages, frozenset(lost)
+        self.languages, self.lost = languages, set(lost)
 
     def behavior(self, machine: Machine, report: Report) -> None:
         for site in sites(machine):
@@ -47,6 +95,7 @@ class _Speech:
         for name, phrases in machine.phrases.items():
             self.each(report, ("phrases", name), phrases)
         for table, rows in machine.answers.items():
+            _late(report, table, rows)
             for i, row in enumerate(rows):
                 self.each(report, ("answers", table, i, "phrases"), row.phrases)
                 if isinstance(row.value, Mapping) and set(row.value) & set(self.languages):
@@ -69,7 +118,8 @@ class _Speech:
     def known(self, report: Report, path: Path, language: str, *, key: bool = False) -> None:
         if language not in self.languages and language not in self.lost:
             hint = did_you_mean(language, self.languages, "it speaks")
-            find(report, "unknown-language", path, f"the project does not speak `{language}`", hint, key=key)
+            message = f"the project does not speak `{language}`"
+            find(report, "unknown-language", path, message, hint, key=key, cause=f"language {language}")
 
 
 def _written(report: Report, path: Path) -> set[str]:
@@ -81,3 +131,16 @@ def _written(report: Report, path: Path) -> set[str]:
 
 def _listed(names: list[str]) -> str:
     return ", ".join(f"`{name}`" for name in names)
+
+
+def _late(report: Report, table: str, rows: Sequence[Answer]) -> None:
+    """Rows of an answers table in each of whose phrases one of a row above is heard: the first row wins."""
+    for i, row in enumerate(rows[:MOST]):
+        phrases = [phrase for texts in row.phrases.values() for phrase in texts]
+        takers = [next((j for j in range(i) if is_heard(p, rows[j].phrases)), None) for p in phrases]
+        if phrases and None not in takers:
+            first = min(j for j in takers if j is not None)
+            message = f"this is never answered: `{phrases[0]}` is taken for the answer in row {first + 1}"
+            related = [(("answers", table, first), "the first row with a phrase in the question wins")]
+            path = ("answers", table, i, "phrases")
+            find(report, "shadowed-answer", path, message, "put this row before it", key=True, related=related)

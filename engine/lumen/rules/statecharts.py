@@ -1,22 +1,31 @@
-"""Statecharts: states that can't be reached, and transitions that are never taken."""
+"""Statecharts: states that can't be reached, and states that are left as soon as they are entered, for ever."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
+from lumen.language.actions import Assign, Step
+from lumen.language.diagnostics import nearest
 from lumen.language.machines import Kind, Machine, State, Transition
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
-from lumen.rules.events import hears
 from lumen.rules.finding import find
+from lumen.rules.logic import never, tree
+from lumen.rules.walk import nested
+
+LONGEST = 4
+"""Transitions of a round of guarded `always` that is looked for."""
+
+Onward = Mapping[str, Sequence[tuple[Transition, str]]]
 
 
 def check(draft: Draft) -> None:
-    """Report what can never happen, in files where nothing is broken: there it could be for another reason."""
+    """Report what can never happen, and what would happen for ever."""
+    torn = {d.place.file for d in draft.loose}
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
-        if not report.diagnostics:
+        if report.document.file not in torn:
             _unreachable(machine, report)
-            _shadowed(machine, report)
-            _endless(machine, report)
+        _endless(machine, report)
+        _loops(machine, report)
 
 
 def reachable(machine: Machine, begin: str = "") -> set[str]:
@@ -45,25 +54,18 @@ def _next(state: State) -> Iterator[str]:
 
 
 def _unreachable(machine: Machine, report: Report) -> None:
+    """States that nothing leads to, unless something broken may have meant them."""
+    meant = {text.rpartition(".")[2].lstrip("#") for text in report.lost | report.missed}
     found = reachable(machine)
+    for path, state in machine.states.items():
+        key = path.rpartition(".")[2]
+        if path not in found and (not meant.isdisjoint((key, state.alias)) or nearest(key, meant & report.missed)):
+            found |= reachable(machine, path)
     for path, state in machine.states.items():
         if path not in found:
             found |= reachable(machine, path)  # what only this one leads to is not said as well
             hint = "let a transition go there, or delete it"
             find(report, "unreachable-state", state.where, f"no transition leads to `{path}`", hint, key=True)
-
-
-def _shadowed(machine: Machine, report: Report) -> None:
-    for state in machine.states.values():
-        always: list[Transition] = []
-        for transition in state.transitions:
-            earlier = next((t for t in always if _covers(t, transition)), None)
-            if earlier:
-                line = report.document.place(earlier.where).line
-                message = f"this is never taken: the transition in line {line} always is, before it"
-                find(report, "shadowed-transition", transition.where, message, "give that one a `guard`, or swap them")
-            if transition.guard is None:
-                always.append(transition)
 
 
 def _endless(machine: Machine, report: Report) -> None:
@@ -93,8 +95,54 @@ def _at_once(machine: Machine, path: str) -> tuple[Transition, str] | None:
     return (always, target.path) if target.kind is Kind.ATOMIC else None
 
 
-def _covers(earlier: Transition, later: Transition) -> bool:
-    """Whether whatever could take the later one takes the earlier one first."""
-    if earlier.exact or later.exact or not (earlier.event and later.event):
-        return earlier.event == later.event
-    return hears(earlier.event, later.event.removesuffix(".*")) and (later.event != "*" or earlier.event == "*")
+def _loops(machine: Machine, report: Report) -> None:
+    """States that lead back to themselves by guarded `always`, where nothing on the way changes what is asked."""
+    onward: dict[str, list[tuple[Transition, str]]] = {}
+    for state in machine.states.values():
+        if state.kind is Kind.ATOMIC:
+            for transition in (t for t in state.transitions if not t.event and t.guard):
+                target = _settled(machine, transition)
+                if target and not _assigns(transition.actions):
+                    onward.setdefault(state.path, []).append((transition, target))
+    said: set[str] = set()
+    for path in onward:
+        way = next(_rounds(machine, onward, path, path, ()), None)
+        if way and path not in said:
+            said.update(t.source for t in way)
+            asked = " and ".join(f"`{t.guard.source}`" for t in way if t.guard)
+            names = " → ".join(f"`{machine.states[p].name}`" for p in (*(t.source for t in way), path))
+            message = f"this never comes to rest while {asked}: {names}"
+            hint = "change on the way what the guard asks for, or let an event lead on"
+            find(report, "always-loop", way[0].where, message, hint, related=[(t.where, "then here") for t in way[1:]])
+
+
+def _rounds(
+    machine: Machine, onward: Onward, begin: str, path: str, way: tuple[Transition, ...]
+) -> Iterator[tuple[Transition, ...]]:
+    """The ways of at most LONGEST transitions back to `begin` whose guards can all be true at once."""
+    for transition, target in onward.get(path, ()):
+        longer = (*way, transition)
+        if _assigns(machine.states[target].entry) or _assigns(machine.states[path].exit):
+            continue
+        if never(*(tree(t.guard.source) for t in longer if t.guard)):
+            continue
+        if target == begin:
+            yield longer
+        elif len(longer) < LONGEST and all(t.source != target for t in longer):
+            yield from _rounds(machine, onward, begin, target, longer)
+
+
+def _settled(machine: Machine, transition: Transition) -> str:
+    """The atomic state that a transition ends in, empty where that is not a single one."""
+    if not transition.targets:
+        return transition.source
+    if len(transition.targets) > 1:
+        return ""
+    target = machine.states[transition.targets[0]]
+    while target.kind is Kind.COMPOUND and len(target.initial) == 1:
+        target = machine.states[target.initial[0]]
+    return target.path if target.kind is Kind.ATOMIC else ""
+
+
+def _assigns(block: tuple[Step, ...]) -> bool:
+    return any(isinstance(step.action, Assign) for step in nested(block))

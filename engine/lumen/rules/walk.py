@@ -46,9 +46,9 @@ def sites(machine: Machine) -> Iterator[Site]:
     """All actions, those inside `if` and `parallel` too, in the order of the file."""
     for state in machine.states.values():
         for block in (state.entry, state.do, state.exit):
-            yield from (Site(state, None, step) for step in _nested(block))
+            yield from (Site(state, None, step) for step in nested(block))
         for transition in state.transitions:
-            yield from (Site(state, transition, step) for step in _nested(transition.actions))
+            yield from (Site(state, transition, step) for step in nested(transition.actions))
 
 
 def spots(machine: Machine) -> Iterator[Spot]:
@@ -72,15 +72,16 @@ def _input(invoke: Invoke, machine: Machine | None) -> Iterator[Spot]:
             yield from (Spot(text, None) for text in _values(value))
 
 
-def _nested(block: tuple[Step, ...]) -> Iterator[Step]:
+def nested(block: tuple[Step, ...]) -> Iterator[Step]:
+    """The actions of a block, those inside `if` and `parallel` too."""
     for step in block:
         yield step
         match step.action:
             case If(then=then, otherwise=otherwise):
-                yield from _nested(then)
-                yield from _nested(otherwise)
+                yield from nested(then)
+                yield from nested(otherwise)
             case Parallel(branches):
-                yield from _nested(branches)
+                yield from nested(branches)
 
 
 def _spots(site: Site) -> Iterator[Spot]:

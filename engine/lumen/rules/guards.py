@@ -1,0 +1,130 @@
+"""Guards: those that are always or never true, and transitions that an earlier one leaves nothing for."""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from lumen.interpreters.expressions.phrases import is_heard
+from lumen.interpreters.expressions.tree import Call, Literal, Node
+from lumen.language.actions import Expression
+from lumen.language.diagnostics import Path
+from lumen.language.machines import Machine, State, Transition
+from lumen.loading.draft import Draft
+from lumen.loading.source import Report
+from lumen.rules.events import hears
+from lumen.rules.finding import find
+from lumen.rules.logic import always, implies, never, tree
+from lumen.rules.walk import spots
+
+MOST = 60
+"""Candidates of a state that are compared with one another."""
+
+
+class Heard(NamedTuple):
+    """`heard(text, name)` as a whole guard."""
+
+    text: Node
+    name: str
+
+
+def check(draft: Draft) -> None:
+    """Report guards whose answer is known, and candidates that come too late."""
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        for guard in dict.fromkeys(spot.text for spot in spots(machine) if spot.guard):
+            if isinstance(guard, Expression) and not _told(report, guard.where):
+                _constant(guard, report)
+        for state in machine.states.values():
+            if len(state.transitions) > 1:
+                _late(machine, state, report)
+
+
+def _told(report: Report, where: Path) -> bool:
+    """Whether something else was already said of the text at that path."""
+    place = report.document.place(where)
+    return any(d.place.line == place.line and d.place.column >= place.column for d in report.diagnostics)
+
+
+def _constant(guard: Expression, report: Report) -> None:
+    condition = tree(guard.source)
+    if never(condition):
+        message = "this is never true" if _simple(condition) else "this is never true: its parts contradict each other"
+        find(report, "constant-guard", guard.where, message, "look at the signs and numbers, or delete what it guards")
+    elif always(condition):
+        find(report, "constant-guard", guard.where, "this is always true", "leave it out, or look at its signs")
+
+
+def _simple(node: Node) -> bool:
+    return isinstance(node, Literal)
+
+
+def _late(machine: Machine, state: State, report: Report) -> None:
+    """Candidates that are never taken, or not for all that they name, because an earlier one is."""
+    earlier: list[Transition] = []
+    for transition in state.transitions[:MOST]:
+        if any(_takes_all(other, transition, machine, report) for other in earlier if covers(other, transition)):
+            continue
+        earlier.append(transition)
+
+
+def covers(earlier: Transition, later: Transition) -> bool:
+    """Whether every event that the later one waits for comes to the earlier one first."""
+    if earlier.exact or later.exact or not (earlier.event and later.event):
+        return earlier.event == later.event
+    return hears(earlier.event, later.event.removesuffix(".*")) and (later.event != "*" or earlier.event == "*")
+
+
+def _takes_all(earlier: Transition, later: Transition, machine: Machine, report: Report) -> bool:
+    """Whether the earlier one leaves nothing for the later one; said, as is where it leaves less than was meant."""
+    related = [(earlier.where, "the earlier one stands here")]
+    if earlier.guard is None:
+        line = report.document.place(earlier.where).line
+        message = f"this is never taken: the transition in line {line} always is, before it"
+        hint = "give that one a `guard`, or swap them"
+        find(report, "shadowed-transition", later.where, message, hint, related=related)
+        return True
+    if later.guard is None:
+        return False
+    one, other = tree(earlier.guard.source), tree(later.guard.source)
+    first, second = _heard(one), _heard(other)
+    taken = set(_taken(first, second, machine.phrases)) if first and second else set()
+    if implies(other, one) and not never(other):
+        message = (
+            f"this is never taken: `{_short(earlier.guard.source)}` is true wherever its guard is, and comes first"
+        )
+        find(report, "shadowed-transition", later.where, message, "put this one before it", related=related)
+        return True
+    if taken and first and second and not _alike(earlier, later):
+        said = sorted({p for texts in machine.phrases[second.name].values() for p in texts})
+        whole = taken.issuperset(said)
+        code = "shadowed-transition" if whole else "overlapping-guards"
+        shown = ", ".join(f"`{phrase}`" for phrase in sorted(taken)[:3])
+        message = (
+            f"{shown} of `{second.name}` {'are' if len(taken) > 1 else 'is'} taken for `{first.name}`, asked first"
+        )
+        find(report, code, later.where, message, "put the longer phrases first", related=related)
+        return whole
+    return False
+
+
+def _heard(node: Node) -> Heard | None:
+    match node:
+        case Call(function="heard", arguments=(text, Literal(value=str() as name))):
+            return Heard(text, name)
+    return None
+
+
+def _taken(first: Heard, second: Heard, phrases: Mapping[str, Mapping[str, tuple[str, ...]]]) -> Iterator[str]:
+    """The phrases of the second in which one of the first is heard, and which are not the first's own as well."""
+    if first.text != second.text or first.name not in phrases or second.name not in phrases:
+        return
+    for texts in phrases[second.name].values():
+        yield from (phrase for phrase in texts if is_heard(phrase, phrases[first.name]))
+
+
+def _alike(one: Transition, other: Transition) -> bool:
+    """Whether it does not matter which of the two is taken."""
+    return one.targets == other.targets and not (one.actions or other.actions)
+
+
+def _short(source: str) -> str:
+    return source if len(source) <= 60 else source[:59] + "…"

@@ -1,0 +1,171 @@
+"""What can be told of a condition without running it: that it is never true, always true, or follows from another.
+
+A condition is spread into alternatives, each a set of claims about one value: that it is true, equal to something, or
+below a number. An alternative whose claims about some value can't hold together never comes true. What is not
+understood claims nothing, so that an answer of yes is certain.
+"""
+
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from itertools import product
+from math import inf
+from typing import NamedTuple
+
+from lumen.interpreters.expressions import parse_expression, unparse
+from lumen.interpreters.expressions.tree import Binary, Call, Items, Literal, Logic, Node, Unary
+
+MOST = 24
+"""Alternatives of a condition that are looked at; of one with more, nothing is told."""
+
+_OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
+_TURNED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
+_COUNTS = {"hour": (0, 23), "size": (0, inf)}
+"""Functions whose values are whole numbers from one bound to the other."""
+
+
+class Claim(NamedTuple):
+    """`subject` is a value as the expression writes it; `sign` a comparison with `value`, or `is` true or false."""
+
+    subject: str
+    sign: str
+    value: object
+
+
+Alternative = frozenset[Claim]
+
+
+@lru_cache(maxsize=20_000)
+def tree(source: str) -> Node:
+    """The tree of an expression that is known to be sound."""
+    return parse_expression(source)
+
+
+def never(*conditions: Node) -> bool:
+    """Whether these conditions can't all be true at once."""
+    spread = [_alternatives(condition, True) for condition in conditions]
+    if any(s is None for s in spread):
+        return False
+    ways = [s for s in spread if s is not None]
+    if _size(ways) > MOST:
+        return False
+    return not any(_possible(frozenset().union(*way)) for way in product(*ways))
+
+
+def always(condition: Node) -> bool:
+    """Whether a condition can't be false (where it does not fail)."""
+    return never(Unary("!", condition))
+
+
+def implies(condition: Node, other: Node) -> bool:
+    """Whether the other condition is true wherever the first one is."""
+    return never(condition, Unary("!", other))
+
+
+def _size(ways: Iterable[list[Alternative]]) -> int:
+    size = 1
+    for way in ways:
+        size *= max(len(way), 1)
+    return size
+
+
+def _alternatives(node: Node, value: bool) -> list[Alternative] | None:
+    """The ways in which a condition can have that value; None where there are too many."""
+    match node:
+        case Literal(value=bool() as given):
+            return [frozenset()] if given == value else []
+        case Unary(sign="!", operand=operand):
+            return _alternatives(operand, not value)
+        case Logic(sign=sign, operands=operands):
+            spread = [_alternatives(operand, value) for operand in operands]
+            ways = [s for s in spread if s is not None]
+            if len(ways) < len(spread):
+                return None
+            if (sign == "&&") != value:
+                return [a for way in ways for a in way][: MOST + 1] if sum(map(len, ways)) <= MOST else None
+            return [frozenset().union(*way) for way in product(*ways)] if _size(ways) <= MOST else None
+        case Binary(sign="in", left=left, right=Items(items=items)) if all(isinstance(i, Literal) for i in items):
+            claims = [Claim(unparse(left), "==" if value else "!=", i.value) for i in items if isinstance(i, Literal)]
+            return [frozenset((c,)) for c in claims] if value else [frozenset(claims)]
+        case Binary(sign=sign, left=left, right=right) if sign in _OPPOSITE:
+            return _compared(left, sign if value else _OPPOSITE[sign], right)
+    return [frozenset((Claim(unparse(node), "is", value),))]
+
+
+def _compared(left: Node, sign: str, right: Node) -> list[Alternative] | None:
+    """The one way in which a comparison holds; none where it is one of literals that does not."""
+    if isinstance(left, Literal) and isinstance(right, Literal):
+        claim = Claim("", sign, right.value)
+        return [frozenset()] if _holds(left.value, claim) else []
+    if isinstance(left, Literal):
+        left, right, sign = right, left, _TURNED[sign]
+    if not isinstance(right, Literal):
+        return [frozenset((Claim(f"{unparse(left)} {sign} {unparse(right)}", "is", True),))]
+    if isinstance(right.value, bool) and sign in ("==", "!="):
+        return [frozenset((Claim(unparse(left), "is", right.value == (sign == "==")),))]
+    return [frozenset((Claim(unparse(left), sign, right.value), *_counted(left)))]
+
+
+def _counted(node: Node) -> Iterator[Claim]:
+    """What is known of a value before anything is asked."""
+    if isinstance(node, Call) and node.function in _COUNTS:
+        low, high = _COUNTS[node.function]
+        yield Claim(unparse(node), ">=", low)
+        yield Claim(unparse(node), "<=", high)
+
+
+def _possible(alternative: Alternative) -> bool:
+    """Whether the claims about each value can hold together."""
+    about: dict[str, list[Claim]] = {}
+    for claim in alternative:
+        about.setdefault(claim.subject, []).append(claim)
+    return all(map(_agree, about.values()))
+
+
+def _agree(claims: list[Claim]) -> bool:
+    if len(claims) == 1:
+        return True
+    if len({c.value for c in claims if c.sign == "is"}) > 1:
+        return False
+    equal = [c.value for c in claims if c.sign == "=="]
+    if equal:
+        return all(_holds(equal[0], c) for c in claims if c.sign != "is")
+    low, closed_low = _bound(claims, ">", ">=", -inf)
+    high, closed_high = _bound(claims, "<", "<=", inf)
+    return low < high or (low == high and closed_low and closed_high and not any(_excludes(c, low) for c in claims))
+
+
+def _bound(claims: list[Claim], strict: str, loose: str, start: float) -> tuple[float, bool]:
+    """The tightest bound on one side, and whether it can be reached."""
+    bounds = [(c.value, c.sign == loose) for c in claims if c.sign in (strict, loose) and _number(c.value)]
+    values = [start, *(value for value, _ in bounds if isinstance(value, int | float))]
+    tightest = max(values) if start < 0 else min(values)
+    return tightest, all(closed for value, closed in bounds if value == tightest)
+
+
+def _excludes(claim: Claim, value: float) -> bool:
+    return claim.sign == "!=" and _number(claim.value) and claim.value == value
+
+
+def _holds(value: object, claim: Claim) -> bool:
+    """Whether a claim holds of that value; what can't be compared is left open."""
+    if claim.sign in ("==", "!="):
+        same = _number(value) == _number(claim.value) and value == claim.value and _kind(value) == _kind(claim.value)
+        return same == (claim.sign == "==")
+    if not (isinstance(value, int | float) and isinstance(claim.value, int | float)):
+        return True
+    match claim.sign:
+        case "<":
+            return value < claim.value
+        case "<=":
+            return value <= claim.value
+        case ">":
+            return value > claim.value
+    return value >= claim.value
+
+
+def _number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _kind(value: object) -> type:
+    return float if _number(value) else type(value)

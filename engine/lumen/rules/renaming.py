@@ -1,0 +1,25 @@
+"""What `renamed` says of the past: nothing that is still there can have got another name."""
+
+from lumen.language.machines import Machine
+from lumen.loading.draft import Draft
+from lumen.loading.source import Report
+from lumen.rules.finding import find
+
+
+def check(draft: Draft) -> None:
+    """Report renamings of what still has its old name; two states may swap theirs."""
+    for name, machine in draft.behaviors.items():
+        _check(machine, draft.report("behaviors", name))
+
+
+def _check(machine: Machine, report: Report) -> None:
+    known = {path: path for path in machine.states} | {f"context.{key}": f"context.{key}" for key in machine.context}
+    known |= {state.alias: path for path, state in machine.states.items() if path and state.alias}
+    taken = set(machine.renamed.values())
+    for was, now in machine.renamed.items():
+        there = known.get(was)
+        if there is not None and (there == now or there not in taken):
+            what = f"`{was}` is said to be `{now}` now" if there != now else f"`{was}` is renamed to itself"
+            message = f"{what}, and is still there"
+            hint = "delete this line: at the next reload it would lead away from that state" if there != now else "delete it"
+            find(report, "still-there", ("renamed", was), message, hint, key=True)

@@ -1,0 +1,71 @@
+"""How long a `do` takes, and whether its state is left before."""
+
+from collections.abc import Iterable, Mapping
+from math import hypot
+
+from lumen.interpreters.expressions import split_template
+from lumen.language.actions import If, Parallel, SayText, Step, Wait
+from lumen.language.commands import Play, Posture, Walk
+from lumen.language.machines import Machine, State
+from lumen.language.motions import Motion
+from lumen.loading.draft import Draft
+from lumen.loading.source import Report
+from lumen.rules.finding import find
+
+SAY, CHARACTER, POSTURE, SPEED = 0.4, 0.06, 2.0, 0.1
+"""What the recording robot takes: for a text [s], for each of its characters [s], for a posture [s], walking [m/s]."""
+
+
+def check(draft: Draft) -> None:
+    """Report an `after` that always comes before the `do` beside it is done."""
+    for name, machine in draft.behaviors.items():
+        for state in machine.states.values():
+            if state.do and any(t.delay is not None for t in state.transitions):
+                _cut(machine, state, draft.report("behaviors", name), draft.motions)
+
+
+def _cut(machine: Machine, state: State, report: Report, motions: Mapping[str, Motion]) -> None:
+    length = duration(state.do, motions)
+    for transition in state.transitions:
+        delay = transition.delay
+        if delay is None or transition.guard or not transition.targets or length <= delay + 0.05:
+            continue
+        texts = [step for step in state.do if isinstance(step.action, SayText) and duration((step,), motions) > delay]
+        what = "saying this" if texts else "its `do`"
+        message = f"`{state.name}` is left after {delay:g} s, and {what} takes about {length:.1f} s"
+        hint = f"give it at least {length + 1:.0f} s" + (", or say less" if texts else "")
+        key = transition.where if isinstance(transition.where[-1], str) else transition.where[:-1]
+        first = texts[0].where if texts else (*state.where, "do")
+        find(report, "cut-short", key, message, hint, key=True, related=[(first, "this takes longer")])
+
+
+def duration(block: Iterable[Step], motions: Mapping[str, Motion]) -> float:
+    """How long these actions take one after another [s], at the most for alternatives of a text; never too much.
+
+    What is not known (an expression's text, a walk's turn) counts as nothing.
+    """
+    return sum(_one(step, motions) for step in block)
+
+
+def _one(step: Step, motions: Mapping[str, Motion]) -> float:
+    match step.action:
+        case SayText(texts):
+            return SAY + CHARACTER * max(_length(text.text) for said in texts.values() for text in said)
+        case Play(name):
+            return motions[name].duration if name in motions else 0.0
+        case Posture():
+            return 0.0  # it may stand there already
+        case Walk(x, y):
+            return hypot(x, y) / SPEED
+        case Wait(seconds):
+            return seconds
+        case If(then=then, otherwise=otherwise):
+            return min(duration(then, motions), duration(otherwise, motions))
+        case Parallel(branches):
+            return max((_one(branch, motions) for branch in branches), default=0.0)
+    return 0.0
+
+
+def _length(text: str) -> int:
+    """The characters of a text that are said in any case."""
+    return len(text) if "{{" not in text else sum(len(part) for part in split_template(text) if isinstance(part, str))

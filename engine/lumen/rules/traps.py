@@ -1,0 +1,86 @@
+"""What YAML reads otherwise than it was meant: words for true and false, numbers, quotes; texts with half a hole."""
+
+import re
+from collections.abc import Callable, Iterator
+
+from lumen.language.actions import SayText
+from lumen.language.diagnostics import Path
+from lumen.language.machines import Machine
+from lumen.loading.draft import Draft
+from lumen.loading.source import Report
+from lumen.rules.finding import find, value_at
+from lumen.rules.walk import sites
+
+_TRUTHS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
+_TRUTH = re.compile(r"(?i)(?<=[:,\[-] )(yes|no|on|off|y|n)(?=\s|[,}\]]|$)", re.MULTILINE)
+_ZEROS = re.compile(r"(?<![\w.:+#'\"-])[-+]?0\d+(?![\w.:-])")
+_GROUPED = re.compile(r"(?<![\w.:'\"-])[-+]?\d{1,3}(?:_\d{3})+(?![\w.:])")
+_CURLY = re.compile("[“”„‘’«»]")
+_PAIRS = {"“": "”", "”": "”", "„": "“”", "‘": "’", "«": "»"}
+_DATA = ("context", "data", "body", "robot")
+_HALF = re.compile(r"(?<!\{)\$?\{\s*((?:context|event|state)\.[\w.]+)\s*\}(?!\})")
+_BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
+
+
+def check(draft: Draft) -> None:
+    """Report values that are texts, numbers or texts with quotes where something else was probably meant."""
+    for report in draft.reports.values():
+        text = report.document.text
+        if _TRUTH.search(text):
+            _each(report, _truth)
+        if _ZEROS.search(text) or _GROUPED.search(text):
+            _each(report, _number)
+        if _CURLY.search(text):
+            _each(report, _quotes)
+    for name, machine in draft.behaviors.items():
+        _holes(machine, draft.report("behaviors", name))
+
+
+def _each(report: Report, look: Callable[[Report, Path, str, object], None]) -> None:
+    lines = report.document.text.split("\n")
+    for path, source, value in list(_plain(report, lines)):
+        look(report, path, source, value)
+
+
+def _plain(report: Report, lines: list[str]) -> Iterator[tuple[Path, str, object]]:
+    """Every value that stands in one line without quotes: its path, as it is written, and as it is read."""
+    for path, span in report.document.spans.items():
+        place = span.value
+        if path and place.line == place.end_line:
+            source = lines[place.line - 1][place.column - 1 : place.end_column - 1]
+            if source and source[0] not in "'\"[{|>&*!":
+                yield path, source, value_at(report, path)
+
+
+def _truth(report: Report, path: Path, source: str, value: object) -> None:
+    """Only where data stands: among phrases, `no` is a word."""
+    if isinstance(value, str) and (meant := _TRUTHS.get(value.lower())) and any(key in _DATA for key in path[:-1]):
+        hint = f'write `{meant}`, or put it in quotes where the text is meant: "{value}"'
+        find(report, "looks-like-truth", path, f"this is the text `{value}`, not `{meant}`", hint)
+
+
+def _number(report: Report, path: Path, source: str, value: object) -> None:
+    if isinstance(value, int) and not isinstance(value, bool) and _ZEROS.fullmatch(source):
+        hint = f'write `{value}`, `0o{source.lstrip("+-0")}` for the octal number, or quotes for a text: "{source}"'
+        find(report, "looks-like-number", path, f"`{source}` is the number {value}: its zeros do not count", hint)
+    elif isinstance(value, str) and _GROUPED.fullmatch(source) and any(key in _DATA for key in path[:-1]):
+        hint = f"write `{source.replace('_', '')}`, or put it in quotes where the text is meant"
+        find(report, "looks-like-number", path, f"`{source}` is a text, not a number", hint)
+
+
+def _quotes(report: Report, path: Path, source: str, value: object) -> None:
+    closing = _PAIRS.get(source[:1], "")
+    if isinstance(value, str) and len(source) > 1 and source[-1] in closing and not _CURLY.search(source[1:-1]):
+        hint = f'write straight quotes: "{source[1:-1]}"'
+        find(report, "curly-quotes", path, "these quotes are part of the text: YAML knows only straight ones", hint)
+
+
+def _holes(machine: Machine, report: Report) -> None:
+    """Texts that are said with the name of a value in place of the value."""
+    for site in sites(machine):
+        if isinstance(site.step.action, SayText):
+            for template in (t for said in site.step.action.texts.values() for t in said):
+                if found := _HALF.search(template.text) or _BARE.fullmatch(template.text):
+                    name = found[1] if found.re is _HALF else found[0]
+                    message = f"`{found[0]}` is said as it stands here"
+                    find(report, "not-filled-in", template.where, message, f"write `{{{{ {name} }}}}`")

@@ -1,0 +1,109 @@
+"""Angles and lengths that are a thousandfold, or a fifty-seventh part, of what was probably meant."""
+
+from collections.abc import Iterator
+from math import pi
+from typing import Any
+
+from lumen.language.commands import Look, Walk
+from lumen.language.diagnostics import Path
+from lumen.language.machines import Machine
+from lumen.language.projects import Stage
+from lumen.language.robots import Body
+from lumen.loading.draft import Draft
+from lumen.loading.source import Report
+from lumen.loading.units import ANGLES, LENGTHS
+from lumen.rules.finding import find, value_at
+from lumen.rules.walk import sites
+
+FAR = 20.0
+"""No walk at an exhibition is longer [m]."""
+
+_PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for digits in (2, 3, 4))
+"""Parts of a half turn as people write them in radians."""
+
+
+def check(draft: Draft) -> None:
+    """Report angles in radians among degrees, turns of many rounds, and walks that leave the stage by far."""
+    for name in draft.motions:
+        _radians(draft.report("motions", name))
+    stage = draft.settings.stage if draft.settings else None
+    for name, machine in draft.behaviors.items():
+        _actions(machine, draft.report("behaviors", name), draft.body, stage)
+
+
+def _radians(report: Report) -> None:
+    """In a file that counts in degrees: 1.57 is hardly one and a half of them."""
+    if value_at(report, ("units", "angle")) != "deg":
+        return
+    angles = [(path, angle) for path, angle in _angles(report.document.data, ()) if angle]
+    small = [(path, angle) for path, angle in angles if round(abs(angle), 4) in _PARTS]
+    if not small:
+        return
+    if all(abs(angle) <= pi + 0.01 for _, angle in angles) and len(angles) > 1:
+        hint = "write `units: {angle: rad}`"
+        find(report, "wrong-unit", ("units", "angle"), "the angles of this file look like radians", hint)
+        return
+    for path, angle in small:
+        hint = f"write {round(angle * 180 / pi):g}"
+        find(report, "wrong-unit", path, f"{angle:g} deg is very little: it looks like radians", hint)
+
+
+def _angles(data: Any, path: Path) -> Iterator[tuple[Path, float]]:
+    """Every angle of a motion's `joints`."""
+    waiting: list[tuple[Any, Path]] = [(data, path)]
+    while waiting:
+        item, here = waiting.pop(0)
+        if isinstance(item, dict):
+            for key, value in item.items():
+                if key == "joints" and isinstance(value, dict):
+                    numbers = ((name, v) for name, v in value.items() if isinstance(v, int | float))
+                    yield from (((*here, key, name), v) for name, v in numbers if not name.endswith("Hand"))
+                else:
+                    waiting.append((value, (*here, key)))
+        elif isinstance(item, list):
+            waiting.extend((value, (*here, i)) for i, value in enumerate(item))
+
+
+def _actions(machine: Machine, report: Report, body: Body | None, stage: Stage | None) -> None:
+    units = value_at(report, ("units",)) or {}
+    angle, length = units.get("angle", "rad"), units.get("length", "m")
+    for site in sites(machine):
+        where = site.step.where
+        match site.step.action:
+            case Look(yaw, pitch):
+                for key, joint, value in (("yaw", "HeadYaw", yaw), ("pitch", "HeadPitch", pitch)):
+                    _look(report, (*where, "look", key), joint, value, angle, body)
+            case Walk(x, y, theta):
+                if abs(theta) > 2 * pi + 0.01:
+                    _turned(report, (*where, "walk", "theta"), theta, angle)
+                for key, value, room in (("x", x, stage.x if stage else None), ("y", y, stage.y if stage else None)):
+                    _walk(report, (*where, "walk", key), value, length, room)
+
+
+def _look(report: Report, path: Path, joint: str, value: float, unit: str, body: Body | None) -> None:
+    limits = body.joints.get(joint) if body else None
+    if limits is None or limits.minimum - 0.02 <= value <= limits.maximum + 0.02:
+        return
+    low, high = (round(limit / ANGLES[unit], 2) for limit in (limits.minimum, limits.maximum))
+    shown = round(value / ANGLES[unit], 3)
+    hint = f"it goes from {low:g} to {high:g} {unit}"
+    if unit == "rad" and limits.minimum <= value * ANGLES["deg"] <= limits.maximum:
+        hint = "write `units: {angle: deg}` at the top: this file counts in radians"
+    find(report, "wrong-unit", path, f"the head can't turn to {shown:g} {unit}", hint)
+
+
+def _turned(report: Report, path: Path, theta: float, unit: str) -> None:
+    message = f"{theta / ANGLES[unit]:g} {unit} is {abs(theta) / (2 * pi):.1f} times around"
+    hint = "write `units: {angle: deg}` at the top: this file counts in radians" if unit == "rad" else "turn once"
+    find(report, "wrong-unit", path, message, hint)
+
+
+def _walk(report: Report, path: Path, value: float, unit: str, room: tuple[float, float] | None) -> None:
+    most = room[1] - room[0] + 1e-6 if room else FAR
+    if abs(value) <= most:
+        return
+    where = "the stage is" if room else "a hall is at the most"
+    message = f"{value / LENGTHS[unit]:g} {unit} is farther than {where} wide ({most:g} m)"
+    smaller = next((u for u in ("cm", "mm") if u != unit and abs(value / LENGTHS[unit] * LENGTHS[u]) <= most), "")
+    hint = f"write `units: {{length: {smaller}}}` at the top, or metres" if smaller and unit == "m" else "walk less far"
+    find(report, "wrong-unit", path, message, hint)

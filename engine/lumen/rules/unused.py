@@ -1,0 +1,157 @@
+"""What is declared and never used, and names that differ by case only."""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from lumen.language.commands import Play, Track
+from lumen.language.diagnostics import Path, has_errors
+from lumen.language.machines import Machine
+from lumen.language.stories import Expect
+from lumen.loading.draft import Draft
+from lumen.loading.source import Report
+from lumen.rules.codes import FAMILIES as CODES_OF
+from lumen.rules.events import descriptors, hears
+from lumen.rules.finding import find
+from lumen.rules.walk import sites
+
+_DECLARED = ("context", "types", "phrases", "events", "answers", "description", "units", "renamed")
+_FIELD = re.compile(r"context\s*(?:\.\s*(\w+)|\[\s*['\"]([^'\"]+)['\"])")
+_WHOLE = re.compile(r"\bcontext\b(?!\s*\.)(?!\s*\[\s*['\"])")
+_EXPRESSIONS = {*CODES_OF["expressions"], "unknown-context-key", "unknown-field"}
+_NAME = re.compile(r"['\"]([^'\"]+)['\"]")
+
+
+def check(draft: Draft) -> None:
+    """Report what nothing uses, where nothing is broken that could: in a file, and in the whole project."""
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        _alike_inside(machine, report)
+        if report.whole and not any(d.code in _EXPRESSIONS for d in report.diagnostics):
+            _inside(draft, name, machine, report)
+    _alike_files(draft)
+    if draft.settings and not has_errors(draft.diagnostics):
+        _files(draft)
+
+
+def _inside(draft: Draft, name: str, machine: Machine, report: Report) -> None:
+    said = "\n".join(_texts({k: v for k, v in report.document.data.items() if k not in _DECLARED}))
+    everywhere = f"{said}\n" + "\n".join(_texts(report.document.data.get("answers", {})))
+    if not _WHOLE.search(everywhere):
+        _context(machine, report, {a or b for a, b in _FIELD.findall(everywhere)} | _expected(draft, name))
+    named = set(_NAME.findall(said))
+    for part, what in (("phrases", "heard"), ("answers", "lookup")):
+        for key in getattr(machine, part).keys() - named:
+            hint = f"ask `{what}(event.data.result, '{key}')` somewhere, or delete them"
+            find(report, f"unused-{part}", (part, key), f"nothing asks for the {part} `{key}`", hint, key=True)
+    waited = set(descriptors(machine))
+    for event in machine.events:
+        if not any(hears(d, event) for d in waited):
+            message = f"nothing waits for the event `{event}`"
+            hint = "react to it with `on:`, or delete it"
+            find(report, "unused-event", ("events", event), message, hint, key=True)
+
+
+def _context(machine: Machine, report: Report, read: set[str]) -> None:
+    written = {key for site in sites(machine) for key in getattr(site.step.action, "values", ())}
+    for key in machine.context:
+        if key not in read:
+            hint = "use it in an expression, or delete it"
+            what = "is set and never read" if key in written else "is declared and never used"
+            find(report, "unused-context-key", ("context", key), f"`{key}` {what}", hint, key=True)
+
+
+def _expected(draft: Draft, name: str) -> set[str]:
+    """The context keys that stories look at."""
+    main = draft.settings.behavior if draft.settings else ""
+    stories = [story for story in draft.stories.values() if (story.behavior or main) == name]
+    return {
+        key
+        for story in stories
+        for scene in story.scenes
+        if isinstance(scene.deed, Expect)
+        for key in scene.deed.context
+    }
+
+
+def _files(draft: Draft) -> None:
+    """Files that nothing names."""
+    assert draft.settings is not None
+    actions = [site.step.action for machine in draft.behaviors.values() for site in sites(machine)]
+    expected = {s.deed.played for story in draft.stories.values() for s in story.scenes if isinstance(s.deed, Expect)}
+    motions = {action.motion for action in actions if isinstance(action, Play)} | expected
+    for name in draft.motions:
+        motions |= _played(draft.report("motions", name).document.data)
+    behaviors = {draft.settings.behavior, *(story.behavior for story in draft.stories.values())}
+    behaviors |= {i.behavior for m in draft.behaviors.values() for state in m.states.values() for i in state.invoke}
+    controllers = {action.controller for action in actions if isinstance(action, Track)}
+    used: Mapping[str, tuple[str, Iterable[str], set[Any], str]] = {
+        "motions": ("motion", draft.motions, motions, "`play` it somewhere, or delete the file"),
+        "behaviors": ("behaviour", draft.behaviors, behaviors, "`invoke` it somewhere, or delete the file"),
+        "fuzzy": ("controller", draft.controllers, controllers, "`track` with it somewhere, or delete the file"),
+    }
+    for folder, (what, names, wanted, hint) in used.items():
+        for name in names if wanted.intersection(names) else ():  # where none is used, they are about to be
+            if name not in wanted and (folder != "fuzzy" or draft.controllers[name].output_bindings):
+                find(draft.report(folder, name), "unused-file", (), f"nothing uses the {what} `{name}`", hint)
+
+
+def _played(data: Any) -> set[str]:
+    found: set[str] = set()
+    waiting = [data]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, Mapping):
+            if isinstance(item.get("play"), str):
+                found.add(item["play"])
+            waiting.extend(item.values())
+        elif isinstance(item, list):
+            waiting.extend(item)
+    return found
+
+
+def _alike_files(draft: Draft) -> None:
+    for file, other in _alike(draft.files):
+        if (report := draft.reports.get(file)) is not None:
+            message = f"{file} and {other} differ by case only, and some computers take them for one file"
+            find(report, "same-but-case", (), message, "rename one of them")
+    if draft.settings and draft.main:
+        _say_alike(draft.main, ("routes",), draft.settings.routes)
+
+
+def _alike_inside(machine: Machine, report: Report) -> None:
+    for part in ("context", "phrases", "answers", "events"):
+        _say_alike(report, (part,), getattr(machine, part))
+    for state in machine.states.values():
+        _say_alike(report, (*state.where, "states"), [path.rpartition(".")[2] for path in state.children])
+
+
+def _say_alike(report: Report, path: Path, names: Iterable[str]) -> None:
+    for name, other in _alike(names):
+        message = f"`{name}` and `{other}` differ by case only"
+        related = [((*path, other), "the other one stands here")]
+        find(
+            report, "same-but-case", (*path, name), message, "give one of them another name", key=True, related=related
+        )
+
+
+def _alike(names: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Each name that a former one is like, with that one."""
+    seen: dict[str, str] = {}
+    for name in names:
+        other = seen.setdefault(name.casefold(), name)
+        if other != name:
+            yield name, other
+
+
+def _texts(data: Any) -> Iterator[str]:
+    """Every text in plain data, keys left out."""
+    waiting = [data]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, str):
+            yield item
+        elif isinstance(item, Mapping):
+            waiting.extend(item.values())
+        elif isinstance(item, list):
+            waiting.extend(item)

@@ -1,0 +1,203 @@
+"""Ways through a statechart: where nothing leads on, where nothing leads back, and where one waits for ever."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from lumen.language.actions import Raise, Send
+from lumen.language.diagnostics import Path
+from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.loading.draft import Draft
+from lumen.loading.source import Report
+from lumen.rules.finding import find
+from lumen.rules.statecharts import reachable
+from lumen.rules.walk import nested
+
+Node = tuple[str, str]
+"""`in` a state, or on the way `to` one (which then begins), or `any` state below one; and its path."""
+
+_RESTLESS = ("endless-always", "always-loop")
+
+
+def check(draft: Draft) -> None:
+    """Report what keeps the robot in a state for ever, in files where no transition is missing for another reason."""
+    events = {r.event for r in draft.settings.routes.values() if r.event} if draft.settings else set[str]()
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        if report.whole and not any(d.code in _RESTLESS for d in report.diagnostics):
+            _Ways(machine, report, events).check()
+
+
+@dataclass
+class _Graph:
+    """Where one gets from each node in one move, and from where one gets there; guards are taken to hold."""
+
+    machine: Machine
+    after: dict[Node, list[Node]] = field(default_factory=dict)
+    before: dict[Node, list[Node]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for path, state in self.machine.states.items():
+            self.join(("to", path), ("in", path))
+            if state.parent is not None:
+                self.join(("in", path), ("in", state.parent))
+                self.join(("any", state.parent), ("any", path))
+            self.join(("any", path), ("in", path))
+            for inner in state.children if state.kind is Kind.PARALLEL else state.initial:
+                self.join(("to", path), ("to", inner))
+            if state.kind is Kind.HISTORY and state.parent is not None:
+                self.join(("to", path), ("any", state.parent))
+            for transition in state.transitions:
+                for target in transition.targets:
+                    self.go(path, target)
+
+    def join(self, one: Node, other: Node) -> None:
+        self.after.setdefault(one, []).append(other)
+        self.before.setdefault(other, []).append(one)
+
+    def go(self, source: str, target: str) -> None:
+        """A transition: it also leaves what is active beside its source, and begins what is beside its target."""
+        self.join(("in", source), ("to", target))
+        for path in self.above(source):
+            if self.machine.states[path].kind is Kind.PARALLEL and not within(target, path):
+                self.join(("in", path), ("to", target))
+        for path in self.above(target):
+            state = self.machine.states[path]
+            if state.kind is Kind.PARALLEL and not within(source, path):
+                for child in state.children:
+                    if not within(target, child):
+                        self.join(("in", source), ("to", child))
+
+    def above(self, path: str) -> Iterator[str]:
+        parent = self.machine.states[path].parent
+        while parent is not None:
+            yield parent
+            parent = self.machine.states[parent].parent
+
+
+def within(path: str, other: str) -> bool:
+    """Whether a state is the other one, or lies in it."""
+    return path == other or not other or path.startswith(f"{other}.")
+
+
+def spread(begin: Iterable[Node], moves: dict[Node, list[Node]]) -> set[Node]:
+    """All nodes that some row of moves leads to from these, they among them."""
+    found = set(begin)
+    waiting = list(found)
+    while waiting:
+        for node in moves.get(waiting.pop(), ()):
+            if node not in found:
+                found.add(node)
+                waiting.append(node)
+    return found
+
+
+class _Ways:
+    """Looks at one machine: `tracks` are its outermost rows of states, each of which is in one of them at a time."""
+
+    def __init__(self, machine: Machine, report: Report, events: set[str]) -> None:
+        self.machine, self.report, self.events = machine, report, events
+        self.graph = _Graph(machine)
+        self.entered: dict[str, list[Transition]] = {}
+        for state in machine.states.values():
+            for transition in state.transitions:
+                for target in transition.targets:
+                    self.entered.setdefault(target, []).append(transition)
+
+    def check(self) -> None:
+        root = self.machine.root
+        found = reachable(self.machine)
+        tracks = [root] if root.kind is Kind.COMPOUND else [self.machine.states[p] for p in root.children]
+        for track in tracks:
+            leaves = [
+                path
+                for path, state in self.machine.states.items()
+                if path in found and state.kind is Kind.ATOMIC and within(path, track.path) and path != track.path
+            ]
+            self.track(track, leaves)
+
+    def track(self, track: State, leaves: list[str]) -> None:
+        home = track
+        while home.kind is Kind.COMPOUND and home.initial:
+            home = self.machine.states[home.initial[0]]
+        others = [path for path in leaves if path != home.path]
+        dead = {path for path in others if not any(self.ways_out(path))}
+        for path in sorted(dead, key=others.index):
+            self.dead_end(path)
+        back = spread([("in", home.path)], self.graph.before)
+        if any(("in", path) in back for path in others) or home.path.rpartition(".")[2] == "idle":
+            self.lost(track, home, [p for p in others if ("in", p) not in back], dead, back)
+        for path in others:
+            if path not in dead:
+                self.waiting(self.machine.states[path])
+
+    def ways_out(self, path: str) -> Iterator[Transition]:
+        """The transitions by which one may leave an atomic state: its own and those around it."""
+        state: State | None = self.machine.states[path]
+        while state is not None:
+            yield from (t for t in state.transitions if any(target != path for target in t.targets))
+            if state.kind is Kind.PARALLEL:
+                for child in state.children:
+                    yield from self.leaving(child, state.path)
+            state = self.machine.states[state.parent] if state.parent is not None else None
+
+    def leaving(self, path: str, home: str) -> Iterator[Transition]:
+        """The transitions at or below a state that lead out of `home`."""
+        state = self.machine.states[path]
+        yield from (t for t in state.transitions if any(not within(target, home) for target in t.targets))
+        for child in state.children:
+            yield from self.leaving(child, home)
+
+    def from_where(self, path: str) -> list[tuple[Path, str]]:
+        """How one gets there, where there is a single way."""
+        ways = self.entered.get(path, [])
+        return [(ways[0].where, "only entered from here")] if len(ways) == 1 else []
+
+    def dead_end(self, path: str) -> None:
+        state = self.machine.states[path]
+        hint = "give it a transition, or `type: final` where the behaviour is at its end"
+        message = f"nothing leads on from `{state.name}`: whoever comes here stays for ever"
+        find(self.report, "dead-end", state.where, message, hint, key=True, related=self.from_where(path))
+
+    def lost(self, track: State, home: State, lost: list[str], dead: set[str], back: set[Node]) -> None:
+        """States from which no way leads home; of those that lead to one another only the first is told."""
+        ends = [("in", path) for path in dead]
+        ends += [("in", p) for p in track.children if self.machine.states[p].kind is Kind.FINAL]
+        ended = spread(ends, self.graph.before)
+        told: set[Node] = set()
+        for path in lost:
+            if ("in", path) in ended or ("in", path) in told:
+                continue
+            told |= spread([("in", path)], self.graph.after)
+            told |= spread([("in", path)], self.graph.before)
+            state = self.machine.states[path]
+            message = f"no way leads back from `{state.name}` to `{home.name}`, where it began"
+            hint = f"let a transition lead to `{home.name}`, here or in a state that follows"
+            find(self.report, "no-way-back", state.where, message, hint, key=True, related=self.from_where(path))
+
+    def waiting(self, state: State) -> None:
+        """A state that is left only if a visitor does something."""
+        raised = {a.event for step in nested((*state.entry, *state.do)) if isinstance(a := step.action, Raise | Send)}
+        ways = [t for t in self.ways_out(state.path) if self.in_course(t)]
+        names = sorted({t.event for t in ways} - raised)
+        if any(t.event in raised for t in ways):
+            return
+        if names and all(name in self.events for name in names):
+            heard = " or ".join(f"`{name}`" for name in names)
+            message = f"`{state.name}` waits for {heard} for ever"
+            hint = "visitors walk away: give it `after:` as well, such as `after: {30s: …}`"
+            find(self.report, "waits-for-ever", state.where, message, hint, key=True)
+
+    def in_course(self, transition: Transition) -> bool:
+        """Whether a transition belongs to the ordinary course, not to an alarm around it."""
+        source = self.machine.states[transition.source]
+        return (
+            source.kind is Kind.ATOMIC
+            or not transition.event
+            or transition.event in self.events
+            or (
+                transition.delay is not None
+                or transition.exact
+                or "*" in transition.event
+                or "error" in transition.event
+            )
+        )

@@ -1,0 +1,64 @@
+"""`lumen lint --watch`: saved files are answered, and Ctrl-C is a good end."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).parent
+ENGINE = HERE.parents[1] / "engine"
+END = "waiting for the next change, Ctrl-C ends"
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    shutil.copytree(HERE / "base", tmp_path / "p")
+    return tmp_path / "p"
+
+
+@pytest.fixture
+def watching(project: Path) -> Iterator["subprocess.Popen[str]"]:
+    command = [sys.executable, "-m", "lumen", "lint", "--watch", "--format", "concise", str(project)]
+    environment = {**os.environ, "PYTHONPATH": str(ENGINE)}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
+    ) as process:
+        yield process
+        process.kill()
+
+
+def answer(process: "subprocess.Popen[str]") -> str:
+    """What it says until it waits; the pipe ends where it does not."""
+    assert process.stdout
+    said = ""
+    for line in process.stdout:
+        said += line
+        if END in line:
+            return said
+    raise AssertionError(f"it ended: {said}")
+
+
+def test_a_saved_file_is_answered(project: Path, watching: "subprocess.Popen[str]") -> None:
+    assert "nothing wrong; " in answer(watching)
+    tour = project / "behaviors/tour.yaml"
+    text = tour.read_text()
+    tour.write_text(text.replace("onError: idle", "onError: idel"))
+    assert "error[unknown-state]" in answer(watching)
+    (project / "motions/bow.yml").write_text("start: Stand\n")
+    said = answer(watching)
+    assert "error[unknown-state]" in said
+    assert "warning[not-read]" in said
+    (project / "motions/bow.yml").unlink()
+    new = project / "behaviors/.tour.yaml.new"
+    new.write_text(text)
+    new.replace(tour)
+    while "nothing wrong; " not in (said := answer(watching)):
+        assert "error" in said or "warning" in said
+    watching.send_signal(signal.SIGINT)
+    out, error = watching.communicate(timeout=30)
+    assert (out, error, watching.returncode) == ("", "", 0)
