@@ -17,6 +17,9 @@ STARTED = time.monotonic()
 VERBS = {
     "new": "start a project of your own",
     "run": "run an exhibition",
+    "say": "let the robot of a running exhibition say something",
+    "stop": "let the robot of a running exhibition rest, at once",
+    "reload": "have a running exhibition take its files, or say how it stands with them",
     "lint": "say what is wrong in a project, and where",
     "explain": "say what a code of lint means, and show an example",
     "test": "play the stories, and say which of them end badly",
