@@ -37,6 +37,11 @@ packages:
 	@sh scripts/conformance-data.sh
 	@touch $@
 
+.cache/xstate: scripts/xstate.sh
+	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
+	@sh scripts/xstate.sh
+	@touch $@
+
 .cache/sarif: scripts/sarif-schema.sh
 	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
 	@sh scripts/sarif-schema.sh

@@ -1,0 +1,22 @@
+"""Options before, between and after the other words of a command: `export scxml --project here tour`."""
+
+import argparse
+from collections.abc import Sequence
+from typing import Any
+
+
+class Intermixed(argparse.ArgumentParser):
+    """Reads the options first. Python's parser takes `[NAME]` for missing where an option stands before it."""
+
+    _mixing = False
+
+    def parse_known_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> tuple[Any, list[str]]:
+        if self._mixing:
+            return super().parse_known_args(args, namespace)
+        self._mixing = True
+        try:
+            return self.parse_known_intermixed_args(args, namespace)
+        finally:
+            self._mixing = False
