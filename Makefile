@@ -16,7 +16,7 @@ help:
 run: .venv/run
 	@$(BIN)/lumen run --story $(STORY) --speed $(SPEED)
 
-test: packages check .cache/scion .cache/sarif
+test: packages check .cache/scion .cache/sarif .cache/xstate
 	@$(BIN)/lumen lint --strict
 	@$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not soak"
 
