@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -28,12 +29,15 @@ def watching(project: Path) -> Iterator["subprocess.Popen[str]"]:
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
     ) as process:
+        deadline = threading.Timer(60, process.kill)
+        deadline.start()
         yield process
+        deadline.cancel()
         process.kill()
 
 
 def answer(process: "subprocess.Popen[str]") -> str:
-    """What it says until it waits; the pipe ends where it does not."""
+    """What it says until it waits; where it does not, the deadline ends it, and with it the pipe."""
     assert process.stdout
     said = ""
     for line in process.stdout:

@@ -1,5 +1,6 @@
 """Motions: what they ask of the robot's joints on the way from key to key."""
 
+from functools import partial
 from math import ceil
 
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
@@ -23,7 +24,7 @@ def check(draft: Draft) -> None:
         if report.diagnostics:
             continue
         unit = value_at(report, ("units", "angle")) or "rad"
-        fast, far = again(("excess", name), given, lambda m=motion, b=draft.body: _excesses(m, b))
+        fast, far = again(("excess", name), given, partial(_excesses, motion, draft.body))
         for excess in fast:
             _too_fast(report, excess, unit, draft.body)
         for excess in far:

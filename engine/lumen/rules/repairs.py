@@ -15,7 +15,8 @@ Check = Callable[[Files], Sequence[Diagnostic]]
 _HIDING = frozenset(("tab", "yaml-syntax", "duplicate-key"))
 """What hides the rest of a file: repaired, it may show more."""
 
-ROUNDS = 10
+ROUNDS = 100
+"""What one finding stands for may be many: of one cause only the first is told."""
 
 
 class Repair(NamedTuple):

@@ -1,0 +1,58 @@
+"""`lumen lint --watch`: the findings anew whenever a file is saved."""
+
+import queue
+import sys
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+
+from lumen.cli.findings import Findings
+from lumen.cli.lint import show, verdict
+from lumen.cli.linting import Asked, Wanted, lint
+from lumen.cli.render import render
+from lumen.cli.terminal import coloured, paint
+from lumen.runtime.watcher import Saved, Watcher
+
+QUIET = 0.01
+"""How long files have to be left alone [s]: nothing runs on them, so half a file is a finding for a moment only."""
+
+_CLEAR = "\x1b[2J\x1b[3J\x1b[H"
+
+
+def watch(projects: Sequence[Asked], wanted: Wanted, format: str, ended: Callable[[], bool] = lambda: False) -> int:
+    """Show what is wrong, and again after every change, until `ended` or Ctrl-C; always 0."""
+    changes: queue.SimpleQueue[tuple[int, Saved]] = queue.SimpleQueue()
+    found = [lint(what, wanted) for what in projects]
+    with ExitStack() as stack:
+        for i, what in enumerate(projects):
+            watcher = Watcher(what.root, found[i].files, _into(changes, i), quiet=QUIET)
+            stack.callback(watcher.close)
+            watcher.start()
+        try:
+            _draw(found, format)
+            while not ended():
+                latest = dict([changes.get()])
+                while not changes.empty():
+                    latest.update([changes.get()])
+                for i, saved in latest.items():
+                    found[i] = lint(projects[i], wanted, saved.files)
+                _draw(found, format, time.monotonic() - min(saved.seen for saved in latest.values()))
+        except KeyboardInterrupt:
+            if sys.stdout.isatty():
+                print()
+    return 0
+
+
+def _into(changes: "queue.SimpleQueue[tuple[int, Saved]]", project: int) -> Callable[[Saved], None]:
+    """What a watcher does with the saved files of a project: hand them to the thread that shows."""
+    return lambda saved: changes.put((project, saved))
+
+
+def _draw(found: Sequence[Findings], format: str, took: float | None = None) -> None:
+    """On a terminal the findings in place of those before, elsewhere below them."""
+    on = coloured()
+    clear = _CLEAR if sys.stdout.isatty() else ""
+    answered = f" in {took * 1000:.0f} ms" if took is not None else ""
+    sign = paint("wrong", "bold", "red", on=on) if verdict(found) else paint("right", "bold", "green", on=on)
+    waits = paint(f"{answered}; waiting for the next change, Ctrl-C ends", "dim", on=on)
+    show(f"{clear}{render(format, found, coloured=on)}\n\n{time.strftime('%H:%M:%S')} {sign}{waits}")

@@ -1,0 +1,50 @@
+"""What was worked out before is taken again for the same content only."""
+
+from pathlib import Path
+
+import pytest
+
+from lumen.loading import recollection
+from lumen.loading.files import read_files
+from lumen.loading.recollection import again
+from lumen.rules import check_files
+
+BASE = read_files(Path(__file__).parents[1] / "lint/base")
+TURNS = {
+    "motions/wave.yaml": (b"at: 1s", b"at: 600ms"),
+    "models/tiny.yaml": (b"speed: 800", b"speed: 80"),
+    "lumen.yaml": (b"story: hello", b"story: helo"),
+    "behaviors/tour.yaml": (b"onError: idle", b"onError: idel"),
+}
+
+
+def test_equal_input_is_answered_from_memory_and_other_input_anew() -> None:
+    made = []
+
+    def make() -> int:
+        made.append(1)
+        return len(made)
+
+    assert [again("slot", given, make) for given in ("a", "a", "b", "b", "a")] == [1, 1, 2, 2, 3]
+    assert [again("worthless", "a", make, worth=lambda _: False) for _ in range(2)] == [4, 5]
+
+
+def test_memory_does_not_grow_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(recollection, "MAX_SLOTS", 3)
+    monkeypatch.setattr(recollection, "_last", {})
+    for i in range(10):
+        again(("slot", i), i, int)
+    assert len(recollection._last) <= 3
+
+
+@pytest.mark.parametrize("file", TURNS)
+def test_lint_says_the_same_with_and_without_memory(file: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    old, new = TURNS[file]
+    assert old in BASE[file]
+    wrong = {**BASE, file: BASE[file].replace(old, new)}
+    remembered = [check_files(Path(), files)[1] for files in (BASE, wrong, wrong, BASE)]
+    for files, found in zip((BASE, wrong, wrong, BASE), remembered, strict=True):
+        monkeypatch.setattr(recollection, "_last", {})
+        assert check_files(Path(), files)[1] == found
+    assert remembered[1]
+    assert not remembered[3]
