@@ -19,7 +19,6 @@ def _check(machine: Machine, report: Report) -> None:
     for was, now in machine.renamed.items():
         there = known.get(was)
         if there is not None and (there == now or there not in taken):
-            what = f"`{was}` is said to be `{now}` now" if there != now else f"`{was}` is renamed to itself"
-            message = f"{what}, and is still there"
-            hint = "delete this line: at the next reload it would lead away from that state" if there != now else "delete it"
+            message = f"`{was}` is said to be `{now}` now, and is still there"
+            hint = "delete this line: at the next reload it would lead away from what is there"
             find(report, "still-there", ("renamed", was), message, hint, key=True)

@@ -1,15 +1,24 @@
 """The changes between two projects, part by part, and all of them in one line."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields
 from itertools import groupby
-from typing import Any
+from typing import TypeVar
 
 from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.fixed import FIXED
+from lumen.interpreters.changes.machines import machine_changes
+from lumen.interpreters.changes.parts import controller_changes, motion_changes, route_changes
+from lumen.interpreters.changes.words import code, how_many
 from lumen.language.projects import Project
 
-MOST = 6
-"""Changes that a summary names."""
+MOST = 4
+"""Changes that a summary names; of what there is more of, it gives the number."""
+
+T = TypeVar("T")
+
+_PARTS = ("behaviors", "controllers", "motions", "routes", "messages", "stories", "languages")
+_SELF = ("root", "hash", "documents")
 
 
 def changes(old: Project, new: Project) -> tuple[Change, ...]:
@@ -23,33 +32,70 @@ def risk(found: Sequence[Change]) -> Risk:
 
 
 def summary(found: Sequence[Change]) -> str:
-    """All changes in one line: those of one kind counted where they are many, texts always."""
+    """All changes in one line: texts are counted, and so is what there are many changes of."""
     parts: list[str] = []
-    for kind, group in groupby(sorted(found, key=lambda change: change.kind == "text"), lambda change: change.kind):
+    for kind, group in groupby(sorted(found, key=lambda change: change.kind), lambda change: change.kind):
         rows = list(group)
-        if kind == "text":
-            parts.append(f"{len(rows)} text{'s' * (len(rows) > 1)} changed")
+        if kind == "text" or (len(found) > MOST and len(rows) > 2):
+            parts.append(f"{how_many(len(rows), kind)} changed")
         else:
             parts += [change.sentence for change in rows]
-    if len(parts) > MOST:
-        parts = [*parts[: MOST - 1], f"{len(parts) - MOST + 1} more changes"]
+    if len(parts) > 2 * MOST:
+        parts = [*parts[: 2 * MOST], f"{how_many(len(parts) - 2 * MOST, 'more change')}"]
     return "; ".join(parts) or "nothing that matters changed"
 
 
 def _changes(old: Project, new: Project) -> Iterator[Change]:
-    yield from _named("behavior", "behaviour", old.behaviors, new.behaviors, Risk.BEHAVIOR)
-    yield from _named("controller", "controller", old.controllers, new.controllers, Risk.MOTION)
-    yield from _named("motion", "motion", old.motions, new.motions, Risk.MOTION)
-    yield from _named("route", "route", old.routes, new.routes, Risk.WIRING)
-    yield from _named("message", "message", old.messages, new.messages, Risk.WIRING)
-    yield from _named("story", "story", old.stories, new.stories, Risk.COSMETIC)
+    yield from _settings(old, new)
+    yield from _named(
+        "behavior", "behaviour", Risk.BEHAVIOR, "behaviors/{}.yaml",
+        {name: (name, machine) for name, machine in old.behaviors.items()},
+        {name: (name, machine) for name, machine in new.behaviors.items()},
+        lambda before, after: machine_changes(after[0], before[1], after[1]),
+    )  # fmt: skip
+    yield from _named(
+        "controller", "controller", Risk.MOTION, "fuzzy/{}.yaml", old.controllers, new.controllers, controller_changes
+    )
+    yield from _named("motion", "motion", Risk.MOTION, "motions/{}.yaml", old.motions, new.motions, motion_changes)
+    yield from _named("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes)
+    yield from _named("message", "message", Risk.WIRING, "schemas/messages/{}.schema.json", old.messages, new.messages)
+    yield from _named("story", "story", Risk.COSMETIC, "behaviors/stories/{}.yaml", old.stories, new.stories)
+
+
+def _settings(old: Project, new: Project) -> Iterator[Change]:
+    """What else lumen.yaml says."""
     for name, title in FIXED.items():
         if getattr(old, name) != getattr(new, name):
-            yield Change("fixed", name, f"{title} changed: in force from the next start on", Risk.RESTART)
+            told = f"{title} changed: in force from the next start on"
+            yield Change("fixed", name, told, Risk.RESTART, "lumen.yaml")
+    for language in dict.fromkeys((*old.languages, *new.languages)):
+        if (language in old.languages) != (language in new.languages):
+            how = "added" if language in new.languages else "removed"
+            yield Change("language", language, f"language `{language}` {how}", Risk.BEHAVIOR, "lumen.yaml")
+    if old.languages[:1] != new.languages[:1]:
+        yield Change("language", "", f"`{new.languages[0]}` is spoken first now", Risk.BEHAVIOR, "lumen.yaml")
+    for field in (f.name for f in fields(Project) if f.name not in (*FIXED, *_PARTS, *_SELF)):
+        before, after = getattr(old, field), getattr(new, field)
+        if before != after:
+            risk = Risk.BEHAVIOR if field == "behavior" else Risk.COSMETIC
+            yield Change("setting", field, f"`{field}` is {code(after)} now, not {code(before)}", risk, "lumen.yaml")
 
 
-def _named(kind: str, title: str, old: Mapping[str, Any], new: Mapping[str, Any], risk: Risk) -> Iterator[Change]:
+def _named(
+    kind: str,
+    title: str,
+    risk: Risk,
+    file: str,
+    old: Mapping[str, T],
+    new: Mapping[str, T],
+    inside: Callable[[T, T], Iterator[Change]] | None = None,
+) -> Iterator[Change]:
+    """What was added or removed, and the changes inside of what is in both."""
     for name in dict.fromkeys((*old, *new)):
-        if old.get(name) != new.get(name):
-            how = "added" if name not in old else "removed" if name not in new else "changed"
-            yield Change(kind, name, f"{title} `{name}` {how}", risk)
+        if name in old and name in new:
+            if old[name] != new[name]:
+                whole = Change(kind, name, f"{title} `{name}` changed", risk, file.format(name))
+                yield from inside(old[name], new[name]) if inside else (whole,)
+        else:
+            how = "added" if name in new else "removed"
+            yield Change(kind, name, f"{title} `{name}` {how}", risk, file.format(name))

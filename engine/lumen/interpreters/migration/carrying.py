@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.statechart.chart import Chart, Node
-from lumen.interpreters.statechart.entering import History
+from lumen.interpreters.statechart.entering import Entered, History, Topology
 from lumen.interpreters.statechart.types import fits, type_name
 from lumen.interpreters.statechart.values import Timer
 from lumen.language.machines import Kind
@@ -80,15 +80,18 @@ def history(old: History, new: Chart, identity: Identity) -> dict[str, tuple[str
 
 
 def _recalled(history: Node, remembered: tuple[str, ...], new: Chart, identity: Identity) -> list[Node]:
-    """The states that a history stands for now; none where they can't be active together any more."""
+    """What a history stands for now, completed as it would be entered; nothing where that can't be any more."""
     home = history.parent
     assert home is not None  # only the document has none
     assert history.state is not None  # likewise
-    nodes = [node for path in remembered if (node := _nearest(path, home, new, identity))]
-    if not history.state.deep:
-        nodes = [node if node.parent is home else node.ancestors[node.ancestors.index(home) - 1] for node in nodes]
-    nodes = sorted(set(nodes), key=lambda node: node.index)
-    return nodes if all(_together(*pair) for pair in combinations(nodes, 2)) else []
+    nodes = list(dict.fromkeys(node for path in remembered if (node := _nearest(path, home, new, identity))))
+    if not nodes or not all(_together(*pair) for pair in combinations(nodes, 2)):
+        return []
+    entered = Entered()
+    Topology(new, {}).reach(nodes, entered)
+    within = [node for node in entered if node.lies_below(home)]
+    kept = [n for n in within if not n.children] if history.state.deep else [n for n in within if n.parent is home]
+    return sorted(kept, key=lambda node: node.index)
 
 
 def _nearest(path: str, home: Node, new: Chart, identity: Identity) -> Node | None:

@@ -21,10 +21,10 @@ class Fresh(NamedTuple):
 
 
 class Continued(Session):
-    """States that stay (`fresh`) begin only what they did not have; `output` is that of a machine at its end."""
+    """States that stay (`fresh`) begin only what they did not have; `outcome` is the output of a machine at its end."""
 
     fresh: Mapping[Node, Fresh] = {}
-    output: Any = None
+    outcome: Any = None
 
     def begin(self, node: Node) -> None:
         if node not in self.fresh:
@@ -53,5 +53,5 @@ class Continued(Session):
 
     def step(self) -> Step:
         found = super().step()
-        self.output = output_of(found, self.chart.root.name)
+        self.outcome = output_of(found, self.chart.root.name)
         return found

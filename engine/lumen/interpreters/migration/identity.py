@@ -17,10 +17,11 @@ class Identity:
 
     def __init__(self, old: Machine, new: Machine, *, back: bool = False) -> None:
         self._new = new
-        fresh = {was: _end(new, now) for was, now in new.renamed.items() if old.renamed.get(was) != now}
-        undone = {now: was for was, now in old.renamed.items() if new.renamed.get(was) != now and _known(new, was)}
-        self._first: Mapping[str, str] = undone if back else fresh
-        self._last: Mapping[str, str] = {} if back else undone
+        fresh = {_path(old, name): now for name, now in new.renamed.items() if old.renamed.get(name) != now}
+        past = {now: _path(new, name) for name, now in old.renamed.items() if new.renamed.get(name) != now}
+        again = {now: new.renamed[name] for now, name in past.items() if name in new.renamed}
+        self._first: Mapping[str, str] = {n: was for n, was in past.items() if self._known(was)} if back else fresh
+        self._last: Mapping[str, str] = {} if back else again
 
     def state(self, path: str) -> str | None:
         """The path in the new machine, None where the state is gone."""
@@ -44,22 +45,19 @@ class Identity:
                     names[now.removeprefix(KEYS)] = was.removeprefix(KEYS)
         return names
 
+    def _known(self, name: str) -> bool:
+        return name in self._new.states or name.removeprefix(KEYS) in self._new.context
+
+
+def _path(machine: Machine, name: str) -> str:
+    """The path of the state of that id, else the name as it is."""
+    if name in machine.states:
+        return name
+    return next((path for path, state in machine.states.items() if path and state.alias == name), name)
+
 
 def _prefixes(path: str) -> Iterator[str]:
     """The path and those of the states around it, the longest first."""
     while path:
         yield path
         path = path.rpartition(".")[0]
-
-
-def _known(machine: Machine, name: str) -> bool:
-    return name in machine.states or (name.startswith(KEYS) and name.removeprefix(KEYS) in machine.context)
-
-
-def _end(machine: Machine, name: str) -> str:
-    """Where renamings lead in the end: what is gone by now may have been renamed again."""
-    seen = {name}
-    while not _known(machine, name) and (following := machine.renamed.get(name)) and following not in seen:
-        name = following
-        seen.add(name)
-    return name

@@ -123,7 +123,7 @@ class _Moving:
             return Refusal(f"{names} can't be active together in the new file", "restart the exhibition", "", behavior)
         step = into.settle()
         notes = (*self.whereto(placement, step), *notes)
-        return Plan(step.snapshot, leaving, step.commands, out.exited + step.exited, step.entered, notes, into.output)
+        return Plan(step.snapshot, leaving, step.commands, out.exited + step.exited, step.entered, notes, into.outcome)
 
     def leave(self, placement: Placement) -> Session:
         """Leave what does not stay, and end what can't go on, by the old machine."""

@@ -1,0 +1,139 @@
+"""What differs between two blocks of actions: texts, and what is done."""
+
+from collections.abc import Callable, Iterator, Sequence
+from difflib import SequenceMatcher
+from typing import TypeVar, assert_never
+
+from lumen.interpreters.changes.change import Change, Risk
+from lumen.interpreters.changes.words import code, names, quoted, seconds
+from lumen.language.actions import (
+    Action,
+    Assign,
+    CancelSend,
+    If,
+    LogText,
+    Parallel,
+    PublishBody,
+    Raise,
+    SayText,
+    Send,
+    Step,
+    Wait,
+)
+from lumen.language.commands import Language, Look, Play, Posture, Rest, Stop, Track, Wake, Walk
+
+T = TypeVar("T")
+
+Pair = tuple[T | None, T | None]
+
+
+def block_changes(old: Sequence[Step], new: Sequence[Step], title: str, when: str, file: str) -> Iterator[Change]:
+    """The changes of a block of actions; `title` is whose it is, `when` when it is done (` on entering`)."""
+    for one, other in paired([s.action for s in old], [s.action for s in new], lambda action: type(action).__name__):
+        if one is not None and other is not None:
+            yield from _action(one, other, title, when, file)
+        elif other is not None:
+            yield Change("action", title, f"{title} {told(other)}{when} as well", Risk.BEHAVIOR, file)
+        elif one is not None:
+            yield Change("action", title, f"{title} no longer {told(one)}{when}", Risk.BEHAVIOR, file)
+
+
+def paired(old: Sequence[T], new: Sequence[T], sort: Callable[[T], object]) -> Iterator[Pair[T]]:
+    """What became of what, where something differs: None stands for what was not, or is no longer, there."""
+    pool: list[T] = []
+    before_tags, after_tags = _tags(old, pool), _tags(new, pool)
+    for tag, a, b, c, d in SequenceMatcher(None, before_tags, after_tags, autojunk=False).get_opcodes():
+        if tag == "equal":
+            continue
+        before, after = list(old[a:b]), list(new[c:d])
+        while before and after:
+            if sort(before[0]) != sort(after[0]) and len(before) != len(after):
+                if len(before) > len(after):
+                    yield before.pop(0), None
+                else:
+                    yield None, after.pop(0)
+            else:
+                yield before.pop(0), after.pop(0)
+        yield from ((item, None) for item in before)
+        yield from ((None, item) for item in after)
+
+
+def _tags(items: Sequence[T], pool: list[T]) -> list[int]:
+    """For each item the place of its like in the pool; what is not in it yet is added."""
+    found = []
+    for item in items:
+        if item not in pool:
+            pool.append(item)
+        found.append(pool.index(item))
+    return found
+
+
+def _action(old: Action, new: Action, title: str, when: str, file: str) -> Iterator[Change]:
+    match old, new:
+        case SayText(before), SayText(after):
+            for language in dict.fromkeys((*before, *after)):
+                if before.get(language) != after.get(language):
+                    yield _text(language, after.get(language), title, when, file)
+        case If(before, then, otherwise), If(after, then_now, otherwise_now):
+            if before != after:
+                now = f"{title} decides{when} by {code(after.source)} now, not {code(before.source)}"
+                yield Change("action", title, now, Risk.BEHAVIOR, file)
+            yield from block_changes(then, then_now, title, when, file)
+            yield from block_changes(otherwise, otherwise_now, title, when, file)
+        case Parallel(before), Parallel(after):
+            yield from block_changes(before, after, title, when, file)
+        case _ if old != new:
+            yield Change("action", title, f"{title} now {told(new)}{when}", Risk.BEHAVIOR, file)
+
+
+def _text(language: str, texts: Sequence[object] | None, title: str, when: str, file: str) -> Change:
+    spoken = f" ({language})" if language else ""
+    if not texts:
+        return Change("text", title, f"{title} says nothing{when} in `{language}` any more", Risk.COSMETIC, file)
+    said = quoted(str(getattr(texts[0], "text", ""))) + (" and others" if len(texts) > 1 else "")
+    return Change("text", title, f"{title} says {said}{when} now{spoken}", Risk.COSMETIC, file)
+
+
+def told(action: Action) -> str:
+    """What an action does, as the end of a sentence."""
+    match action:
+        case SayText(texts):
+            return f"says {quoted(next(iter(texts.values()))[0].text)}"
+        case Play(motion):
+            return f"plays `{motion}`"
+        case Posture(name, speed):
+            return f"goes to `{name}` at speed {speed:g}"
+        case Walk(x, y, theta):
+            return f"walks to x {x:g} m, y {y:g} m, theta {theta:.3g} rad"
+        case Look(yaw, pitch):
+            return f"looks to yaw {yaw:.3g} rad, pitch {pitch:.3g} rad"
+        case Track(controller, on):
+            return f"lets `{controller}` track" if on else f"no longer lets `{controller}` track"
+        case Stop(what):
+            return f"stops `{what}`"
+        case Rest():
+            return "rests"
+        case Wake():
+            return "wakes"
+        case Language(language):
+            return f"speaks `{language}` from then on"
+        case PublishBody(route):
+            return f"publishes on `{route}`"
+        case Assign(values):
+            return f"sets {names(values)}"
+        case Raise(event):
+            return f"raises `{event}`"
+        case Send(event, _, delay):
+            return f"sends `{event}`" + (f" after {seconds(delay)}" if delay else "")
+        case CancelSend(id):
+            return f"cancels `{id}`"
+        case Wait(time):
+            return f"waits {seconds(time)}"
+        case LogText(text):
+            return f"logs {quoted(text.text)}"
+        case If(guard):
+            return f"decides by {code(guard.source)}"
+        case Parallel(branches):
+            return f"does {len(branches)} things at once"
+        case _:
+            assert_never(action)

@@ -1,0 +1,146 @@
+"""What differs between two versions of a behaviour: its states, and what it knows."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from lumen.interpreters.changes.actions import block_changes
+from lumen.interpreters.changes.change import Change, Risk
+from lumen.interpreters.changes.transitions import transition_changes
+from lumen.interpreters.changes.words import code, how_many, names, quoted
+from lumen.interpreters.migration.identity import Identity
+from lumen.language.machines import Machine, State
+
+
+def machine_changes(name: str, old: Machine, new: Machine) -> Iterator[Change]:
+    """The changes of behaviors/NAME.yaml; a renamed state is the same one."""
+    return _Comparison(name, old, new).all()
+
+
+class _Comparison:
+    def __init__(self, name: str, old: Machine, new: Machine) -> None:
+        self.name, self.old, self.new, self.file = name, old, new, f"behaviors/{name}.yaml"
+        identity = Identity(old, new)
+        self.images = {path: identity.state(path) if path else "" for path in old.states}
+
+    def change(self, kind: str, about: str, sentence: str, risk: Risk = Risk.BEHAVIOR) -> Change:
+        return Change(kind, about, sentence, risk, self.file)
+
+    def title(self, state: State) -> str:
+        return f"state `{state.name}`" if state.path else f"`{self.name}`"
+
+    def all(self) -> Iterator[Change]:
+        yield from self.presence()
+        for path, image in self.images.items():
+            if image is not None:
+                yield from self.state(self.old.states[path], self.new.states[image])
+        yield from self.context()
+        yield from self.phrases()
+        yield from self.answers()
+        yield from self.named("event", self.old.events, self.new.events)
+
+    def presence(self) -> Iterator[Change]:
+        """States that are gone, new, or called otherwise; of those within another only the outermost."""
+        gone = [path for path, image in self.images.items() if image is None]
+        fresh = [path for path in self.new.states if path not in self.images.values()]
+        for path in gone:
+            if self.old.states[path].parent not in gone:
+                yield self.change("state", path, f"{self.title(self.old.states[path])} removed{_within(path, gone)}")
+        for path in fresh:
+            if self.new.states[path].parent not in fresh:
+                yield self.change("state", path, f"{self.title(self.new.states[path])} added{_within(path, fresh)}")
+        for path, image in self.images.items():
+            parent = self.old.states[path].parent
+            moved = image is not None and parent is not None and image != _below(self.images[parent], path)
+            if moved and image is not None:
+                sentence = f"{self.title(self.old.states[path])} is `{self.new.states[image].path}` now"
+                yield self.change("state", path, sentence)
+
+    def state(self, old: State, new: State) -> Iterator[Change]:
+        title = self.title(new)
+        if old.kind != new.kind:
+            yield self.change("state", title, f"{title} is {new.kind} now, not {old.kind}")
+        if self.mapped(old.initial) != new.initial and old.kind == new.kind:
+            begin = names(self.new.states[path].name for path in new.initial) or "nothing"
+            yield self.change("state", title, f"{title} begins in {begin} now")
+        for when, before, after in (
+            (" on entering", old.entry, new.entry),
+            ("", old.do, new.do),
+            (" on leaving", old.exit, new.exit),
+        ):
+            yield from block_changes(before, after, title, when, self.file)
+        yield from transition_changes(old, new, title, self.file, self.mapped, lambda path: self.new.states[path].name)
+        yield from self.invokes(old, new, title)
+        if self.mapped((old.on_reload,) if old.on_reload else ()) != ((new.on_reload,) if new.on_reload else ()):
+            target = f"leads to `{self.new.states[new.on_reload].name}`" if new.on_reload else "is gone"
+            yield self.change("state", title, f"`onReload` of {title} {target}")
+        if old.output != new.output:
+            yield self.change("state", title, f"{title} hands on other data")
+
+    def mapped(self, paths: tuple[str, ...]) -> tuple[str, ...]:
+        """Old paths as they are called now."""
+        return tuple(self.images.get(path) or path for path in paths)
+
+    def invokes(self, old: State, new: State, title: str) -> Iterator[Change]:
+        before, after = {i.id: i for i in old.invoke}, {i.id: i for i in new.invoke}
+        for id in dict.fromkeys((*before, *after)):
+            if id not in after:
+                yield self.change("invoke", title, f"{title} no longer invokes `{before[id].behavior}`")
+            elif before.get(id) != after[id]:
+                same = id in before and before[id].behavior == after[id].behavior
+                how = " with other input" if same else ""
+                yield self.change("invoke", title, f"{title} invokes `{after[id].behavior}`{how} now")
+
+    def context(self) -> Iterator[Change]:
+        old, new = self.old, self.new
+        was = Identity(old, new).keys()
+        for key in old.context:
+            if key not in was.values():
+                yield self.change("context", key, f"context key `{key}` removed")
+        for key, before in was.items():
+            if before not in old.context:
+                yield self.change("context", key, f"context key `{key}` added")
+                continue
+            if before != key:
+                yield self.change("context", key, f"context key `{before}` is `{key}` now")
+            if old.context[before] != new.context[key]:
+                first = f"{code(new.context[key])}, not {code(old.context[before])}"
+                yield self.change("context", key, f"`{key}` begins as {first} from the next start on")
+            if old.types.get(before) != new.types.get(key):
+                yield self.change("context", key, f"the type of `{key}` changed")
+
+    def phrases(self) -> Iterator[Change]:
+        yield from self.named("phrases", self.old.phrases, self.new.phrases)
+
+    def answers(self) -> Iterator[Change]:
+        """Answers: what is said to the same phrases is a text, all else is behaviour."""
+        old, new = self.old.answers, self.new.answers
+        for table in dict.fromkeys((*old, *new)):
+            before, after = old.get(table, ()), new.get(table, ())
+            if [row.phrases for row in before] == [row.phrases for row in after]:
+                for one, other in zip(before, after, strict=True):
+                    if one.value != other.value:
+                        said = f"`{table}` answers {quoted(_example(other.value))} now"
+                        yield self.change("text", table, said, Risk.COSMETIC)
+            else:
+                rows = f"{how_many(len(after), 'row')}, not {len(before)}" if len(before) != len(after) else ""
+                how = f"has {rows}" if rows else "listens for other phrases, or in another order"
+                yield self.change("answers", table, f"`{table}` {how}")
+
+    def named(self, kind: str, old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[Change]:
+        for key in dict.fromkeys((*old, *new)):
+            if key not in new or key not in old or old[key] != new[key]:
+                how = "added" if key not in old else "removed" if key not in new else "changed"
+                yield self.change(kind, key, f"{kind} `{key}` {how}")
+
+
+def _below(parent: str | None, path: str) -> str:
+    return f"{parent}.{path.rpartition('.')[2]}" if parent else path.rpartition(".")[2]
+
+
+def _within(path: str, paths: list[str]) -> str:
+    within = sum(other.startswith(f"{path}.") for other in paths)
+    return f", with {within} within" if within else ""
+
+
+def _example(value: Any) -> str:
+    return str(next(iter(value.values()), "") if isinstance(value, Mapping) else value)

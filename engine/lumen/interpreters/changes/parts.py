@@ -1,0 +1,100 @@
+"""What differs between two versions of a controller, a motion or a route."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from lumen.interpreters.changes.change import Change, Risk
+from lumen.interpreters.changes.words import code, names, seconds
+from lumen.language.controllers import Controller
+from lumen.language.motions import Motion
+from lumen.language.routes import Route
+
+
+def controller_changes(old: Controller, new: Controller) -> Iterator[Change]:
+    """Rules, variables and terms one by one, everything else by its name."""
+    for sentence in _controller(old, new):
+        yield Change("controller", new.name, sentence, Risk.MOTION, f"fuzzy/{new.name}.yaml")
+
+
+def motion_changes(old: Motion, new: Motion) -> Iterator[Change]:
+    """How much longer it is, which joints it moves, and whether otherwise."""
+    for sentence in _motion(old, new):
+        yield Change("motion", new.name, f"motion `{new.name}` {sentence}", Risk.MOTION, f"motions/{new.name}.yaml")
+
+
+def route_changes(old: Route, new: Route) -> Iterator[Change]:
+    """`route `say` ttl 5 s → 3 s`, for each of its settings."""
+    for field, shown in _ROUTE.items():
+        before, after = getattr(old, field), getattr(new, field)
+        if before != after:
+            sentence = f"route `{new.name}` {field} {shown(before)} → {shown(after)}"
+            yield Change("route", new.name, sentence, Risk.WIRING, "lumen.yaml")
+
+
+def _shown(value: Any) -> str:
+    return "none" if value in (None, "") else code(value)
+
+
+_ROUTE: Mapping[str, Callable[[Any], str]] = {
+    "key": _shown,
+    "direction": _shown,
+    "schema": _shown,
+    "event": _shown,
+    "every": seconds,
+    "ttl": seconds,
+    "keep": lambda value: "none" if value is None else str(value),
+    "must_arrive": lambda value: "yes" if value else "no",
+    "latency": seconds,
+}
+
+
+def _controller(old: Controller, new: Controller) -> Iterator[str]:
+    title = f"`{new.name}`"
+    for i, (before, after) in enumerate(zip(old.rules, new.rules, strict=False), 1):
+        if (before.antecedent, before.consequents, before.weight) != (
+            after.antecedent,
+            after.consequents,
+            after.weight,
+        ):
+            yield f"fuzzy rule {i} of {title} changed: {code(after.text)}"
+    if len(old.rules) != len(new.rules):
+        yield f"{title} has {len(new.rules)} fuzzy rules, not {len(old.rules)}"
+    yield from _variables(old, new, title)
+    if [block.operators for block in old.blocks] != [block.operators for block in new.blocks]:
+        yield f"{title} combines its rules otherwise"
+    if (old.input_bindings, old.output_bindings) != (new.input_bindings, new.output_bindings):
+        yield f"{title} is bound otherwise"
+    if old.tracking != new.tracking:
+        fields = [f for f in type(new.tracking).__slots__ if getattr(old.tracking, f) != getattr(new.tracking, f)]
+        yield f"{title} tracks otherwise: {names(fields)}"
+
+
+def _variables(old: Controller, new: Controller, title: str) -> Iterator[str]:
+    before, after = {**old.inputs, **old.outputs}, {**new.inputs, **new.outputs}
+    for name in dict.fromkeys((*before, *after)):
+        if name not in before or name not in after:
+            yield f"variable `{name}` of {title} {'added' if name in after else 'removed'}"
+        elif before[name].terms != after[name].terms:
+            terms, now = before[name].terms, after[name].terms
+            changed = [term for term in dict.fromkeys((*terms, *now)) if terms.get(term) != now.get(term)]
+            yield f"{names(changed)} of `{name}` in {title} changed"
+        elif before[name] != after[name]:
+            yield f"`{name}` of {title} changed"
+
+
+def _motion(old: Motion, new: Motion) -> Iterator[str]:
+    longer = new.duration - old.duration
+    if abs(longer) > 1e-9:
+        yield f"is {seconds(round(abs(longer), 6))} {'longer' if longer > 0 else 'shorter'}"
+    if more := [joint for joint in new.tracks if joint not in old.tracks]:
+        yield f"moves {names(more)} as well"
+    if fewer := [joint for joint in old.tracks if joint not in new.tracks]:
+        yield f"no longer moves {names(fewer)}"
+    if other := [joint for joint in new.tracks if joint in old.tracks and old.tracks[joint] != new.tracks[joint]]:
+        shown = names(other) if len(other) <= 3 else f"{len(other)} joints"
+        yield f"moves {shown} otherwise"
+    if old.cues != new.cues:
+        yield "has other cues"
+    if (old.start, old.end) != (new.start, new.end):
+        yield "begins or ends in another posture"

@@ -1,0 +1,107 @@
+"""What differs between the transitions of two versions of a state."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from lumen.interpreters.changes.actions import block_changes, paired
+from lumen.interpreters.changes.change import Change, Risk
+from lumen.interpreters.changes.words import code, names, seconds
+from lumen.language.machines import State, Transition
+
+Mapped = Callable[[tuple[str, ...]], tuple[str, ...]]
+Name = Callable[[str], str]
+
+
+def transition_changes(old: State, new: State, title: str, file: str, mapped: Mapped, name: Name) -> Iterator[Change]:
+    """The changes, trigger by trigger; `mapped` gives old paths their new names, `name` what a new path is called."""
+    comparison = _Comparison(title, file, name)
+    before = _by_trigger([replace(t, targets=mapped(t.targets), source=new.path) for t in old.transitions])
+    after = _by_trigger(list(new.transitions))
+    fewer, more = [k for k in before if k not in after], [k for k in after if k not in before]
+    for was in list(fewer):
+        now = next((k for k in more if was[:5] == k[:5] == "after" and _same(before[was], after[k])), None)
+        if now:
+            fewer.remove(was)
+            more.remove(now)
+            yield comparison.change(f"{title} waits {now.removeprefix('after ')}, not {was.removeprefix('after ')}")
+    for trigger in (*before, *more):
+        if trigger in fewer:
+            yield from (comparison.gone(t, trigger) for t in before[trigger])
+        elif trigger in after:
+            yield from comparison.candidates(before.get(trigger, []), after[trigger], trigger)
+
+
+class _Comparison:
+    def __init__(self, title: str, file: str, name: Name) -> None:
+        self.title, self.file, self.name = title, file, name
+
+    def change(self, sentence: str) -> Change:
+        return Change("transition", self.title, sentence, Risk.BEHAVIOR, self.file)
+
+    def candidates(self, old: Sequence[Transition], new: Sequence[Transition], trigger: str) -> Iterator[Change]:
+        before, after = ([replace(t, event="") for t in rows] for rows in (old, new))
+        for one, other in paired(before, after, lambda t: (t.targets, t.guard)):
+            if one is None and other is not None:
+                yield self.change(f"{self.title} {self.leads(other)} {trigger}{_if(other)} now")
+            elif one is not None and other is None:
+                yield self.gone(one, trigger)
+            elif one is not None and other is not None:
+                yield from self.candidate(one, other, trigger)
+
+    def candidate(self, old: Transition, new: Transition, trigger: str) -> Iterator[Change]:
+        if old.targets != new.targets:
+            yield self.change(f"{self.title} {self.leads(new)} {trigger}{_if(new)} now, not {self.to(old)}")
+        elif old.guard != new.guard:
+            asked = f"if {code(new.guard.source)}" if new.guard else "whatever is so"
+            yield self.change(f"{self.title} {self.leads(new)} {trigger} {asked} now")
+        if old.reenter != new.reenter:
+            how = "is left and entered" if new.reenter else "stays active"
+            yield self.change(f"{self.title} {how} {trigger} now")
+        yield from block_changes(old.actions, new.actions, self.title, f" {trigger}", self.file)
+
+    def gone(self, transition: Transition, trigger: str) -> Change:
+        how = f"goes to {self.to(transition)}" if transition.targets else "does anything"
+        return self.change(f"{self.title} no longer {how} {trigger}{_if(transition)}")
+
+    def leads(self, transition: Transition) -> str:
+        return f"goes to {self.to(transition)}" if transition.targets else "stays where it is and acts"
+
+    def to(self, transition: Transition) -> str:
+        return names(self.known(path) for path in transition.targets) or "anywhere"
+
+    def known(self, path: str) -> str:
+        try:
+            return self.name(path)
+        except KeyError:  # it is gone
+            return path
+
+
+def _by_trigger(transitions: list[Transition]) -> dict[str, list[Transition]]:
+    found: dict[str, list[Transition]] = {}
+    for transition in transitions:
+        found.setdefault(_trigger(transition), []).append(transition)
+    return found
+
+
+def _trigger(transition: Transition) -> str:
+    """When it is taken, in words that do not depend on what the state is called."""
+    event = transition.event
+    if transition.delay is not None:
+        return f"after {seconds(transition.delay)}"
+    if not event:
+        return "at once"
+    if transition.exact and event.startswith(("done.do.", "done.state.")):
+        return "when it is done"
+    if transition.exact and event.startswith("error.do."):
+        return "when it fails"
+    if transition.exact:
+        return f"when `{event.split('.', 2)[2]}` {'ends' if event.startswith('done') else 'fails'}"
+    return f"on `{event}`"
+
+
+def _same(old: Sequence[Transition], new: Sequence[Transition]) -> bool:
+    return [(t.targets, t.guard, t.actions) for t in old] == [(t.targets, t.guard, t.actions) for t in new]
+
+
+def _if(transition: Transition) -> str:
+    return f" if {code(transition.guard.source)}" if transition.guard else ""

@@ -1,0 +1,38 @@
+"""How changes speak of times, numbers and texts."""
+
+from typing import Any
+
+LONGEST = 60
+"""Characters of a text that are shown."""
+
+
+def seconds(time: float | None) -> str:
+    """`3 s`, `500 ms` or `2 min`; `none` where there is none."""
+    if time is None:
+        return "none"
+    if time and time < 1.0:
+        return f"{time * 1000:g} ms"
+    return f"{time / 60:g} min" if time >= 60 and time % 60 == 0 else f"{time:g} s"
+
+
+def quoted(text: str) -> str:
+    """The text in one line, not too long."""
+    line = " ".join(text.split())
+    return f"“{line if len(line) <= LONGEST else line[: LONGEST - 1] + '…'}”"
+
+
+def code(value: Any) -> str:
+    """A name, an expression or a value as it could stand in the file."""
+    text = str(value).replace("\n", " ")
+    return f"`{text if len(text) <= LONGEST else text[: LONGEST - 1] + '…'}`"
+
+
+def names(found: Any) -> str:
+    """`a`, `b` and `c`."""
+    shown = [f"`{name}`" for name in found]
+    return f"{', '.join(shown[:-1])} and {shown[-1]}" if len(shown) > 1 else "".join(shown)
+
+
+def how_many(number: int, what: str) -> str:
+    """`1 text`, `2 texts`."""
+    return f"{number} {what}{'s' * (number != 1)}"
