@@ -10,6 +10,7 @@ import lumen
 from lumen.errors import ProjectError, UsageError
 from lumen.loading.files import Unreadable, fingerprint, read_files
 from lumen.loading.packaged import find_project, shipped_root
+from lumen.loading.source import parse
 from lumen.rules import check_files
 
 BASE = Path(__file__).parents[1] / "lint" / "base"
@@ -132,3 +133,12 @@ def test_the_public_names() -> None:
     assert all(getattr(lumen, name) is not None for name in lumen.__all__)
     with pytest.raises(AttributeError):
         lumen.nothing  # noqa: B018
+
+
+def test_what_is_remembered_of_a_file_is_the_same_the_second_time() -> None:
+    content = b"states: {a: {entry: {say: Hi}}, a: {}}\n"
+    first, found = parse("behaviors/a.yaml", content)
+    found.clear()
+    again, said = parse("behaviors/a.yaml", content)
+    assert again == first
+    assert [d.code for d in said] == ["duplicate-key"]

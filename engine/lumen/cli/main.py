@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from io import TextIOWrapper
 
 import lumen
+from lumen.cli.intermixed import Intermixed
 from lumen.errors import LumenError, ProjectError
 
 STARTED = time.monotonic()
@@ -22,6 +23,8 @@ VERBS = {
     "reload": "have a running exhibition take its files, or say how it stands with them",
     "lint": "say what is wrong in a project, and where",
     "explain": "say what a code of lint means, and show an example",
+    "lsp": "answer an editor (Language Server Protocol)",
+    "schema": "print the JSON Schema of a kind of file, for editors",
     "test": "play the stories, and say which of them end badly",
     "play": "show a motion on the simulated robot",
     "graph": "draw a behaviour (Mermaid)",
@@ -43,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         prog="lumen", description="Give a humanoid robot its behaviour in YAML.", epilog="lumen VERB --help says more."
     )
     parser.add_argument("--version", action="version", version=f"lumen {lumen.__version__}")
-    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True, parser_class=Intermixed)
     for verb, summary in VERBS.items():
         command = verbs.add_parser(verb, help=summary, description=summary[0].upper() + summary[1:] + ".")
         if verb in arguments[:1]:

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from lumen.language.diagnostics import Diagnostic, Path, Place, Related, Severity
+from lumen.loading.slips import slip_near
 
 MAX_DEPTH = 100
 MAX_NODES = 200_000
@@ -39,6 +40,7 @@ _HINTS = {
 }
 _PLAIN = frozenset(("tag:yaml.org,2002:str", "tag:yaml.org,2002:seq", "tag:yaml.org,2002:map"))
 _CONFLICT = re.compile(r"^(<{7}|={7}|>{7})(?= |$)", re.MULTILINE)
+_KEYED = re.compile(r" *[A-Za-z_][\w.]*:( |$)")
 _NAN = frozenset((".nan", ".NaN", ".NAN"))
 
 
@@ -151,10 +153,7 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        column = error.start - (content.rfind(b"\n", 0, error.start) + 1) + 1
-        place = Place(file, line, column, line, column + 1)
-        return None, [Diagnostic("not-utf8", "the file is not UTF-8 text", place, "save it as UTF-8")]
+        return None, [_not_utf8(file, content, error.start)]
     loader = _Loader(text)
     try:
         node = loader.get_single_node()
@@ -166,6 +165,8 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
         return None, [Diagnostic("empty-file", "the file is empty", Place(file), "write its content, or delete it")]
     reader = _Reader(file)
     data = reader.read(node, (), None, 0)
+    if "<<<<<<< " in text and (conflict := merge_conflict(file, text)):
+        reader.diagnostics.append(conflict)
     return Document(file, data, reader.spans, text), reader.diagnostics
 
 
@@ -261,6 +262,27 @@ def merge_conflict(file: str, text: str) -> Diagnostic | None:
     return Diagnostic("merge-conflict", "both sides of a merge stand in the file", place, hint)
 
 
+def _too_deep(lines: list[str], index: int) -> bool:
+    """Whether a line that is a key stands further in than the key with a value above it."""
+    above = next((line for line in reversed(lines[:index]) if line.strip()), "")
+    here = lines[index] if index < len(lines) else ""
+    deeper = len(here) - len(here.lstrip()) > len(above) - len(above.lstrip())
+    return deeper and bool(_KEYED.match(here)) and bool(_KEYED.match(above))
+
+
+def _not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
+    """What to say of bytes that are no UTF-8 from there on."""
+    line = content.count(b"\n", 0, at) + 1
+    column = len(content[content.rfind(b"\n", 0, at) + 1 : at].decode("utf-8", "replace")) + 1
+    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        message = "the file is UTF-16 text, and should be UTF-8"
+    else:
+        message = (
+            f"the file is not UTF-8 text: `{content[at : at + 1].decode('latin-1')}` may be from Windows or Latin-1"
+        )
+    return Diagnostic("not-utf8", message, Place(file, line, column, line, column + 1), "save it as UTF-8")
+
+
 def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     if isinstance(error, yaml.reader.ReaderError):
         line = text.count("\n", 0, error.position) + 1
@@ -284,7 +306,12 @@ def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         column = source.index("\t") + 1
         place = Place(file, mark.line + 1, column, mark.line + 1, column + 1)
         return Diagnostic("tab", "a tab stands in the indentation", place, "YAML is indented with spaces: use two")
+    if slip := slip_near(lines, mark.line):
+        row, column, length, message, hint = slip
+        return Diagnostic("yaml-syntax", message, Place(file, row, column, row, column + length), hint)
     problem = " ".join(str(getattr(error, "problem", error)).split())
     detail = f"{problem} {context}" if context else problem
     hint = next((words for sign, words in _HINTS.items() if sign in problem), _LOOK)
+    if "mapping values" in problem and _too_deep(lines, mark.line):
+        hint = "this line stands further in than the one above, which has its value already: align the two"
     return Diagnostic("yaml-syntax", f"this is not YAML: {detail}", place, hint)

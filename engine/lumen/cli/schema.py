@@ -1,0 +1,90 @@
+"""`lumen schema`: the JSON Schemas of the YAML files, and the settings that make an editor use them."""
+
+import argparse
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from lumen.cli.writing import write_result
+from lumen.errors import UsageError
+from lumen.loading.packaged import MAIN_FILE, find_project, schema_folder
+from lumen.loading.schema import KINDS, load_schema
+
+FILES: Mapping[str, str] = {
+    "lumen": MAIN_FILE,
+    "behavior": "behaviors/*.yaml",
+    "story": "behaviors/stories/*.yaml",
+    "controller": "fuzzy/*.yaml",
+    "motion": "motions/*.yaml",
+    "body": "models/*.yaml",
+    "message": "schemas/messages/*.schema.json",
+}
+"""Which files of a project are of which kind."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("kind", nargs="?", choices=KINDS, metavar="KIND", help=f"one of {', '.join(KINDS)}; default: list them")
+    add("--vscode", action="store_true", help="print the settings of VS Code that give each file its schema")
+    add("-o", "--output", metavar="FILE", type=Path, help="write it there; settings that stand there already stay")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0. Raises UsageError where something can't be written, or both a kind and settings are asked for."""
+    if options.vscode and options.kind:
+        raise UsageError("--vscode is for all kinds: leave out the kind")
+    if options.vscode:
+        there = _settings(options.output) if options.output else {}
+        write_result(_json(merged(there, settings(find_project()))), options.output, folders=True)
+    elif options.kind:
+        write_result(_json(load_schema(options.kind)), options.output)
+    else:
+        wide = max(map(len, KINDS))
+        lines = [f"{kind:{wide}}  {FILES.get(kind, ''):32} {load_schema(kind)['title']}" for kind in KINDS]
+        write_result("\n".join(lines) + "\n", options.output)
+    return 0
+
+
+def settings(root: Path) -> dict[str, Any]:
+    """The settings for the project in that folder: its own schemas where it has them, else those of this Lumen."""
+    found: dict[str, dict[str, Any]] = {"yaml.schemas": {}}
+    for kind, files in FILES.items():
+        own = f"schemas/{kind}.schema.json"
+        schema = f"./{own}" if (root / own).is_file() else (schema_folder() / f"{kind}.schema.json").as_uri()
+        if kind == "message":
+            found["json.schemas"] = [{"fileMatch": [f"/{files}"], "url": schema}]  # type: ignore[assignment]
+        else:
+            found["yaml.schemas"][schema] = [files]
+    return found
+
+
+def merged(there: dict[str, Any], ours: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings with ours among them; of what is about other files nothing is lost."""
+    result = dict(there)
+    for key, value in ours.items():
+        old = result.get(key)
+        if isinstance(value, dict):
+            result[key] = {**(old if isinstance(old, dict) else {}), **value}
+        else:
+            kept = [row for row in (old if isinstance(old, list) else []) if row not in value]
+            result[key] = [*kept, *value]
+    return result
+
+
+def _settings(file: Path) -> dict[str, Any]:
+    """The settings in a file, none where there is none. Raises UsageError where they can't be read."""
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or f"it is not plain JSON ({error})"
+        raise UsageError(f"can't add to {file}: {reason}; leave out -o and copy what is printed") from None
+    if not isinstance(found, dict):
+        raise UsageError(f"can't add to {file}: it holds no settings")
+    return found
+
+
+def _json(data: Any) -> str:
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

@@ -1,0 +1,102 @@
+"""The language services' values in the protocol's words."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from lsprotocol import types as lsp
+from pygls.workspace import PositionCodec
+
+from lumen.language.diagnostics import Diagnostic, Place, Severity
+from lumen.lsp.analysis import Analysis
+from lumen.lsp.completion import Item
+from lumen.lsp.ranges import Ranges
+from lumen.lsp.renaming import Renaming
+from lumen.lsp.symbols import Symbol
+from lumen.lsp.words import Kind
+from lumen.rules.fixes import Edit, Sheet
+
+SEVERITIES = {
+    Severity.ERROR: lsp.DiagnosticSeverity.Error,
+    Severity.WARNING: lsp.DiagnosticSeverity.Warning,
+    Severity.INFO: lsp.DiagnosticSeverity.Information,
+}
+_ICONS = {
+    Kind.STATE: lsp.SymbolKind.Class, Kind.CONTEXT: lsp.SymbolKind.Variable, Kind.EVENT: lsp.SymbolKind.Event,
+    Kind.ROUTE: lsp.SymbolKind.Interface, Kind.POSE: lsp.SymbolKind.Struct, Kind.POSTURE: lsp.SymbolKind.Struct,
+    Kind.JOINT: lsp.SymbolKind.Field, Kind.PHRASE: lsp.SymbolKind.String, Kind.ANSWERS: lsp.SymbolKind.Array,
+}  # fmt: skip
+
+
+class Answers:
+    """Words things for one client: `codec` knows how it counts columns."""
+
+    def __init__(self, analysis: Analysis, codec: PositionCodec) -> None:
+        self.analysis, self._codec = analysis, codec
+        self._ranges: dict[str, Ranges] = {}
+
+    def ranges(self, file: str) -> Ranges:
+        if file not in self._ranges:
+            self._ranges[file] = Ranges(Sheet(file, self.analysis.files.get(file, b"")), self._codec)
+        return self._ranges[file]
+
+    def uri(self, file: str) -> str:
+        return (Path(self.analysis.root) / file).absolute().as_uri()
+
+    def location(self, place: Place) -> lsp.Location:
+        return lsp.Location(self.uri(place.file), self.ranges(place.file).range(place))
+
+    def diagnostic(self, found: Diagnostic) -> lsp.Diagnostic:
+        """A finding with its hint, its rule's code, and the places that explain it."""
+        related = [lsp.DiagnosticRelatedInformation(self.location(r.place), r.message) for r in found.related]
+        return lsp.Diagnostic(
+            self.ranges(found.place.file).range(found.place),
+            f"{found.message}: {found.hint}" if found.hint else found.message,
+            SEVERITIES[found.severity],
+            code=found.code,
+            source="lumen",
+            related_information=related,
+        )
+
+    def item(self, item: Item, file: str, line: int, column: int, order: int) -> lsp.CompletionItem:
+        """A proposal that replaces what is written of it already."""
+        place = Place(file, line, column - item.replaces, line, column)
+        icon = lsp.CompletionItemKind.Property if item.detail == "key" else lsp.CompletionItemKind.Reference
+        return lsp.CompletionItem(
+            item.text.rstrip(" :") or item.text,
+            kind=icon,
+            detail=item.detail,
+            documentation=item.documentation or None,
+            sort_text=f"{order:05}",
+            filter_text=item.text,
+            text_edit=lsp.TextEdit(self.ranges(file).range(place), item.text),
+        )
+
+    def symbol(self, symbol: Symbol) -> lsp.DocumentSymbol:
+        ranges = self.ranges(symbol.place.file)
+        return lsp.DocumentSymbol(
+            symbol.name,
+            _ICONS.get(symbol.kind, lsp.SymbolKind.Key),
+            ranges.range(symbol.whole),
+            ranges.range(symbol.place),
+            detail=str(symbol.kind),
+            children=[self.symbol(child) for child in symbol.children],
+        )
+
+    def edits(self, edits: Iterable[Edit]) -> list[lsp.TextDocumentEdit | lsp.RenameFile]:
+        """The edits, gathered by file."""
+        gathered: dict[str, list[lsp.TextEdit | lsp.AnnotatedTextEdit | lsp.SnippetTextEdit]] = {}
+        for edit in edits:
+            change = lsp.TextEdit(self.ranges(edit.place.file).range(edit.place), edit.text)
+            gathered.setdefault(edit.place.file, []).append(change)
+        return [
+            lsp.TextDocumentEdit(lsp.OptionalVersionedTextDocumentIdentifier(self.uri(file)), changes)
+            for file, changes in gathered.items()
+        ]
+
+    def renaming(self, renaming: Renaming) -> lsp.WorkspaceEdit:
+        """The edits first, in the files as they are called now; then the file gets its new name."""
+        changes = self.edits(renaming.edits)
+        if renaming.moved:
+            old, new = renaming.moved
+            changes.append(lsp.RenameFile(self.uri(old), self.uri(new)))
+        return lsp.WorkspaceEdit(document_changes=list(changes))

@@ -1,0 +1,204 @@
+"""What could stand at a cursor: names of the kind that belongs there, else the keys and values of the schema."""
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.language.diagnostics import Path
+from lumen.language.events import ROBOT_EVENTS
+from lumen.lsp.analysis import Analysis
+from lumen.lsp.cursor import MARK, Cursor, cursor
+from lumen.lsp.grammar import key_kind, kind_of, value_kind
+from lumen.lsp.index import Index, stem
+from lumen.lsp.schemas import keys_at, values_at
+from lumen.lsp.words import Kind
+from lumen.rules.events import FAMILIES, hears
+
+_CALL = re.compile(r"\b(heard|lookup|In)\([^()]*?(?:\([^()]*\)[^()]*?)*['\"](\w*)$")
+_NAMED = {"heard": Kind.PHRASE, "lookup": Kind.ANSWERS, "In": Kind.STATE}
+_FIELD = re.compile(r"\b(context|event\.data|event|state)\.(\w*)$")
+
+
+class Item(NamedTuple):
+    """A proposal: what it inserts in place of the last `replaces` characters, and what it is."""
+
+    text: str
+    detail: str
+    replaces: int
+    documentation: str = ""
+
+
+def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item]:
+    """The proposals for a line and column, from 1; the nearest first."""
+    here = cursor(file, analysis.text(file), line, column)
+    kind = kind_of(file)
+    if here is None or not kind:
+        return []
+    around = Analysis(analysis.root, analysis.files)
+    around.__dict__["documents"] = {**analysis.documents, file: here.document}
+    around.__dict__["draft"] = analysis.draft
+    return list(_Completion(around, kind, file, here).items())
+
+
+class _Completion:
+    def __init__(self, analysis: Analysis, kind: str, file: str, here: Cursor) -> None:
+        self.analysis, self.kind, self.file, self.here = analysis, kind, file, here
+        self.index: Index = analysis.index
+        self.scope = self.index.behavior(file)
+
+    def items(self) -> Iterator[Item]:
+        path, here = self.here.path, self.here
+        if here.key:
+            named = key_kind(self.kind, path)
+            yield from self.keys(path[:-1]) if named is None else self.names(named, path, key=True)
+            return
+        named = value_kind(self.kind, path)
+        match named:
+            case Kind.EXPRESSION:
+                yield from self.expression(here.before, path)
+            case Kind.TEMPLATE:
+                opened = here.before.rpartition("{{")[2] if "{{" in here.before else "}}"
+                if "}}" not in opened:
+                    yield from self.expression(opened, path)
+            case Kind.FIELD:
+                yield from self.field(here.before)
+            case None:
+                pass
+            case _:
+                yield from self.names(named, path)
+        yield from (Item(value, "value", len(here.word)) for value in values_at(self.kind, path))
+        if not here.before and named is None:
+            yield from self.keys(path)
+
+    def keys(self, path: Path) -> Iterator[Item]:
+        there = self.value(path)
+        taken = there if isinstance(there, dict) else {}
+        for key, schema in keys_at(self.kind, path).items():
+            if key not in taken:
+                yield Item(f"{key}: ", "key", len(self.here.word), str(schema.get("description", "")))
+
+    def names(self, kind: Kind, path: Path, *, key: bool = False) -> Iterator[Item]:
+        wide, end = len(self.here.word), ": " if key else ""
+        for name, detail in self.candidates(kind, path, key=key):
+            if MARK not in name:
+                written = f'"{name}"' if name.startswith("#") and not self.quoted() else name
+                yield Item(written + end, detail or str(kind), wide)
+
+    def quoted(self) -> bool:
+        """Whether the cursor stands in quotes, where a `#` begins no comment."""
+        return self.here.quote != ""
+
+    def candidates(self, kind: Kind, path: Path, *, key: bool) -> Iterator[tuple[str, str]]:
+        match kind:
+            case Kind.STATE:
+                yield from self.states(path) if not key else ()
+            case Kind.EVENT:
+                yield from self.events(waits=key)
+            case Kind.FIELD:
+                yield from self.body(path)
+            case Kind.LANGUAGE if key and path[-2:-1] == ("say",):
+                yield from ((name, "") for name in [*self.index.names(kind), "any"])
+            case _:
+                scope = self.scope if kind in (Kind.CONTEXT, Kind.PHRASE, Kind.ANSWERS) else ""
+                scope = stem(self.file) if kind is Kind.POSE else scope
+                yield from ((name, "") for name in self.index.names(kind, scope))
+
+    def states(self, path: Path) -> Iterator[tuple[str, str]]:
+        """What a target may say: states beside this one, children, and all others by their ids."""
+        tree = self.index.outlines.get(self.scope)
+        if tree is None:
+            return
+        if self.kind == "story":
+            yield from ((entry.name, entry.path) for entry in tree.entries.values() if entry.path)
+            return
+        entry = tree.entries.get(".".join(str(step) for step in _steps(path)))
+        if entry is None:
+            return
+        if path[-1] == "initial" or (len(path) > 1 and path[-2] == "initial"):
+            yield from ((key, child.path) for key, child in entry.children.items())
+            return
+        if entry.parent:
+            yield from ((key, other.path) for key, other in entry.parent.children.items())
+        yield from ((f".{key}", child.path) for key, child in entry.children.items())
+        yield from ((f"#{other.name}", other.path) for other in tree.entries.values() if other.parent)
+
+    def events(self, *, waits: bool) -> Iterator[tuple[str, str]]:
+        """Events that may come, where one is waited for; those waited for, where one is raised."""
+        words = [w for w in self.index.words if w.kind is Kind.EVENT]
+        names = dict.fromkeys(w.name for w in words if w.defines or not waits or w.place.file == self.file)
+        yield from ((name, "") for name in names)
+        if waits:
+            yield from ((name, "the robot's") for name in ROBOT_EVENTS if name not in names)
+            yield from ((f.removesuffix(".") + ".*", "the engine's") for f in FAMILIES)
+
+    def field(self, before: str) -> Iterator[Item]:
+        route, dot, part = before.partition(".")
+        if dot:
+            yield from (Item(name, "field", len(part)) for name in self.fields(self.schema(route)))
+        else:
+            yield from (Item(name, "route", len(route)) for name in self.index.names(Kind.ROUTE))
+
+    def body(self, path: Path) -> Iterator[tuple[str, str]]:
+        around = self.value(path[:-2])
+        route = around.get("route") if isinstance(around, dict) else None
+        yield from ((name, "field") for name in self.fields(self.schema(str(route))))
+
+    def expression(self, before: str, path: Path) -> Iterator[Item]:
+        if call := _CALL.search(before):
+            kind = _NAMED[call[1]]
+            names = self.index.names(kind, self.scope)
+            if kind is Kind.STATE and (tree := self.index.outlines.get(self.scope)):
+                names = [entry.name for entry in tree.entries.values() if entry.parent]
+            yield from (Item(name, str(kind), len(call[2])) for name in names)
+        elif found := _FIELD.search(before):
+            named = {
+                "context": self.index.names(Kind.CONTEXT, self.scope),
+                "event": ["name", "data"],
+                "event.data": self.event_fields(path),
+                "state": [],
+            }
+            yield from (Item(name, f"of {found[1]}", len(found[2])) for name in named[found[1]])
+        else:
+            part = re.search(r"\w*$", before)
+            wide = len(part[0]) if part else 0
+            yield from (Item(name, "", wide) for name in ("context", "event", "state"))
+            yield from (Item(f"{name}(", "function", wide) for name in FUNCTIONS)
+
+    def event_fields(self, path: Path) -> list[str]:
+        """The fields of the events that can arrive where an expression stands."""
+        event = next((str(path[i + 1]) for i in range(len(path) - 2, -1, -1) if path[i] == "on"), "")
+        found = (schema for name, schema in self.declared() if event and hears(event, name))
+        return list(dict.fromkeys(name for schema in found for name in self.fields(schema)))
+
+    def declared(self) -> Iterator[tuple[str, Any]]:
+        """The events of routes, of the robot and of the file, each with the schema of its data."""
+        settings, own = self.analysis.draft.settings, self.here.document.data
+        for route in settings.routes.values() if settings else ():
+            yield route.event, self.analysis.draft.messages.get(route.schema)
+        yield from ROBOT_EVENTS.items()
+        events = own.get("events") if isinstance(own, dict) else None
+        yield from events.items() if isinstance(events, dict) else ()
+
+    def schema(self, route: str) -> Any:
+        settings = self.analysis.draft.settings
+        known = settings.routes.get(route) if settings else None
+        return self.analysis.draft.messages.get(known.schema) if known else None
+
+    def fields(self, schema: Any) -> list[str]:
+        properties = schema.get("properties") if isinstance(schema, Mapping) else None
+        return list(properties) if isinstance(properties, Mapping) else []
+
+    def value(self, path: Path) -> Any:
+        node: Any = self.here.document.data
+        for step in path:
+            node = node[step]
+        return node
+
+
+def _steps(path: Path) -> Iterator[str]:
+    """The keys of the states that a node lies in."""
+    for i in range(0, len(path) - 1, 2):
+        if path[i] != "states":
+            return
+        yield str(path[i + 1])

@@ -1,0 +1,84 @@
+"""Where in a file a cursor is while its line is still being written."""
+
+import re
+from typing import NamedTuple
+
+from lumen.language.diagnostics import Path
+from lumen.loading.source import Document, parse
+
+MARK = "Here0Stands1The2Cursor"
+_BEFORE = re.compile(r"[^\s,\[\]{}:'\"()]*$")
+_PAIRS = {"[": "]", "{": "}"}
+
+
+class Cursor(NamedTuple):
+    """The node that is being written: its path, whether its key or its value, and what of its text stands before.
+
+    `word` is what a completion replaces, `quote` the quote before it; `document` the file with the cursor's mark in it.
+    """
+
+    path: Path
+    key: bool
+    before: str
+    word: str
+    quote: str
+    document: Document
+
+
+def cursor(file: str, text: str, line: int, column: int) -> Cursor | None:
+    """The node at a line and column, from 1, of a file that need not be whole; None where it can't be told."""
+    lines = text.split("\n")
+    if line > len(lines):
+        return None
+    head, tail = lines[line - 1][: column - 1], lines[line - 1][column - 1 :]
+    found = _BEFORE.search(head)
+    word = found[0] if found else ""
+    begun = head[: -len(word)] if word.startswith(("#", "*", "&", "@", "`", "%")) else head  # what YAML reads otherwise
+    for middle in [*_attempts(head, tail), *(_attempts(begun, tail) if begun != head else ())]:
+        content = "\n".join([*lines[: line - 1], middle, *lines[line:]])
+        document, _ = parse(file, content.encode("utf-8", "surrogatepass"))
+        if document and (node := _marked(document)):
+            path, key, value = node
+            quote = head[: len(head) - len(word)][-1:]
+            return Cursor(path, key, value.partition(MARK)[0], word, quote if quote in "'\"" else "", document)
+    return None
+
+
+def _attempts(head: str, tail: str) -> list[str]:
+    """Lines that could be whole, the likeliest first."""
+    rest = head.rstrip("\r")
+    closed = _closed(rest)
+    whole = [f"{head}{MARK}{tail}"]
+    if not tail.strip():
+        fresh = not rest.strip(" -") or re.fullmatch(r"[\s-]*[\w.*]*", rest)
+        tries = [f"{head}{MARK}{closed}", f"{head}{MARK}: {closed}"]
+        return tries[::-1] + whole if fresh else [*tries, *whole]
+    return [*whole, f"{head}{MARK}{closed}", f"{head}{MARK}: {closed}", f"{head}{MARK}: x, {tail}"]
+
+
+def _closed(head: str) -> str:
+    """The quotes and brackets that a line leaves open, closed."""
+    stack, quote = [], ""
+    for character in head:
+        if quote:
+            quote = "" if character == quote else quote
+        elif character in "'\"":
+            quote = character
+        elif character in _PAIRS:
+            stack.append(_PAIRS[character])
+        elif stack and character == stack[-1]:
+            stack.pop()
+    return quote + "".join(reversed(stack))
+
+
+def _marked(document: Document) -> tuple[Path, bool, str] | None:
+    """The path of the key or of the text that holds the mark."""
+    for path in document.spans:
+        if path and isinstance(path[-1], str) and MARK in path[-1]:
+            return path, True, path[-1]
+        value = document.data
+        for step in path:
+            value = value[step]
+        if isinstance(value, str) and MARK in value:
+            return path, False, value
+    return None

@@ -1,0 +1,111 @@
+"""What there is to know about the word under a cursor, in Markdown."""
+
+from math import degrees
+from pathlib import PurePosixPath
+
+from lumen.language.diagnostics import Diagnostic, Path
+from lumen.loading.draft import Draft
+from lumen.lsp.analysis import Analysis
+from lumen.lsp.grammar import kind_of
+from lumen.lsp.schemas import description_at
+from lumen.lsp.words import Kind, Word, covers
+from lumen.rules.codes import CODES
+from lumen.rules.pages import page
+
+
+def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
+    """What to show for a line and column, from 1; empty where there is nothing to say."""
+    parts = []
+    word = analysis.index.at(file, line, column)
+    if word:
+        parts.append(describe(analysis, word))
+    elif said := _described(analysis, file, line, column):
+        parts.append(said)
+    parts += [explain(d) for d in analysis.diagnostics if d.place.file == file and covers(d.place, line, column)]
+    return "\n\n---\n\n".join(filter(None, parts))
+
+
+def describe(analysis: Analysis, word: Word) -> str:
+    """What a word names: a state's path, a motion's duration, a joint's limits."""
+    title = f"{word.kind} `{word.name}`"
+    facts = _facts(analysis, word)
+    uses = sum(1 for other in analysis.index.of(word) if not other.defines and other.text)
+    return "\n\n".join(filter(None, [f"**{title}**", facts, f"used {uses} times" if uses > 1 else ""]))
+
+
+def explain(diagnostic: Diagnostic) -> str:
+    """The page of a finding's rule: what it means and why it matters."""
+    code = CODES.get(diagnostic.code)
+    if code is None:
+        return ""
+    try:
+        rule = page(diagnostic.code)
+    except OSError:
+        return f"**{diagnostic.code}**: {code.summary}"
+    return f"**{diagnostic.code}**: {rule.what}\n\n{rule.why}"
+
+
+def _facts(analysis: Analysis, word: Word) -> str:
+    draft = analysis.draft
+    match word.kind:
+        case Kind.STATE:
+            return _state(draft, word)
+        case Kind.MOTION:
+            motion = draft.motions.get(word.name)
+            moves = f"{motion.duration:g} s, moves {len(motion.tracks)} joints" if motion else ""
+            return f"{moves}{f', begins in {motion.start}' if motion and motion.start else ''}"
+        case Kind.JOINT:
+            return _joint(draft, word.name)
+        case Kind.CONTEXT:
+            machine = draft.behaviors.get(word.scope)
+            known = machine is not None and word.name in machine.context
+            return f"begins with `{machine.context[word.name]!r}`" if machine and known else ""
+        case Kind.ROUTE:
+            route = draft.settings.routes.get(word.name) if draft.settings else None
+            event = f", becomes the event `{route.event}`" if route and route.event else ""
+            return f"`{route.key}` ({route.direction}){event}" if route else ""
+        case Kind.PHRASE:
+            machine = draft.behaviors.get(word.scope)
+            rows = machine.phrases.get(word.name, {}) if machine else {}
+            return "\n".join(f"- {language or 'any'}: {', '.join(said)}" for language, said in rows.items())
+        case Kind.EVENT:
+            routes = draft.settings.routes.values() if draft.settings else ()
+            return "\n".join(f"from the route `{r.name}` (`{r.key}`)" for r in routes if r.event == word.name)
+        case Kind.MESSAGE:
+            schema = draft.messages.get(word.name, {})
+            return str(schema.get("description", schema.get("title", "")))
+    return ""
+
+
+def _state(draft: Draft, word: Word) -> str:
+    machine = draft.behaviors.get(word.scope)
+    state = machine.states.get(word.name) if machine else None
+    if state is None:
+        return ""
+    inner = f", with {len(state.children)} states" if state.children else ""
+    alias = f", id `{state.alias}`" if state.alias and state.alias != state.path else ""
+    return f"{state.kind} state at `{state.path}`{alias}{inner}"
+
+
+def _joint(draft: Draft, name: str) -> str:
+    joint = draft.body.joints.get(name) if draft.body else None
+    if joint is None or draft.body is None:
+        return ""
+    if name in draft.body.hands:
+        return "a hand: 0 is closed, 1 open"
+    low, high = degrees(joint.minimum), degrees(joint.maximum)
+    speed = f", at most {degrees(joint.speed):.0f} deg/s" if joint.speed < 1e3 else ""
+    return f"{low:.1f} to {high:.1f} deg ({joint.minimum:.3f} to {joint.maximum:.3f} rad){speed}"
+
+
+def _described(analysis: Analysis, file: str, line: int, column: int) -> str:
+    """What the schema says of the key at a place."""
+    document = analysis.documents.get(file)
+    if document is None or PurePosixPath(file).suffix != ".yaml":
+        return ""
+    found: Path = ()
+    for path, span in document.spans.items():
+        if span.key and covers(span.key, line, column):
+            found = path
+    text = description_at(kind_of(file), found) if found else ""
+    return f"`{found[-1]}`: {text}" if text else ""

@@ -1,0 +1,191 @@
+"""Every name in a project's files, and what each means."""
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import PurePosixPath
+from typing import Any
+
+from lumen.language.diagnostics import Path, Place
+from lumen.loading.messages import ENDING
+from lumen.loading.outline import Entry, Outline
+from lumen.loading.source import Document, Report
+from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
+from lumen.lsp.locating import Lines, Part, in_expression, in_template
+from lumen.lsp.words import FOLDERS, SCOPED, Kind, Word, covers
+
+
+class Index:
+    """The words of a project, from its documents by file; files that are no YAML have none.
+
+    `files` are the names of all files, for those that can't be read are there all the same.
+    """
+
+    def __init__(self, documents: Mapping[str, Document], files: frozenset[str], main: str) -> None:
+        self.documents, self.files, self._main = documents, files, main
+        self.outlines = {stem(file): tree for file, d in documents.items() if (tree := _outline(file, d))}
+
+    @cached_property
+    def words(self) -> tuple[Word, ...]:
+        """All of them, in the order of the files."""
+        found = [word for document in self.documents.values() for word in _Reader(self, document).words()]
+        for file in sorted(filter(kind_of, self.files)):
+            folder = str(PurePosixPath(file).parent)
+            found += [Word(kind, "", stem(file), "", Place(file), True) for kind, f in FOLDERS.items() if f == folder]
+        return tuple(found)
+
+    def at(self, file: str, line: int, column: int) -> Word | None:
+        """The word at that line and column, from 1; the shortest where several stand there."""
+        here = [w for w in self.words if w.place.file == file and w.text and covers(w.place, line, column)]
+        return min(here, key=lambda w: len(w.text), default=None)
+
+    def of(self, word: Word) -> list[Word]:
+        """All words of the same thing."""
+        return [other for other in self.words if other.thing == word.thing]
+
+    def names(self, kind: Kind, scope: str = "") -> list[str]:
+        """The names of all things of a kind, in the order of the files."""
+        return list(dict.fromkeys(w.name for w in self.words if w.kind is kind and w.scope == scope and w.defines))
+
+    def behavior(self, file: str) -> str:
+        """The behaviour that the names in a file are about: its own, or the one that a story plays."""
+        if kind_of(file) != "story":
+            return stem(file)
+        document = self.documents.get(file)
+        named = document.data.get("behavior") if document and isinstance(document.data, dict) else None
+        return named if isinstance(named, str) else self._main
+
+
+class _Reader:
+    """Finds the words of one document."""
+
+    def __init__(self, index: Index, document: Document) -> None:
+        self.document, self.kind = document, kind_of(document.file)
+        self.lines = Lines(document)
+        self.scope = index.behavior(document.file)
+        self.outline = index.outlines.get(self.scope)
+
+    def words(self) -> Iterator[Word]:
+        for path, span in self.document.spans.items():
+            if span.key and isinstance(path[-1], str) and (kind := key_kind(self.kind, path)):
+                yield from self.named(kind, path, key=True)
+            value = _value(self.document.data, path)
+            if isinstance(value, str) and value and (kind := value_kind(self.kind, path)):
+                yield from self.valued(kind, path, value)
+            elif isinstance(value, str) and path[-1:] == ("id",) and path[-3:-2] == ("states",):
+                yield from self.alias(path, value)
+
+    def named(self, kind: Kind, path: Path, *, key: bool = False) -> Iterator[Word]:
+        """The word that a whole key or value is."""
+        place = self.lines.scalar(path, key=key)
+        text = str(path[-1]) if key else str(_value(self.document.data, path))
+        if place is None or kind is Kind.FIELD:
+            return
+        name = _state_at(path) if kind is Kind.STATE else text
+        yield self.word(kind, name, text, place, defining=defines(self.kind, path, kind))
+
+    def valued(self, kind: Kind, path: Path, value: str) -> Iterator[Word]:
+        match kind:
+            case Kind.EXPRESSION:
+                yield from self.parts(path, value, in_expression(value))
+            case Kind.TEMPLATE:
+                yield from self.parts(path, value, in_template(value))
+            case Kind.STATE:
+                yield from self.target(path, value)
+            case Kind.FIELD:
+                route = value.partition(".")[0]
+                yield from self.parts(path, value, iter([Part(Kind.ROUTE, route, 0)]))
+            case _:
+                yield from self.named(kind, path)
+
+    def parts(self, path: Path, value: str, parts: Iterator[Part]) -> Iterator[Word]:
+        place = self.document.place(path)
+        for part in parts:
+            if part.kind is Kind.STATE:
+                yield from self.segments(path, value, part.text, part.offset, self._named_state)
+            elif here := self.lines.part(place, value, part.offset, len(part.text)):
+                yield self.word(part.kind, part.text, part.text, here)
+
+    def target(self, path: Path, value: str) -> Iterator[Word]:
+        """A target, or a state as a story calls it: each step of a dotted one is a state's name."""
+        if self.kind == "story":
+            yield from self.segments(path, value, value, 0, self._named_state)
+        elif self.outline:
+            source = self.outline.entries.get(_state_at(path))
+            written = f".{value}" if path[-1] == "initial" and value[:1] not in "#." else value
+            shift = len(value) - len(written)
+            begin = 1 if written[:1] in "#." else 0
+            outline = self.outline
+            if source:
+                found = lambda text: outline.resolve(source, written[:begin] + text, path)  # noqa: E731
+                yield from self.segments(path, value, written[begin:], begin + shift, found)
+
+    def segments(self, path: Path, value: str, dotted: str, offset: int, find: Any) -> Iterator[Word]:
+        """A word for each step of a dotted name that leads to a state; an id may hold dots itself."""
+        place, done = self.document.place(path), 0
+        steps = dotted.split(".")
+        for i in range(1, len(steps) + 1):
+            entry: Entry | None = find(".".join(steps[:i]))
+            if entry is None or not entry.path:
+                continue
+            text = ".".join(steps[done:i])
+            at = offset + len(".".join(steps[:done])) + (done > 0)
+            done = i
+            if here := self.lines.part(place, value, at, len(text)):
+                yield self.word(Kind.STATE, entry.path, text, here)
+
+    def _named_state(self, name: str) -> Entry | None:
+        if self.outline is None:
+            return None
+        return self.outline.entries.get(name) or self.outline.aliases.get(name)
+
+    def alias(self, path: Path, value: str) -> Iterator[Word]:
+        if place := self.lines.scalar(path):
+            yield self.word(Kind.STATE, _state_at(path), value, place)
+
+    def word(self, kind: Kind, name: str, text: str, place: Place, *, defining: bool = False) -> Word:
+        return Word(kind, self.scope if kind in SCOPED else "", name, text, place, defining)
+
+
+def stem(file: str) -> str:
+    """What a file's thing is called."""
+    name = PurePosixPath(file).name
+    return name.removesuffix(ENDING) if name.endswith(ENDING) else PurePosixPath(file).stem
+
+
+def _state_at(path: Path) -> str:
+    """The path of the innermost state around a node, or of the state whose key it is."""
+    steps, at = [], 0
+    while at + 1 < len(path) and path[at] == "states":
+        steps.append(str(path[at + 1]))
+        at += 2
+    return ".".join(steps)
+
+
+def _outline(file: str, document: Document) -> Outline | None:
+    """The states of a behaviour that may be broken anywhere, None where they can't be told."""
+    if kind_of(file) != "behavior":
+        return None
+    try:
+        return Outline(_states(document.data), stem(file), Report(document))
+    except (AttributeError, TypeError, ValueError, RecursionError):
+        return None
+
+
+def _states(data: Any) -> dict[str, Any]:
+    """What of a state the outline reads, where that has the form it should."""
+    known = data if isinstance(data, dict) else {}
+    children, name, kind = known.get("states"), known.get("id"), known.get("type")
+    state: dict[str, Any] = {}
+    if isinstance(children, dict):
+        state["states"] = {key: _states(child) for key, child in children.items()}
+    if isinstance(name, str):
+        state["id"] = name
+    if kind in ("atomic", "compound", "parallel", "final", "history"):
+        state["type"] = kind
+    return state
+
+
+def _value(data: Any, path: Path) -> Any:
+    for step in path:
+        data = data[step]
+    return data

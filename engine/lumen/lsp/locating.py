@@ -1,0 +1,104 @@
+"""Words inside texts: the exact place of a part of a scalar, however it is quoted, folded or escaped."""
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions.tokens import Token, tokenize
+from lumen.language.diagnostics import Path, Place
+from lumen.loading.source import Document
+from lumen.lsp.words import Kind
+
+_TEMPLATE = re.compile(r"\{\{(.*?)\}\}", re.DOTALL)
+_NAMED = {"heard": Kind.PHRASE, "lookup": Kind.ANSWERS, "In": Kind.STATE}
+
+
+class Part(NamedTuple):
+    """A name within a text, with its offset in it."""
+
+    kind: Kind
+    text: str
+    offset: int
+
+
+class Lines:
+    """The text of a document by offsets and by lines."""
+
+    def __init__(self, document: Document) -> None:
+        self.document, self.text = document, document.text
+        self._starts = [0]
+        for line in self.text.splitlines(keepends=True):
+            self._starts.append(self._starts[-1] + len(line))
+
+    def offset(self, line: int, column: int) -> int:
+        """Where in the text a line and column, from 1, are; the end where they lie beyond it."""
+        start = self._starts[min(line, len(self._starts)) - 1]
+        return min(start + column - 1, len(self.text))
+
+    def part(self, place: Place, source: str, offset: int, length: int) -> Place | None:
+        """The place of some characters of a scalar's value, None where the file has them in no such form."""
+        start, end = self.offset(place.line, place.column), self.offset(place.end_line, place.end_column)
+        raw, word = self.text[start:end], source[offset : offset + length]
+        at = raw.find(source)
+        if at >= 0:
+            return self.between(start + at + offset, length)
+        pattern = re.compile(rf"(?<!\w){re.escape(word)}(?!\w)")
+        before = sum(1 for found in pattern.finditer(source) if found.start() < offset)
+        places = [found.start() for found in pattern.finditer(raw)]
+        return self.between(start + places[before], length) if word and before < len(places) else None
+
+    def between(self, start: int, length: int) -> Place:
+        """The place of so many characters of one line."""
+        line = min(bisect_right(self._starts, start), len(self._starts) - 1) - 1 if start else 0
+        column = start - self._starts[line] + 1
+        return Place(self.document.file, line + 1, column, line + 1, column + length)
+
+    def scalar(self, path: Path, *, key: bool = False) -> Place | None:
+        """The place of a key or of a text, without its quotes."""
+        place = self.document.place(path, key=key)
+        value = path[-1] if key else self._value(path)
+        return self.part(place, str(value), 0, len(str(value)))
+
+    def _value(self, path: Path) -> object:
+        node = self.document.data
+        for step in path:
+            node = node[step]
+        return node
+
+
+def in_expression(source: str, base: int = 0) -> Iterator[Part]:
+    """The context keys, phrases, tables and states that an expression names; nothing where it can't be read."""
+    try:
+        tokens = tokenize(source)
+    except ExpressionError:
+        return
+    for i, token in enumerate(tokens):
+        if token.text == "context" and _signs(tokens, i + 1, ".") and tokens[i + 2].kind == "name":
+            key = tokens[i + 2]
+            yield Part(Kind.CONTEXT, key.text, base + key.offset)
+        elif token.kind == "name" and token.text in _NAMED and _signs(tokens, i + 1, "("):
+            name = _last_text(tokens, i + 2)
+            if name and isinstance(name.value, str):
+                yield Part(_NAMED[token.text], name.value, base + name.offset + 1)
+
+
+def in_template(text: str) -> Iterator[Part]:
+    """The names in the `{{ expressions }}` of a text."""
+    for found in _TEMPLATE.finditer(text):
+        yield from in_expression(found[1], found.start(1))
+
+
+def _signs(tokens: list[Token], at: int, sign: str) -> bool:
+    return at + 1 < len(tokens) and tokens[at].text == sign
+
+
+def _last_text(tokens: list[Token], at: int) -> Token | None:
+    """The literal that ends a call's arguments."""
+    depth = 1
+    while at < len(tokens) and depth:
+        depth += (tokens[at].text in ("(", "[", "{")) - (tokens[at].text in (")", "]", "}"))
+        at += 1
+    last = tokens[at - 2] if at >= 2 else None
+    return last if last and last.kind == "text" else None

@@ -1,0 +1,45 @@
+"""Between our places (lines and columns of characters, from 1) and the protocol's (from 0, in the client's units)."""
+
+from urllib.parse import unquote, urlsplit
+from urllib.request import url2pathname
+
+from lsprotocol import types as lsp
+from pygls.workspace import PositionCodec
+
+from lumen.language.diagnostics import Place
+from lumen.rules.fixes import Sheet
+
+
+class Ranges:
+    """The places of one file in the units that the client counts columns in; by default UTF-16."""
+
+    def __init__(self, sheet: Sheet, codec: PositionCodec) -> None:
+        self._sheet, self._codec = sheet, codec
+
+    def position(self, line: int, column: int) -> lsp.Position:
+        """The protocol's position of a line and column; the end of the file where they lie beyond it."""
+        count = len(self._sheet.lines)
+        if line > count:
+            line, column = count, len(self._sheet.line(count)) + 1
+        before = self._sheet.line(line)[: column - 1]
+        return lsp.Position(line - 1, self._codec.client_num_units(before))
+
+    def range(self, place: Place) -> lsp.Range:
+        """The protocol's range of a place."""
+        start, end = self.position(place.line, place.column), self.position(place.end_line, place.end_column)
+        return lsp.Range(start, max(start, end, key=lambda p: (p.line, p.character)))
+
+    def place(self, position: lsp.Position) -> tuple[int, int]:
+        """Line and column, from 1, of a position of the client's."""
+        text = self._sheet.line(position.line + 1)
+        units, column = 0, 0
+        while column < len(text) and units < position.character:
+            units += self._codec.client_num_units(text[column])
+            column += 1
+        return position.line + 1, column + 1
+
+
+def path_of(uri: str) -> str:
+    """The path on this machine that a `file:` URI names, empty for any other."""
+    parts = urlsplit(uri)
+    return url2pathname(unquote(parts.path)) if parts.scheme == "file" else ""

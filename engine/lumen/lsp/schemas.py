@@ -1,0 +1,81 @@
+"""What the JSON Schema of a kind of file says about a node: its keys, its values, its description."""
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
+
+from lumen.language.diagnostics import Path
+from lumen.loading.schema import KINDS, load_schema
+
+_SAME = ("allOf", "anyOf", "oneOf")
+_BRANCHES = ("then", "else", "$ref")
+
+
+@cache
+def _root(kind: str) -> Mapping[str, Any]:
+    return load_schema(kind) if kind in KINDS else {}
+
+
+def schemas_at(kind: str, path: Path) -> list[Mapping[str, Any]]:
+    """All schemas that speak of the node at a path, whichever branch it takes; the nearest first."""
+    root = _root(kind)
+    found = list(_here(root, root))
+    for step in path:
+        found = [inner for schema in found for child in _children(schema, step) for inner in _here(child, root)]
+    return found
+
+
+def keys_at(kind: str, path: Path) -> dict[str, Mapping[str, Any]]:
+    """The keys that a map at that path may have, each with its schema."""
+    found: dict[str, Mapping[str, Any]] = {}
+    for schema in schemas_at(kind, path):
+        for name, inner in schema.get("properties", {}).items():
+            if isinstance(inner, dict):
+                found.setdefault(name, inner)
+    return found
+
+
+def values_at(kind: str, path: Path) -> list[str]:
+    """The values that the schemas of a node list, as they are written in YAML."""
+    values: list[str] = []
+    for schema in schemas_at(kind, path):
+        values += map(_written, schema.get("enum", ()))
+        if schema.get("type") == "boolean":
+            values += ["true", "false"]
+    return list(dict.fromkeys(values))
+
+
+def description_at(kind: str, path: Path) -> str:
+    """What the schemas say of a node, with an example."""
+    schemas = schemas_at(kind, path)
+    text = next((s["description"] for s in schemas if "description" in s), "")
+    default = next((s["default"] for s in schemas if "default" in s), None)
+    return f"{text} Default: `{default}`." if text and default is not None else text
+
+
+def _written(value: Any) -> str:
+    return "null" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _here(schema: Any, root: Mapping[str, Any], depth: int = 0) -> Iterator[Mapping[str, Any]]:
+    """The schema and all that it lays over itself."""
+    if not isinstance(schema, dict) or depth > 8:
+        return
+    yield schema
+    for keyword in _BRANCHES:
+        inner = schema.get(keyword)
+        if isinstance(inner, str):
+            inner = root.get("$defs", {}).get(inner.removeprefix("#/$defs/"))
+        yield from _here(inner, root, depth + 1)
+    for keyword in _SAME:
+        for inner in schema.get(keyword, ()):
+            yield from _here(inner, root, depth + 1)
+
+
+def _children(schema: Mapping[str, Any], step: str | int) -> Iterator[Any]:
+    if isinstance(step, int):
+        yield schema.get("items")
+    elif step in schema.get("properties", {}):
+        yield schema["properties"][step]
+    else:
+        yield schema.get("additionalProperties")

@@ -1,0 +1,43 @@
+"""What a file makes known, as a tree: states within states, and everything else by its key."""
+
+from typing import NamedTuple
+
+from lumen.language.diagnostics import Place
+from lumen.loading.source import Document
+from lumen.lsp.analysis import Analysis
+from lumen.lsp.grammar import defines, key_kind, kind_of
+from lumen.lsp.words import Kind
+
+
+class Symbol(NamedTuple):
+    """A thing that is made known: `place` of its name, `whole` with all that is said of it."""
+
+    name: str
+    kind: Kind
+    place: Place
+    whole: Place
+    children: tuple["Symbol", ...] = ()
+
+
+def symbols(analysis: Analysis, file: str) -> tuple[Symbol, ...]:
+    """The symbols of a file, in its order; none where it can't be read."""
+    document = analysis.documents.get(file)
+    return _below(document, kind_of(file), ()) if document else ()
+
+
+def _below(document: Document, kind: str, path: tuple[str | int, ...]) -> tuple[Symbol, ...]:
+    node = document.data
+    for step in path:
+        node = node[step]
+    found: list[Symbol] = []
+    for key in node if isinstance(node, dict) else ():
+        here = (*path, key)
+        span, named = document.spans.get(here), key_kind(kind, here)
+        if span is None or span.key is None:
+            continue
+        if named and defines(kind, here, named):
+            whole = span.key._replace(end_line=span.value.end_line, end_column=span.value.end_column)
+            found.append(Symbol(key, named, span.key, max(whole, span.key), _below(document, kind, here)))
+        elif not path or key == "states":
+            found += _below(document, kind, here)
+    return tuple(found)

@@ -1,0 +1,65 @@
+"""A name in somebody's file: what sort of thing it names, which one, and where exactly it stands."""
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from lumen.language.diagnostics import Place
+
+
+class Kind(StrEnum):
+    """What a name can stand for; `EXPRESSION`, `TEMPLATE` and `FIELD` hold other names."""
+
+    STATE = "state"
+    CONTEXT = "context key"
+    PHRASE = "phrase"
+    ANSWERS = "answers table"
+    EVENT = "event"
+    ROUTE = "route"
+    MESSAGE = "message schema"
+    MOTION = "motion"
+    POSE = "pose"
+    POSTURE = "posture"
+    CONTROLLER = "controller"
+    BEHAVIOR = "behaviour"
+    STORY = "story"
+    MODEL = "robot"
+    JOINT = "joint"
+    SENSOR = "sensor"
+    LANGUAGE = "language"
+    EXPRESSION = "expression"
+    TEMPLATE = "text"
+    FIELD = "field"
+
+
+FOLDERS = {
+    Kind.BEHAVIOR: "behaviors", Kind.STORY: "behaviors/stories", Kind.MOTION: "motions", Kind.CONTROLLER: "fuzzy",
+    Kind.MODEL: "models", Kind.MESSAGE: "schemas/messages",
+}  # fmt: skip
+"""The kinds that are files, and where those are."""
+
+SCOPED = frozenset((Kind.STATE, Kind.CONTEXT, Kind.PHRASE, Kind.ANSWERS, Kind.POSE))
+"""The kinds whose names mean something within one file only."""
+
+
+class Word(NamedTuple):
+    """One name: `name` says which thing of its kind, `scope` in which file's, `text` how it is written at `place`.
+
+    A state's name is its path, however it is written.
+    """
+
+    kind: Kind
+    scope: str
+    name: str
+    text: str
+    place: Place
+    defines: bool = False
+
+    @property
+    def thing(self) -> tuple[Kind, str, str]:
+        """What all words of one thing have in common."""
+        return self.kind, self.scope, self.name
+
+
+def covers(place: Place, line: int, column: int) -> bool:
+    """Whether a cursor at that line and column, from 1, stands on the place or right behind it."""
+    return (place.line, place.column) <= (line, column) <= (place.end_line, place.end_column)

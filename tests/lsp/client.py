@@ -1,0 +1,114 @@
+"""A language client over standard input and output, JSON-RPC by hand: the server as an editor sees it."""
+
+import json
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from queue import Queue
+from typing import Any, Self
+
+ENGINE = Path(__file__).parents[2] / "engine"
+DEADLINE = 60.0
+
+
+class Client:
+    """Starts `lumen lsp` in a project and speaks with it; notifications wait until they are asked for."""
+
+    def __init__(self, root: Path, command: list[str] | None = None, encoding: str = "utf-16") -> None:
+        self.root = root
+        self.process = subprocess.Popen(
+            command or [sys.executable, "-m", "lumen", "lsp", "--stdio"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env={"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin:/usr/local/bin"},
+            cwd=root,
+        )
+        self._messages: Queue[dict[str, Any] | None] = Queue()
+        self._kept: list[dict[str, Any]] = []
+        self._number = 0
+        threading.Thread(target=self._read, daemon=True).start()
+        self.capabilities = self.request(
+            "initialize",
+            processId=None,
+            rootUri=root.as_uri(),
+            capabilities={"general": {"positionEncodings": [encoding]}},
+            workspaceFolders=[{"uri": root.as_uri(), "name": "project"}],
+        )["capabilities"]
+        self.notify("initialized")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.process.poll() is None:
+            self.request("shutdown")
+            self.notify("exit")
+        self.process.wait(DEADLINE)
+
+    def uri(self, file: str) -> str:
+        return (self.root / file).as_uri()
+
+    def open(self, file: str, text: str | None = None, language: str = "yaml") -> str:
+        text = (self.root / file).read_text("utf-8") if text is None else text
+        document = {"uri": self.uri(file), "languageId": language, "version": 1, "text": text}
+        self.notify("textDocument/didOpen", textDocument=document)
+        return text
+
+    def change(self, file: str, text: str, version: int = 2) -> None:
+        document = {"uri": self.uri(file), "version": version}
+        self.notify("textDocument/didChange", textDocument=document, contentChanges=[{"text": text}])
+
+    def ask(self, method: str, file: str, line: int, character: int, **more: Any) -> Any:
+        """A request about a position, both from 0."""
+        position = {"line": line, "character": character}
+        return self.request(f"textDocument/{method}", textDocument={"uri": self.uri(file)}, position=position, **more)
+
+    def diagnostics(self, file: str) -> list[dict[str, Any]]:
+        """The next findings that are published for a file."""
+        while True:
+            params = self._take(lambda m: m.get("method") == "textDocument/publishDiagnostics")["params"]
+            if params["uri"] == self.uri(file):
+                return list(params["diagnostics"])
+
+    def request(self, method: str, **params: Any) -> Any:
+        """The answer; an error as a map with `code` and `message`."""
+        self._number += 1
+        number = self._number
+        self._send({"id": number, "method": method, "params": params})
+        answer = self._take(lambda m: m.get("id") == number and "method" not in m)
+        return answer.get("result") if "error" not in answer else answer["error"]
+
+    def notify(self, method: str, **params: Any) -> None:
+        self._send({"method": method, "params": params})
+
+    def _send(self, message: dict[str, Any]) -> None:
+        body = json.dumps({"jsonrpc": "2.0", **message}).encode()
+        assert self.process.stdin
+        self.process.stdin.write(b"Content-Length: %d\r\n\r\n%s" % (len(body), body))
+        self.process.stdin.flush()
+
+    def _take(self, wanted: Any) -> dict[str, Any]:
+        for i, message in enumerate(self._kept):
+            if wanted(message):
+                return self._kept.pop(i)
+        while True:
+            message = self._messages.get(timeout=DEADLINE)
+            assert message is not None, "the server has ended"
+            if "method" in message and "id" in message:  # the server asks: everything is as it is by default
+                items = message["params"].get("items", []) if isinstance(message.get("params"), dict) else []
+                self._send({"id": message["id"], "result": [None for _ in items] or None})
+            elif wanted(message):
+                return message
+            else:
+                self._kept.append(message)
+
+    def _read(self) -> None:
+        assert self.process.stdout
+        while header := self.process.stdout.readline():
+            length = int(header.split(b":")[1])
+            while self.process.stdout.readline().strip():
+                pass
+            self._messages.put(json.loads(self.process.stdout.read(length)))
+        self._messages.put(None)

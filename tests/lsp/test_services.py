@@ -1,0 +1,203 @@
+"""What the language services say of a place: files and positions in, values out, no editor around."""
+
+from contextlib import suppress
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from lumen.errors import UsageError
+from lumen.loading.files import read_files
+from lumen.lsp.analysis import Analysis
+from lumen.lsp.completion import complete
+from lumen.lsp.definitions import definitions, uses
+from lumen.lsp.hover import hover
+from lumen.lsp.renaming import applied, renamable, rename
+from lumen.lsp.symbols import symbols
+from lumen.lsp.words import Kind
+from tests.mutation.mutants import Nursery
+
+ROOT = Path(__file__).parents[2]
+SHIPPED = Analysis(ROOT, read_files(ROOT))
+TOUR, VISITOR = "behaviors/tour.yaml", "behaviors/stories/visitor.yaml"
+
+
+def place(analysis: Analysis, file: str, text: str, offset: int | None = None) -> tuple[str, int, int]:
+    """The place of the `|` in a piece of the file's text, the first one or that at an offset."""
+    whole = analysis.text(file)
+    at = whole.index(text.replace("|", "", 1)) if offset is None else offset
+    at += text.index("|")
+    return file, whole.count("\n", 0, at) + 1, at - whole.rfind("\n", 0, at)
+
+
+def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, int]]:
+    """The shipped project with `new` in place of `old`, and the place of the `|` in it."""
+    text = SHIPPED.text(file)
+    analysis = SHIPPED.changed(file, text.replace(old, new.replace("|", "", 1), 1))
+    return analysis, place(analysis, file, new, text.index(old))
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "some", "none"),
+    [
+        (TOUR, "target: how_are_you", "target: |", ["greet", '"#goodbye"'], ["Stand", ".greet"]),
+        (TOUR, "onDone: offer", "onDone: #|", ['"#goodbye"', '"#idle"'], []),
+        (TOUR, "onDone: offer", 'onDone: "#|"', ["#goodbye"], ['"#goodbye"']),
+        (TOUR, "    initial: idle", "    initial: |", ["idle", "paused"], ["greet"]),
+        (TOUR, "{posture: Stand}", "{posture: S|", ["Stand", "Crouch"], ["dance"]),
+        (TOUR, "{posture: Stand}", "{play: |}", ["dance", "sing"], ["Stand"]),
+        (TOUR, "{posture: Stand}", "{publish: {route: |", ["command", "journal"], ["tour"]),
+        (TOUR, "{posture: Stand}", "{publish: {route: command, body: {|", ["method: ", "parameter: "], ["x: "]),
+        (TOUR, "{posture: Stand}", "{language: |}", ["en", "id"], ["any"]),
+        (TOUR, "{posture: Stand}", "{say: {|}}", ["en: ", "any: "], ["say: "]),
+        (TOUR, "{posture: Stand}", "{assign: {|", ["visitor: ", "reply: "], ["english: "]),
+        (TOUR, "    face: talking\n", "    face: talking\n          |\n", ["heard: ", "fallen: "], ["on: "]),
+        (TOUR, "context.name_tries < 2", "context.|", ["visitor", "battery"], ["name"]),
+        (TOUR, "event.data.gender == 'male'\"", "event.data.|", ["gender"], ["result", "visitor"]),
+        (TOUR, "heard(event.data.result, 'english')\"", "heard(event.data.result, '|", ["dance", "no_more"], ["faq"]),
+        (TOUR, "How are you, {{ context.visitor }}?", "How are you, {{ context.|", ["title_en"], ["heard("]),
+        (TOUR, "            onDone: offer\n", "            onDone: offer\n            |\n", ["always: "], ["onDone: "]),
+        (VISITOR, "expect: {state: greet", "expect: {state: |", ["greet", "offer"], ["#greet"]),
+        (VISITOR, "  - wait: 2s", "  - |", ["says: ", "expect: "], ["say: "]),
+        (VISITOR, "  - wait: 2s", "  - touch: |", ["ChestButton"], ["Stand"]),
+        (VISITOR, "  - wait: 2s", "  - message: {route: face, body: {|", ["x: ", "time: "], ["method: "]),
+        ("lumen.yaml", "schema: image", "schema: |", ["image", "joint"], ["Stand"]),
+        ("lumen.yaml", "hall: hall.xml", "h|", ["hall: "], ["story: "]),
+        ("motions/goodbye.yaml", "pose: hand_out", "pose: |", ["hand_in", "lean"], ["Stand"]),
+        ("motions/goodbye.yaml", "joints: {LShoulderPitch: 78", "joints: {L|", ["LElbowYaw: "], ["lean"]),
+        ("fuzzy/head.yaml", "FaceXLoc: face.x", "FaceXLoc: face.|", ["x", "y"], ["face"]),
+        ("fuzzy/head.yaml", "joint: HeadYaw", "joint: |", ["HeadPitch"], ["face"]),
+        ("fuzzy/head.yaml", "implication: minimum", "implication: |", ["algebraic-product"], ["HeadYaw"]),
+    ],
+)  # fmt: skip
+def test_completion(file: str, old: str, new: str, some: list[str], none: list[str]) -> None:
+    """Also in a file that is no YAML while it is being written."""
+    analysis, here = written(file, old, new)
+    proposed = [item.text for item in complete(analysis, *here)]
+    assert set(some) <= set(proposed), proposed
+    assert not set(none) & set(proposed), proposed
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "where"),
+    [
+        (TOUR, "target: how_are|_you", f"{TOUR}: how_are_you:"),
+        (TOUR, "safety.alarm: pau|sed", f"{TOUR}: paused:"),
+        (VISITOR, "{state: gr|eet", f"{TOUR}: greet:"),
+        (VISITOR, "played: dan|ce", "motions/dance.yaml"),
+        (TOUR, "context.name_|tries <", f"{TOUR}: name_tries:"),
+        (TOUR, "heard(event.data.result, 'engl|ish')", f"{TOUR}: english:"),
+        (TOUR, "heard(event.data.result, 'dan|ce')", f"{TOUR}: dance:"),
+        ("motions/goodbye.yaml", "pose: hand_|out", "motions/goodbye.yaml: hand_out:"),
+        ("lumen.yaml", "schema: ima|ge", "schemas/messages/image.schema.json"),
+        ("fuzzy/head.yaml", "FaceXLoc: fa|ce.x", "lumen.yaml: face:"),
+        ("fuzzy/head.yaml", "joint: Head|Yaw", "models/nao.yaml: HeadYaw:"),
+    ],
+)
+def test_definition(file: str, text: str, where: str) -> None:
+    found = definitions(SHIPPED, *place(SHIPPED, file, text))
+    assert len(found) == 1
+    name, _, key = where.partition(": ")
+    assert found[0].file == name
+    assert SHIPPED.text(name).split("\n")[found[0].line - 1][found[0].column - 1 :].startswith(key)
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "said"),
+    [
+        (TOUR, "target: how_are|_you", "atomic state at `guide.talking.how_are_you`"),
+        (VISITOR, "played: dan|ce", "s, moves 2"),
+        ("motions/goodbye.yaml", "RShoulder|Pitch", "-119.5 to 119.5 deg"),
+        (TOUR, "context.name_|tries <", "begins with `0`"),
+        (TOUR, "    on|Done: offer", "Taken when `do` has finished"),
+        (TOUR, "heard(event.data.result, 'engl|ish')", "bahasa inggris"),
+        ("lumen.yaml", "  fa|ce: {key", "becomes the event `face`"),
+        ("lumen.yaml", "schema: ima|ge", "message schema"),
+    ],
+)
+def test_hover(file: str, text: str, said: str) -> None:
+    assert said in hover(SHIPPED, *place(SHIPPED, file, text))
+
+
+def test_hover_over_a_finding_shows_its_rule() -> None:
+    analysis, here = written(TOUR, "onDone: offer", "onDone: of|er")
+    assert "unknown-state" in hover(analysis, *here)
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "name", "edits", "moved"),
+    [
+        (TOUR, "target: how_are|_you", "mood", 33, None),
+        (TOUR, "context.name_|tries <", "tries", 7, None),
+        (TOUR, "heard(event.data.result, 'engl|ish')", "inggris", 6, None),
+        (VISITOR, "played: dan|ce", "horse", 3, ("motions/dance.yaml", "motions/horse.yaml")),
+        ("lumen.yaml", "  jour|nal: {key", "diary", 1, None),
+        ("motions/goodbye.yaml", "pose: hand_|out", "out", 3, None),
+    ],
+)
+def test_rename(file: str, text: str, name: str, edits: int, moved: tuple[str, str] | None) -> None:
+    word = renamable(SHIPPED, *place(SHIPPED, file, text))
+    assert word
+    found = rename(SHIPPED, word, name)
+    assert (len(found.edits), found.moved) == (edits, moved)
+    after = applied(SHIPPED, found)
+    assert not after.diagnostics
+    assert name in after.index.names(word.kind, word.scope) or word.kind is Kind.STATE
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "name", "reason"),
+    [
+        (TOUR, "target: how_are|_you", "greet", "already"),
+        (TOUR, "target: how_are|_you", "two words", "without spaces"),
+        (TOUR, "context.name_|tries <", "visitor", "already"),
+        (TOUR, "context.name_|tries <", "1st", "letters"),
+        (TOUR, "context.name_|tries <", "null", "can't be"),
+        ("lumen.yaml", "  fa|ce: {key", "gesicht", "means something to Lumen itself"),
+        (VISITOR, "played: dan|ce", "sing", "already"),
+    ],
+)
+def test_names_that_can_not_be_given(file: str, text: str, name: str, reason: str) -> None:
+    word = renamable(SHIPPED, *place(SHIPPED, file, text))
+    assert word
+    with pytest.raises(UsageError, match=reason):
+        rename(SHIPPED, word, name)
+
+
+def test_every_state_key_phrase_and_route_can_be_renamed() -> None:
+    """A sample of all words that can: the project after it says the same, so it has no findings."""
+    words = [w for w in SHIPPED.index.words if w.defines and w.text and w.place.file in (TOUR, "lumen.yaml")]
+    chosen = Random(1).sample([w for w in words if w.kind in (Kind.STATE, Kind.CONTEXT, Kind.PHRASE)], 5)
+    for word in chosen:
+        assert not applied(SHIPPED, rename(SHIPPED, word, "renamed_thing")).diagnostics
+
+
+def test_uses_and_symbols() -> None:
+    assert len(uses(SHIPPED, *place(SHIPPED, VISITOR, "played: dan|ce"))) == 3
+    tree = {symbol.name: symbol for symbol in symbols(SHIPPED, TOUR)}
+    assert {"visitor", "english", "faq", "guide", "safety"} <= tree.keys()
+    assert {child.name for child in tree["guide"].children} == {"idle", "talking", "paused", "interrupted"}
+    assert tree["guide"].whole.end_line > tree["guide"].place.line + 100
+
+
+def test_words_stand_where_they_say() -> None:
+    lines = {file: SHIPPED.text(file).split("\n") for file in SHIPPED.files}
+    named = [word for word in SHIPPED.index.words if word.text]
+    assert len(named) > 1_500
+    for word in named:
+        assert lines[word.place.file][word.place.line - 1][word.place.column - 1 :].startswith(word.text)
+
+
+def test_nothing_raises_whatever_the_files_hold() -> None:
+    nursery, random = Nursery(), Random(4)
+    for number in range(12):
+        mutant = nursery.mutant(number)
+        analysis = Analysis(ROOT, mutant.files)
+        line, column = max(1, mutant.line + random.randrange(-1, 2)), random.randrange(1, 40)
+        complete(analysis, mutant.file, line, column)
+        hover(analysis, mutant.file, line, column)
+        definitions(analysis, mutant.file, line, column)
+        symbols(analysis, mutant.file)
+        if word := renamable(analysis, mutant.file, line, column):
+            with suppress(UsageError):
+                rename(analysis, word, "other")

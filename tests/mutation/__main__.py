@@ -1,0 +1,56 @@
+"""`python -m tests.mutation`: mutants of the shipped project, and what lint and the stories make of them."""
+
+import argparse
+import sys
+import time
+from collections import Counter
+from random import Random
+
+from tests.mutation.judging import Judge, Outcome
+from tests.mutation.mutants import SHIPPED, Mutant, Nursery
+
+WELL = ("error found", "warned, and runs", "clean, and runs")
+
+
+def survey(seed: int, count: int, stories: int) -> tuple[Counter[tuple[str, str]], list[tuple[Mutant, Outcome]]]:
+    """How many mutants of each kind came out how, and the misses."""
+    judge, counts, misses = Judge(SHIPPED, stories), Counter[tuple[str, str]](), []
+    for mutant in Nursery().mutants(seed, count):
+        outcome = judge.judge(mutant.file, mutant.line, mutant.files, Random(mutant.number))
+        counts[mutant.kind, outcome.what] += 1
+        if outcome.what not in WELL:
+            misses.append((mutant, outcome))
+    return counts, misses
+
+
+def table(counts: Counter[tuple[str, str]]) -> str:
+    """The counts, a row for each kind."""
+    outcomes = [*WELL, *sorted({what for _, what in counts} - {*WELL})]
+    kinds = sorted({kind for kind, _ in counts})
+    rows = [("", *outcomes, "sum")]
+    for kind in [*kinds, "all"]:
+        numbers = [sum(n for (k, w), n in counts.items() if w == what and kind in (k, "all")) for what in outcomes]
+        rows.append((kind, *map(str, numbers), str(sum(numbers))))
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return "\n".join(
+        "  ".join(c.rjust(w) if i else c.ljust(w) for i, (c, w) in enumerate(zip(r, widths, strict=True))) for r in rows
+    )
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
+    parser.add_argument("--count", type=int, default=1_000, help="how many mutants (default: 1,000)")
+    parser.add_argument("--seed", type=int, default=0, help="the number of the first one (default: 0)")
+    parser.add_argument("--stories", type=int, default=3, help="stories played with each that lint passes (default: 3)")
+    options = parser.parse_args()
+    began = time.process_time()
+    counts, misses = survey(options.seed, options.count, options.stories)
+    for mutant, outcome in misses:
+        print(f"# {mutant.number} {mutant.kind}: {outcome.what}\n{mutant.difference}\n{outcome.trouble}")
+    print(table(counts))
+    print(f"{counts.total():,} mutants, {len(misses)} misses, {time.process_time() - began:.0f} s of CPU")
+    return int(bool(misses))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,96 @@
+"""Mutants of the shipped project, each from a number: the same number makes the same mutant."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from random import Random
+from typing import NamedTuple
+
+from lumen.loading.files import read_files
+from tests.mutation.operators import OPERATORS
+from tests.mutation.text import Sheet
+
+SHIPPED = read_files(Path(__file__).parents[2])
+WEIGHTS = {"behaviors/tour.yaml": 30, "lumen.yaml": 12, "fuzzy/head.yaml": 8, "models/nao.yaml": 6}
+"""How often a file is changed; others once, a motion and a story three times."""
+
+
+class Mutant(NamedTuple):
+    """`file` is what was changed, `line` the first that differs, `files` the whole project; `kind` says how."""
+
+    number: int
+    kind: str
+    file: str
+    line: int
+    files: Mapping[str, bytes]
+
+    @property
+    def difference(self) -> str:
+        """The lines that went and came."""
+        old = SHIPPED.get(self.file, b"").decode("utf-8", "replace").splitlines()
+        new = self.files.get(self.file, b"").decode("utf-8", "replace").splitlines()
+        while old and new and old[-1] == new[-1]:
+            old.pop(), new.pop()
+        at = self.line - 1
+        shown = [f"-{line}" for line in old[at : at + 4]] + [f"+{line}" for line in new[at : at + 4]]
+        return "\n".join([f"{self.file}:{self.line}", *shown])
+
+
+class Nursery:
+    """Makes mutants; the places in the shipped files are looked up once."""
+
+    def __init__(self) -> None:
+        self.sheets = {file: Sheet(file, content) for file, content in SHIPPED.items() if not file.endswith(".xml")}
+        self.names = list(SHIPPED)
+        self.weights = [WEIGHTS.get(f, 3 if f.startswith(("motions/", "behaviors/")) else 1) for f in self.names]
+
+    def mutant(self, number: int) -> Mutant:
+        """The mutant of that number; one in ten has two mistakes in the same file."""
+        random = Random(number)
+        file = random.choices(self.names, self.weights)[0]
+        if file.endswith(".xml") or random.random() < 0.02:
+            return self._whole(random, number, file)
+        kinds, content = [], SHIPPED[file]
+        for _ in range(2 if random.random() < 0.1 else 1):
+            kind = random.choice(list(OPERATORS))
+            sheet = self.sheets[file] if not kinds else _sheet(file, content)
+            if sheet is None:
+                break
+            kinds.append(kind)
+            content = OPERATORS[kind](random, sheet, self.sheets).encode("utf-8", "surrogateescape")
+        return Mutant(number, kinds[0], file, _first(SHIPPED[file], content), {**SHIPPED, file: content})
+
+    def mutants(self, seed: int, count: int) -> Iterator[Mutant]:
+        """So many mutants, from that number on."""
+        return (self.mutant(number) for number in range(seed, seed + count))
+
+    def _whole(self, random: Random, number: int, file: str) -> Mutant:
+        """A file is gone, called otherwise, empty, or holds what another one should."""
+        files, kind = dict(SHIPPED), random.choice(["delete a file", "rename a file", "exchange files", "binary file"])
+        other = random.choice(self.names)
+        match kind:
+            case "delete a file":
+                del files[file]
+            case "rename a file":
+                files[str(Path(file).with_stem(Path(file).stem + random.choice(["2", " ", ".x", "-É"])))] = files.pop(
+                    file
+                )
+            case "exchange files":
+                files[file], files[other] = files[other], files[file]
+            case _:
+                files[file] = random.randbytes(random.choice([0, 1, 300]))
+        return Mutant(number, kind, file, 1, dict(sorted(files.items())))
+
+
+def _sheet(file: str, content: bytes) -> Sheet | None:
+    """The mutant as a file to change again, None where it can't be read any more or is too small."""
+    try:
+        sheet = Sheet(file, content)
+    except AssertionError:
+        return None
+    return sheet if sheet.leaves and sheet.keys else None
+
+
+def _first(old: bytes, new: bytes) -> int:
+    """The first line that differs, from 1."""
+    pairs = enumerate(zip(old.split(b"\n"), new.split(b"\n"), strict=False), 1)
+    return next((i for i, (a, b) in pairs if a != b), 1)
