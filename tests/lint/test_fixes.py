@@ -4,11 +4,14 @@ import shutil
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from lumen.cli.main import main
+from lumen.language.diagnostics import has_errors
 from lumen.loading.project import read_files
 from lumen.rules import check_files
-from lumen.rules.fixes import near
+from lumen.rules.fixes import edited, fixes, near
 from lumen.rules.repairs import repaired
 
 HERE = Path(__file__).parent
@@ -38,7 +41,9 @@ def fixed(file: str, old: str, new: str) -> bytes:
         (TOUR, "      - wait: 500ms", "\t\t\t- wait: 500ms"),
         (TOUR, "    onError: idle\n", "    onError: idle\n    onDone: talk\n"),
         (WAVE, "joints: {LShoulderPitch: -60}", 'joints: {LSholderPitch: "-60"}'),
+        (TOUR, "    onError: idle\n", "    onError: idle\n    onError: idle\n"),
         ("fuzzy/head.yaml", "Turn is Left", "Turn is Lfet"),
+        ("fuzzy/head.yaml", "if Face is Left then", "if Face is Left than"),
         ("lumen.yaml", "story: hello", "story: helo"),
     ],
 )
@@ -53,6 +58,8 @@ def test_a_slip_is_repaired(file: str, right: str, wrong: str) -> None:
         (TOUR, "onError: idle", "onError: somewhere"),
         (TOUR, "onError: idle\n", "onError: idle\n    onDone: idle\n"),
         (TOUR, "  talk:\n", "  greet: {}\n  talk:\n"),
+        (TOUR, "onError: idle\n", "onError: idle  # home\n    onError: idle  # away\n"),
+        (TOUR, "    entry:\n      - {posture: Stand}\n", "    entry:\n      - {posture: Stand}\n    entry:\n"),
         (TOUR, "onDone: talk", "onDone: [talk"),
         (TOUR, "{raise: over}", "{raise: unheard}"),
     ],
@@ -86,6 +93,33 @@ def test_every_repair_of_many_mistakes_leaves_less_to_say() -> None:
         check_files(HERE, repaired(after, lambda f: check_files(HERE, f)[1], lambda d: True)[0])[1]
         == (check_files(HERE, after)[1])
     )
+
+
+def test_of_two_lines_the_one_with_the_comment_stays() -> None:
+    after = fixed(TOUR, "    onError: idle\n", "    onError: idle\n    onError: idle  # home\n")
+    assert after.decode() == BASE[TOUR].decode().replace("    onError: idle\n", "    onError: idle  # home\n")
+
+
+@settings(max_examples=40)
+@given(st.sampled_from(sorted(f for f in BASE if f.endswith(".yaml"))), st.data())
+def test_every_proposal_is_within_the_file_and_makes_its_finding_go_or_is_not_made(
+    file: str, data: st.DataObject
+) -> None:
+    text = BASE[file].decode()
+    at = data.draw(st.integers(0, len(text) - 1))
+    new = data.draw(st.sampled_from(["", "\t", "\r\n", "# lumen: ignore[tab] x\n", text[at : at + 2][::-1], "\u2028"]))
+    files = {**BASE, file: (text[:at] + new + text[at + data.draw(st.integers(0, 2)) :]).encode()}
+    found = check_files(HERE, files)[1]
+    for diagnostic in found:
+        for fix in fixes(diagnostic, files):
+            for edit in fix.edits:
+                assert edit.place.line >= 1
+                assert edit.place[1:3] <= edit.place[3:5]
+            assert edited(files[file], fix.edits) != files[file]
+    after, done = repaired(files, lambda f: check_files(HERE, f)[1], lambda d: True)
+    left = check_files(HERE, after)[1]
+    assert bool(done) == (after != files)
+    assert not (has_errors(left) and not has_errors(found))
 
 
 @pytest.mark.parametrize(

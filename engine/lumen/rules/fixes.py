@@ -89,7 +89,7 @@ def _word(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
         new = instead[1] or instead[2]
         return [Fix(f"write {new}", (Edit(diagnostic.place, new),))] if there else []
     meant = _MEANT.search(diagnostic.hint)
-    said = [word for word in _SAYS.findall(diagnostic.message) if meant and near(word, meant[1])]
+    said = [word for word in _SAYS.findall(diagnostic.message) if meant and word != meant[1] and near(word, meant[1])]
     if meant is None or len(said) != 1 or there.count(said[0]) != 1:
         return []
     start = diagnostic.place.column + there.index(said[0])
@@ -135,12 +135,26 @@ def _tabs(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
 
 
 def _twice(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
-    """The second of two lines that say the same."""
+    """One of two lines that say the same, the one without a comment where one has one."""
     number = diagnostic.place.line
     line = sheet.line(number)
-    alone = not line[: diagnostic.place.column - 1].strip() and not _deeper(sheet, number)
-    same = [n for n in range(1, number) if sheet.line(n) == line and not _deeper(sheet, n)]
-    return [Fix("delete the second one", (Edit(sheet.whole(number), ""),))] if alone and same else []
+    if line[: diagnostic.place.column - 1].strip() or _deeper(sheet, number):
+        return []
+    said = _said(line)
+    first = next((n for n in range(number - 1, 0, -1) if _said(sheet.line(n)) == said and not _deeper(sheet, n)), 0)
+    if not first:
+        return []
+    comments = [sheet.line(n)[len(said) :].strip() for n in (first, number)]
+    if all(comments) and comments[0] != comments[1]:
+        return []
+    doomed = first if comments[1] and not comments[0] else number
+    return [Fix("delete one of the two", (Edit(sheet.whole(doomed), ""),))]
+
+
+def _said(line: str) -> str:
+    """The line without its comment; of one with a `#` or a quote elsewhere all of it."""
+    before = re.split(r"\s+#", line)[0]
+    return before.rstrip() if "'" not in before and '"' not in before else line
 
 
 def _deeper(sheet: Sheet, number: int) -> bool:
@@ -173,6 +187,7 @@ def _comment(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
 
 _FIXERS: Mapping[str, Callable[[Diagnostic, Sheet], list[Fix]]] = {
     "duplicate-key": _twice,
+    "rule-syntax": _word,
     "tab": _tabs,
     "unused-ignore": _comment,
 }

@@ -39,9 +39,12 @@ def _finding(diagnostic: Diagnostic, excerpts: "_Excerpts") -> Iterator[str]:
     yield from excerpts.of(place, gutter, "^", colour)
     if diagnostic.hint:
         yield f" {' ' * gutter} {paint('=', 'dim', on=on)} {clean(diagnostic.hint)}"
+    seen = {place[:2]}
     for related in diagnostic.related:
         yield f"  {excerpts.where(related.place)} {clean(related.message)}"
-        yield from excerpts.of(related.place, gutter, "-", "blue")
+        if related.place[:2] not in seen:
+            yield from excerpts.of(related.place, gutter, "-", "blue")
+        seen.add(related.place[:2])
 
 
 class _Excerpts:
