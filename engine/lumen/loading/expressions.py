@@ -7,6 +7,7 @@ from lumen.interpreters.expressions import Finding, check_expression, check_temp
 from lumen.language.actions import Expression, Template, Value
 from lumen.language.diagnostics import Diagnostic, Path, Place, did_you_mean
 from lumen.loading.numbers import finite
+from lumen.loading.scalars import within
 from lumen.loading.source import Document, Report
 
 
@@ -81,15 +82,15 @@ def cause_of(file: str, finding: Finding) -> str:
 
 
 def place_within(document: Document, path: Path, source: str, offset: int, length: int) -> Place:
-    """The place of some characters of the text at `path`; of the whole text where that has several lines or escapes."""
+    """The place of some characters of the text at `path`, however it is written; else of the whole text."""
     place = document.place(path)
     lines = document.text.splitlines()
-    if place.line != place.end_line or place.line > len(lines):
+    if place.line > len(lines):
         return place
     line = lines[place.line - 1]
     start = place.column - 1
     start += line[start : start + 1] in ("'", '"')
-    if not line.startswith(source, start):
-        return place
+    if place.line != place.end_line or not line.startswith(source, start):
+        return within(document.text, place, source, offset, length) or place
     column = start + min(offset, max(len(source) - 1, 0)) + 1
     return place._replace(column=column, end_column=column + length)

@@ -20,6 +20,7 @@ _READ: Mapping[str, tuple[str, ...]] = {
     "fuzzy": (".yaml", ".yml"),
     "motions": (".yaml", ".yml"),
     "models": (".yaml", ".yml", ".xml"),
+    "models/passages": (".yaml", ".yml"),
     "schemas/messages": (".json",),
 }
 
@@ -37,6 +38,12 @@ def read_files(root: Path) -> dict[str, bytes]:
             if content is not None:
                 found[f"{folder}/{os.fsencode(name).decode('utf-8', 'replace')}"] = content
     return dict(sorted(found.items()))
+
+
+def belongs(path: str) -> bool:
+    """Whether a file of that path from the project's root counts."""
+    folder, _, name = path.rpartition("/")
+    return path == MAIN_FILE or (not name.startswith(".") and name.endswith(_READ.get(folder, ())))
 
 
 def fingerprint(files: Mapping[str, bytes]) -> str:

@@ -57,22 +57,17 @@ class Outline:
         a second time.
         """
         if target.startswith("#"):
-            found, known = self._by_id(target[1:]), [f"#{e.name}" for e in self.entries.values() if e.name]
+            found = self._by_id(target[1:])
         elif target.startswith("."):
-            found, known = _descend(source, target[1:]), [f".{key}" for key in source.children]
+            found = _descend(source, target[1:])
         else:
-            siblings = source.parent.children if source.parent else {}
             found = _descend(source.parent, target) if source.parent else None
-            known = [
-                *siblings,
-                *(f".{key}" for key in source.children),
-                *(f"#{e.alias}" for e in self.entries.values() if e.parent and e.alias),
-            ]
         if found is None and target.rpartition(".")[2].lstrip("#") not in self.report.lost:
-            self._unknown(source, target, known, where, written or target)
+            self._unknown(source, target, where, written or target)
         return found
 
-    def _unknown(self, source: Entry, target: str, known: list[str], where: Path, written: str) -> None:
+    def _unknown(self, source: Entry, target: str, where: Path, written: str) -> None:
+        known = self._known(source, target)
         self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
         message = f"there is no state `{written}` to go to from {source.title}"
         hint = self._hint(source, target, known)
@@ -83,6 +78,16 @@ class Outline:
         related = [(meant.where, f"`{meant.name}` stands here")] if meant and "mean" in hint else []
         cause = f"{self.report.document.file} state {target.lstrip('#.')}"
         self.report("unknown-state", where, message, hint=hint, related=related, cause=cause)
+
+    def _known(self, source: Entry, target: str) -> list[str]:
+        """What could have been written in place of a target."""
+        if target.startswith("#"):
+            return [f"#{e.name}" for e in self.entries.values() if e.name]
+        children = [f".{key}" for key in source.children]
+        if target.startswith("."):
+            return children
+        aliases = [f"#{e.alias}" for e in self.entries.values() if e.parent and e.alias]
+        return [*(source.parent.children if source.parent else ()), *children, *aliases]
 
     def _meant(self, source: Entry, target: str) -> Entry | None:
         if target.startswith("#"):

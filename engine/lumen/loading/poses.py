@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import isfinite
+from math import isfinite, pi
 from typing import Any
 
 from lumen.interpreters.choreography import mirrored_joint
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.robots import Body
 from lumen.loading.source import Report
-from lumen.loading.units import seconds
+from lumen.loading.units import ANGLES, seconds
 
 Angles = dict[str, tuple[float, Path]]
 """For every joint its angle [rad; a hand 0..1] and where it stands in the file."""
@@ -53,7 +53,7 @@ class PoseReader:
         if name in self.body.postures:
             return self.body.postures[name]
         hint = did_you_mean(name, self.body.postures, f"{self.body.name} knows")
-        self.report("unknown-posture", path, f"there is no posture `{name}`", hint=hint)
+        self.report("unknown-posture", path, f"there is no posture `{name}`", hint=hint, cause=f"posture {name}")
         return None
 
     def number(self, value: float, path: Path) -> bool:
@@ -109,12 +109,23 @@ class PoseReader:
 
     def _inside(self, name: str, value: float, path: Path) -> bool:
         joint = self.body.joints[name]
-        if joint.minimum - TOLERANCE <= value * self.factor <= joint.maximum + TOLERANCE:
+        if self._fits(name, value * self.factor):
             return True
         low, high = (round(limit / self.factor, 4) for limit in (joint.minimum, joint.maximum))
         hint = f"it goes from {low:g} to {high:g} {self.unit}"
-        self.report("angle-out-of-range", path, f"`{name}` can't go to {value:g} {self.unit}", hint=hint)
+        cause = ""
+        if self.unit == "rad" and abs(value) > 2 * pi and self._fits(name, value * ANGLES["deg"]):
+            hint = f"write `units: {{angle: deg}}` at the top if these are degrees; {hint}"
+            cause = f"{self.report.document.file} radians"
+        elif mirrored_joint(name)[0] != name and self._fits(name, -value * self.factor):
+            hint = f"left and right turn opposite ways: write {-value:g} if that is meant; {hint}"
+        message = f"`{name}` can't go to {value:g} {self.unit}"
+        self.report("angle-out-of-range", path, message, hint=hint, cause=cause)
         return False
+
+    def _fits(self, name: str, angle: float) -> bool:
+        joint = self.body.joints[name]
+        return joint.minimum - TOLERANCE <= angle <= joint.maximum + TOLERANCE
 
     def _hands(self, hands: Mapping[str, float], path: Path) -> Angles:
         found: Angles = {}

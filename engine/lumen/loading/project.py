@@ -1,6 +1,7 @@
 """A whole project: all its files built into a `Draft`, and that into a `Project` where nothing is wrong."""
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any, TypeVar
 
@@ -32,6 +33,7 @@ _KINDS: Mapping[str, str] = {
     "behaviors/stories": "story",
     "fuzzy": "controller",
     "motions": "motion",
+    "models/passages": "motion",
     "models": "body",
 }
 
@@ -51,7 +53,9 @@ def draft(files: Mapping[str, bytes]) -> Draft:
     )
     found.stories = _each(sources["behaviors/stories"], build_story)
     found.controllers = _each(sources["fuzzy"], build_controller)
-    found.motions = _motions(found, sources["motions"])
+    passages = _motions(found, "models/passages", sources)
+    found.bodies = {name: replace(body, passages=tuple(passages.values())) for name, body in found.bodies.items()}
+    found.motions = _motions(found, "motions", sources)
     _messages(found)
     torn = {d.place.file for d in found.loose if d.severity is Severity.ERROR}
     for file, report in found.reports.items():
@@ -127,8 +131,9 @@ def _each(sources: Mapping[str, tuple[Any, Report]], build: Callable[..., T | No
     return built
 
 
-def _motions(found: Draft, sources: Mapping[str, tuple[Any, Report]]) -> dict[str, Motion]:
-    """The motions, which can be read only where the robot's body is known."""
+def _motions(found: Draft, folder: str, folders: Mapping[str, Mapping[str, tuple[Any, Report]]]) -> dict[str, Motion]:
+    """The motions of a folder, which can be read only where the robot's body is known."""
+    sources = folders[folder]
     only = next(iter(found.bodies)) if found.settings is None and len(found.bodies) == 1 else ""
     model = found.settings.model if found.settings else only
     reports = [report for _, report in sources.values()]
@@ -136,9 +141,9 @@ def _motions(found: Draft, sources: Mapping[str, tuple[Any, Report]]) -> dict[st
         return {}
     for report in reports:
         report.lost |= found.report("models", model).lost
-    given = tuple(found.contents("motions", "models", MAIN_FILE))
+    given = tuple(found.contents(folder, "models", MAIN_FILE))
     return again(
-        ("motions",),
+        (folder,),
         given,
         lambda: _built(reports[0], lambda: build_motions(sources, found.bodies[model])) or {},
         worth=lambda _: not any(report.diagnostics for report in reports),

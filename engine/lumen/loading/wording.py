@@ -1,5 +1,6 @@
 """What a schema's validator has to say of a value, in a student's words."""
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -19,6 +20,7 @@ TYPES: Mapping[str, str] = {
     "boolean": "true or false",
     "null": "empty",
 }
+_NUMBER = re.compile(r"([-+]?\d[\d_]*(?:[.,]\d+)?) ?(°|deg|rad|mm|cm|m|%|px|s|)")
 _TRUTHS = {"yes": "true", "y": "true", "on": "true", "no": "false", "n": "false", "off": "false"}
 
 
@@ -100,14 +102,24 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
     """What to write in place of a value of the wrong type that is nearly right."""
     if "boolean" in wanted and isinstance(value, str) and (truth := _TRUTHS.get(value.lower())):
         return f"write `{truth}`: in YAML 1.2 `{value}` is a text"
-    if {"number", "integer"} & set(wanted) and isinstance(value, str) and type(resolve(value)) in (int, float):
-        return f"leave out the quotes: {value}"
+    if {"number", "integer"} & set(wanted) and isinstance(value, str):
+        if type(resolve(value)) in (int, float):
+            return f"leave out the quotes: {value}"
+        if number := _NUMBER.fullmatch(value):
+            return f"write {number[1].replace(',', '.').replace('_', '')}" + _unit(number[2])
     if "string" in wanted and isinstance(value, bool | int | float):
         if any(seconds(example) is not None for example in schema.get("examples", ())):
             return "write the unit too, as in `500ms`, `20s` or `2min`"
         written = str(value).lower() if isinstance(value, bool) else f"{value}"
         return f'put it in quotes: "{written}"'
     return ""
+
+
+def _unit(unit: str) -> str:
+    """Where to say the unit of a number that has one."""
+    kind = "angle" if unit in ("°", "deg", "rad") else "length" if unit in ("m", "cm", "mm") else ""
+    name = "deg" if unit == "°" else unit
+    return f", and once for the file `units: {{{kind}: {name}}}`" if kind else ""
 
 
 def _either(types: list[str]) -> str:

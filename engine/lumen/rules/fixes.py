@@ -185,8 +185,28 @@ def _comment(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
     return [Fix("delete the comment", (Edit(spot, ""),))]
 
 
+def _straight(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+    """Straight quotes around a text that has curly ones around it, and no others in it."""
+    there = sheet.at(diagnostic.place)
+    if len(there) < 2 or there[0] not in "“”„‟" or there[-1] not in "“”‟" or any(c in '"\\' for c in there):
+        return []
+    return [Fix("write straight quotes", (Edit(diagnostic.place, f'"{there[1:-1]}"'),))]
+
+
+def _filled(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+    """Two braces on both sides of what is to be filled in."""
+    there, said, right = sheet.at(diagnostic.place), _SAYS.search(diagnostic.message), _SAYS.search(diagnostic.hint)
+    if said is None or right is None or there.count(said[1]) != 1 or not right[1].startswith("{{"):
+        return []
+    start = diagnostic.place.column + there.index(said[1])
+    spot = diagnostic.place._replace(column=start, end_column=start + len(said[1]))
+    return [Fix(f"write {right[1]}", (Edit(spot, right[1]),))]
+
+
 _FIXERS: Mapping[str, Callable[[Diagnostic, Sheet], list[Fix]]] = {
+    "curly-quotes": _straight,
     "duplicate-key": _twice,
+    "not-filled-in": _filled,
     "rule-syntax": _word,
     "tab": _tabs,
     "unused-ignore": _comment,

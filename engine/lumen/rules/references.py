@@ -88,4 +88,5 @@ def _action(draft: Draft, report: Report, references: References, site: Site) ->
             hint = did_you_mean(name, draft.body.postures, f"{draft.body.name} knows")
             lost = draft.report("models", draft.settings.model).lost if draft.settings else set()
             if name not in lost:
-                find(report, "unknown-posture", path, f"there is no posture `{name}`", hint)
+                message = f"there is no posture `{name}`"
+                find(report, "unknown-posture", path, message, hint, cause=f"posture {name}")

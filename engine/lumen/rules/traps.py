@@ -1,7 +1,7 @@
 """What YAML reads otherwise than it was meant: words for true and false, numbers, quotes; texts with half a hole."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from lumen.language.actions import SayText
 from lumen.language.diagnostics import Path
@@ -13,8 +13,8 @@ from lumen.rules.walk import sites
 
 _TRUTHS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
 _TRUTH = re.compile(r"(?i)(?<=[:,\[-] )(yes|no|on|off|y|n)(?=\s|[,}\]]|$)", re.MULTILINE)
-_ZEROS = re.compile(r"(?<![\w.:+#'\"-])[-+]?0\d+(?![\w.:-])")
-_GROUPED = re.compile(r"(?<![\w.:'\"-])[-+]?\d{1,3}(?:_\d{3})+(?![\w.:])")
+_ZERO, _ZEROS = re.compile(r"0(?<=[ \[,+-]0)\d"), re.compile(r"[-+]?0\d+")  # the first one finds lines, and is fast
+_GROUP, _GROUPED = re.compile(r"_(?<=\d_)\d"), re.compile(r"[-+]?\d{1,3}(?:_\d{3})+")
 _CURLY = re.compile("[“”„‘’«»]")
 _PAIRS = {"“": "”", "”": "”", "„": "“”", "‘": "’", "«": "»"}
 _DATA = ("context", "data", "body", "robot")
@@ -25,28 +25,25 @@ _BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
 def check(draft: Draft) -> None:
     """Report values that are texts, numbers or texts with quotes where something else was probably meant."""
     for report in draft.reports.values():
-        text = report.document.text
-        if _TRUTH.search(text):
-            _each(report, _truth)
-        if _ZEROS.search(text) or _GROUPED.search(text):
-            _each(report, _number)
-        if _CURLY.search(text):
-            _each(report, _quotes)
+        for pattern, look in ((_TRUTH, _truth), (_ZERO, _number), (_GROUP, _number), (_CURLY, _quotes)):
+            if lines := _lines(report.document.text, pattern):
+                for path, source, value in list(_plain(report, lines)):
+                    look(report, path, source, value)
     for name, machine in draft.behaviors.items():
         _holes(machine, draft.report("behaviors", name))
 
 
-def _each(report: Report, look: Callable[[Report, Path, str, object], None]) -> None:
+def _lines(text: str, pattern: re.Pattern[str]) -> set[int]:
+    """The numbers of the lines in which a pattern is found."""
+    return {text.count("\n", 0, found.start()) + 1 for found in pattern.finditer(text)}
+
+
+def _plain(report: Report, wanted: set[int]) -> Iterator[tuple[Path, str, object]]:
+    """Every value that stands in one of these lines without quotes: its path, as it is written, and as it is read."""
     lines = report.document.text.split("\n")
-    for path, source, value in list(_plain(report, lines)):
-        look(report, path, source, value)
-
-
-def _plain(report: Report, lines: list[str]) -> Iterator[tuple[Path, str, object]]:
-    """Every value that stands in one line without quotes: its path, as it is written, and as it is read."""
     for path, span in report.document.spans.items():
         place = span.value
-        if path and place.line == place.end_line:
+        if place.line in wanted and path and place.line == place.end_line:
             source = lines[place.line - 1][place.column - 1 : place.end_column - 1]
             if source and source[0] not in "'\"[{|>&*!":
                 yield path, source, value_at(report, path)

@@ -1,0 +1,62 @@
+"""The files of a project as they were in a revision of its git repository, read without a checkout."""
+
+import os
+import subprocess
+from collections.abc import Iterator, Sequence
+from pathlib import Path, PurePosixPath
+
+from lumen.errors import UsageError
+from lumen.loading.files import belongs
+
+
+def files_at(root: Path, revision: str) -> dict[str, bytes] | None:
+    """The files that count in the project at `root` as they stood in a revision; None where git knows no such one.
+
+    Raises UsageError where there is no git, or `root` lies in no repository.
+    """
+    where = _git(root, "rev-parse", "--show-prefix")
+    if where is None:
+        raise UsageError(f"`{revision}` is no folder, and {root} lies in no git repository to have a revision of it")
+    commit = _git(root, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
+    if commit is None:
+        return None
+    tree = f"{commit.decode().strip()}:{os.fsdecode(where).strip()}"
+    listed = _git(root, "ls-tree", "-r", "-z", "--full-tree", tree) or b""
+    rows = [(PurePosixPath(path), id) for path, id in _blobs(listed) if belongs(path)]
+    contents = _contents(root, [id for _, id in rows])
+    return {str(path): content for (path, _), content in sorted(zip(rows, contents, strict=True))}
+
+
+def _blobs(listed: bytes) -> Iterator[tuple[str, str]]:
+    """Path and id of every plain file in the output of `git ls-tree -z`."""
+    for row in filter(None, listed.split(b"\0")):
+        about, _, path = row.partition(b"\t")
+        mode, _, id = about.decode().split(" ", 2)
+        if mode in ("100644", "100755"):
+            yield path.decode("utf-8", "replace"), id
+
+
+def _contents(root: Path, ids: Sequence[str]) -> list[bytes]:
+    """What these files hold, in their order."""
+    found, text = [], _git(root, "cat-file", "--batch", given="".join(f"{id}\n" for id in ids).encode()) or b""
+    while text:
+        head, _, text = text.partition(b"\n")
+        size = int(head.split()[2])
+        found.append(text[:size])
+        text = text[size + 1 :]
+    return found
+
+
+def _git(root: Path, *arguments: str, given: bytes = b"") -> bytes | None:
+    """What git says, None where it refuses."""
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(root), *arguments],
+            input=given,
+            capture_output=True,
+            check=False,
+            env={**os.environ, "GIT_OPTIONAL_LOCKS": "0"},
+        )
+    except OSError:
+        raise UsageError("git is not installed, and without it there are no revisions to read") from None
+    return done.stdout if done.returncode == 0 else None

@@ -1,0 +1,69 @@
+"""Slips of the keyboard and of word processors that keep a file from being YAML, looked for near where it fails."""
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+BACK = 3
+"""Lines before the one that failed in which the slip may be: YAML notices late."""
+
+_KEY = r"[A-Za-z_][\w.]*"
+
+
+class Slip(NamedTuple):
+    """Where (from 1) and how long it is, what it is, and what to write."""
+
+    line: int
+    column: int
+    length: int
+    message: str
+    hint: str
+
+
+_SLIPS = (
+    (
+        re.compile("^[ ]*(?P<slip>[\u00a0\u2007\u202f\u3000\u200b\ufeff]+)"),
+        "this looks like a blank in the indentation, and is another character",
+        "delete it, and type spaces",
+    ),
+    (
+        re.compile(f"^ *(?:- )?{_KEY}(?P<slip>：)"),
+        "this colon is a wide one, of Chinese or Japanese text",
+        "write `:` and a blank",
+    ),
+    (
+        re.compile(f"^ *(?:- )?{_KEY}:(?P<slip>[\u00a0\u2007\u202f\u3000\u200b]+)"),
+        "this looks like a blank, and is another character",
+        "delete it, and type a space",
+    ),
+    (
+        re.compile("^ *(?P<slip>[–—•*]) +\\w"),
+        "an item of a list begins with a hyphen",
+        "write `- `",
+    ),
+    (
+        re.compile(f"^ *(?P<slip>-)(?={_KEY}:(?: |$))"),
+        "between the hyphen of an item and its text stands a blank",
+        "write `- `",
+    ),
+    (
+        re.compile(f"^ *(?:- )?{_KEY}(?P<slip>:)(?=[A-Za-z\"'\\[{{][^ ]*$)(?!//)"),
+        "between a colon and its value stands a blank",
+        "write `: `",
+    ),
+    (
+        re.compile(f"^ *(?:- )?{_KEY}(?P<slip> ?=) ?(?=[^=>])"),
+        "between a key and its value stands a colon",
+        "write `: `",
+    ),
+)
+
+
+def slip_near(lines: Sequence[str], index: int) -> Slip | None:
+    """The slip that is nearest before the line of that index, or in it; None where there is none that is known."""
+    for i in range(min(index, len(lines) - 1), max(index - BACK, 0) - 1, -1):
+        for pattern, message, hint in _SLIPS:
+            if found := pattern.search(lines[i]):
+                start, end = found.span("slip")
+                return Slip(i + 1, start + 1, end - start, message, hint)
+    return None
