@@ -55,7 +55,8 @@ def test_unreadable(text: str, offset: int, message: str) -> None:
 def test_without_a_value() -> None:
     with pytest.raises(ExpressionError, match="`context` has no `nam`") as raised:
         compile_template("Hi {{ context.nam }}")(SCOPE)
-    assert (raised.value.offset, raised.value.hint) == (14, "did you mean `name`?")
+    assert raised.value.offset == 14
+    assert raised.value.hint.startswith("did you mean `name`?")
 
 
 @pytest.mark.parametrize("value", [10**5000, {"a": [0] * 20_000}, "x" * 10_001, object(), ["x" * 200_000]], ids=type)

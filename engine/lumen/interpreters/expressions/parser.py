@@ -27,6 +27,12 @@ _HINTS = {
     "and": "write `&&`", "or": "write `||`", "not": "write `!`", "is": "compare with `==`", "None": "write `null`",
     "True": "write `true`", "False": "write `false`", "if": "write `condition ? then : otherwise`",
 }  # fmt: skip
+_PAIRS = {
+    "**": "there are no powers; multiply", "//": "between whole numbers `/` leaves out the fraction; no comments here",
+    "<>": "write `!=`", "=>": "write `>=`", "=<": "write `<=`", "++": "give it a new value with `assign`",
+    "??": "ask with `has(…) ? … : …`", "?.": "ask `has(…)` first",
+}  # fmt: skip
+"""Signs of other languages that are two tokens here."""
 
 
 def parse_expression(source: str) -> Node:
@@ -75,7 +81,13 @@ class _Parser:
         if token.kind == "end":
             what = "the expression ends too early" if self.position else "there is no expression"
             return ExpressionError(what, token.offset, hint)
-        return ExpressionError(f"`{token.text[:40]}` can't stand here", token.offset, _HINTS.get(token.text, hint))
+        hint = _PAIRS.get(self._pair(), _HINTS.get(token.text, hint))
+        return ExpressionError(f"`{token.text[:40]}` can't stand here", token.offset, hint)
+
+    def _pair(self) -> str:
+        """This sign and the one right before it, as other languages write them together."""
+        before, token = self.tokens[max(self.position - 1, 0)], self.token
+        return before.text + token.text if before.end == token.offset else ""
 
     def expression(self, power: int) -> Node:
         """An expression whose operators all bind more tightly than `power`."""

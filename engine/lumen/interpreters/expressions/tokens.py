@@ -63,7 +63,8 @@ def token_at(source: str, offset: int) -> Token:
     if match is None or match.lastgroup is None:
         character = source[offset]
         what = "this text is not closed" if character in "'\"" else f"`{character}` has no meaning here"
-        raise ExpressionError(what, offset, _HINTS.get(character, ""))
+        letter = "a field with such a letter is written in brackets: context['…']" if character.isalpha() else ""
+        raise ExpressionError(what, offset, _HINTS.get(character, letter))
     kind, text = match.lastgroup, match[0]
     if kind in ("int", "float"):
         return Token(kind, text, offset, _number(source, kind, text, match.end()))
