@@ -21,7 +21,7 @@ class Bulletin:
     """One verdict on files: `unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run`, `status`.
 
     `who` asked for it: `files`, `command`, `probation`. `before` and `after` are hashes of bundles, `restart` sentences
-    about what comes into force only then, `took` times [s] by what took them.
+    about what comes into force only then, `took` times [s] by what took them. `back`: the files ran before.
     """
 
     verdict: str
@@ -35,6 +35,7 @@ class Bulletin:
     reason: str = ""
     hint: str = ""
     notes: tuple[str, ...] = ()
+    back: bool = False
     took: dict[str, float] = field(default_factory=dict)
     more: dict[str, Any] = field(default_factory=dict)
 
@@ -60,7 +61,8 @@ class Bulletin:
     def _verdict(self) -> Iterator[str]:
         match self.verdict:
             case "applied":
-                yield f"the saved files are in force: {self._what()}"
+                which = "the files before are in force again" if self.back else "the saved files are in force"
+                yield f"{which}: {self._what()}"
             case "rolled back":
                 yield f"{self.reason}: back to the files before, revision {self.revision}"
             case "refused":

@@ -11,10 +11,15 @@ ANSWERS = "lumen.operator.answer"
 PATIENCE = 30.0
 
 
-def command(options: argparse.Namespace, body: Any, done: str) -> int:
-    """Send it and wait for the answer: prints `done` and gives 0, or says why not and gives 1."""
+def command(options: argparse.Namespace, body: Any, done: str, first: tuple[str, Any] | None = None) -> int:
+    """Send it and wait for the answer: prints `done` and gives 0, or says why not and gives 1.
+
+    `first` is a message (key, body) that goes before it.
+    """
     reached = reach(options)
     try:
+        if first:
+            reached.bus.publish(*first)
         answer = str(next(ask(reached.bus, reached.command, body, ANSWERS, first=PATIENCE)))
     finally:
         reached.bus.close()

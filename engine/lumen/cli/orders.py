@@ -1,4 +1,4 @@
-"""What others may ask of a running exhibition's files: messages on `lumen.config.command`."""
+"""What an operator may ask of a running exhibition: messages on `lumen.config.command`."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.ports import Bus, Message
 
 COMMAND, STATUS = "lumen.config.command", "lumen.config.status"
-VERBS = ("reload", "apply", "rollback", "dry-run", "status")
+VERBS = ("reload", "apply", "rollback", "dry-run", "status", "stop")
 WAITING = 100
 
 

@@ -8,6 +8,7 @@ from lumen.cli.cast import Cast
 from lumen.cli.main import STARTED
 from lumen.cli.premises import Premises
 from lumen.cli.reloading import Reloading
+from lumen.cli.settled import settled
 from lumen.cli.show import Show, film
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedSpeech
@@ -62,6 +63,7 @@ class Performance:
             self._settle(mode)
             self._introduce(speed)
             self._start(language, fresh=fresh)
+            settled()
             began = time.monotonic()
             while not self._over(now, period):
                 now = show.tick()

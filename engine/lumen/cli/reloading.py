@@ -18,6 +18,7 @@ from lumen.cli.transcript import Transcript
 from lumen.errors import BusError, UsageError
 from lumen.interpreters.changes import Change, changes, live
 from lumen.interpreters.migration import Plan, Refusal, Wait
+from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.ports import Message
@@ -135,7 +136,10 @@ class Reloading:
         except UsageError as error:
             answering(message, self._bus)(self._answer("refused", str(error)).to_json())
             return
-        if order.verb == "status":
+        if order.verb == "stop":
+            self._show.exhibition.happen(Event("stop", {}))
+            order.answer(self._answer("stopped", "the behaviour is told to stop").to_json())
+        elif order.verb == "status":
             order.answer(self._status().to_json())
         elif self._mode == "off":
             order.answer(self._answer("refused", "it was started with --reload off").to_json())
@@ -155,18 +159,18 @@ class Reloading:
         order = judged.saved.asked if isinstance(judged.saved.asked, Order) else None
         if not judged.good or judged.project is None:
             self._staged = None
-            bulletin = Bulletin("refused", "command" if order else "files", after=judged.hash, judged=judged)
+            bulletin = self._verdict("refused", "command" if order else "files", judged)
             bulletin.reason = judged.fault
             self._tell(bulletin, [order] if order else [])
             return
         project = live(self._running, judged.project)
         found = changes(self._running, judged.project)
         staged = Staged(project, found, judged, "command" if order else "files")
-        if order and order.verb == "dry-run":
+        if order and order.verb == "dry-run" and judged.hash != self._running.hash:
             self._try(staged, order)
         elif judged.hash == self._running.hash:
             self._staged = None
-            self._tell(Bulletin("unchanged", staged.who, after=judged.hash, judged=judged), [order] if order else [])
+            self._tell(self._verdict("unchanged", staged.who, judged), [order] if order else [])
         elif order or self._mode == "auto":
             self._stage(staged, order)
         else:
@@ -230,6 +234,7 @@ class Reloading:
         self.probation.begin(before, now)
         bulletin = self._about(staged, "applied")
         bulletin.before, bulletin.revision, bulletin.notes = before.hash, self.revision, plan.notes
+        bulletin.back = staged.back
         bulletin.took = {"applying": time.perf_counter() - began, "waiting": time.monotonic() - staged.since}
         self._tell(bulletin, staged.orders)
         self._applied(self._running)
@@ -264,6 +269,9 @@ class Reloading:
     def _about(self, staged: Staged, verdict: str) -> Bulletin:
         hashes = self._running.hash, staged.project.hash
         return Bulletin(verdict, staged.who, *hashes, self.revision, staged.changes, staged.judged)
+
+    def _verdict(self, verdict: str, who: str, judged: Judged) -> Bulletin:
+        return Bulletin(verdict, who, self._running.hash, judged.hash, self.revision, judged=judged)
 
     def _answer(self, verdict: str, reason: str) -> Bulletin:
         return Bulletin(verdict, "command", self._running.hash, self._running.hash, self.revision, reason=reason)

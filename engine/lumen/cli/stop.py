@@ -3,6 +3,7 @@
 import argparse
 
 from lumen.cli.commanding import command
+from lumen.cli.orders import COMMAND
 from lumen.cli.reach import configure_reach
 
 
@@ -11,5 +12,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 once it rests, 1 where it could not."""
-    return command(options, {"type": "motion", "method": "rest"}, "the robot rests")
+    """0 once it rests, 1 where it could not. The behaviour is told as well, so that it does not go on."""
+    rest = {"type": "motion", "method": "rest"}
+    return command(options, rest, "the robot rests", first=(COMMAND, {"command": "stop"}))

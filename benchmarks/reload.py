@@ -1,0 +1,471 @@
+"""A tour under load while its files are edited in every way that editors save, a third of the edits broken.
+
+    python benchmarks/reload.py [--edits N] [--bus URL] [--quiet SECONDS] [--seed N]
+
+A visitor is followed by the robot's head, 200 events a second are counted by the behaviour, and a writer makes one
+edit after the other, each as soon as there is a verdict on the one before. What runs must always be a state of the
+files that the writer completed, and a good one; no event may be lost; nothing may grow.
+"""
+
+import argparse
+import os
+import platform
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from io import StringIO
+from pathlib import Path
+from statistics import quantiles
+from typing import NamedTuple
+
+import lumen
+from lumen.bus import connect
+from lumen.cli.bulletin import Bulletin
+from lumen.cli.cast import Cast
+from lumen.cli.records import Records
+from lumen.cli.reloading import Reloading
+from lumen.cli.settled import settled
+from lumen.cli.show import Show
+from lumen.cli.transcript import Transcript
+from lumen.clocks.simulated import SimulatedClock
+from lumen.language.stories import Visitor
+from lumen.loading.files import fingerprint, read_files
+from lumen.robots.recording import RecordingRobot
+from lumen.runtime.exhibition import TICK
+from lumen.runtime.home import Home
+
+ROOT = Path(__file__).parents[1]
+RATE = 200
+STORIES = ("known_visitor", "refuses", "unknown_visitor")
+TOUR, MAIN = "behaviors/tour.yaml", "lumen.yaml"
+FIVE = (MAIN, TOUR, *(f"behaviors/stories/{name}.yaml" for name in STORIES))
+PATIENCE = 60.0
+WARM = 0.2
+"""The part of the edits after which memory, threads and files are counted for the first time."""
+
+COUNTER = """
+  load:
+    initial: counting
+    states:
+      counting: {on: {load: {actions: {assign: {loaded: "context.loaded + 1"}}}}}
+"""
+ROUTE = "  load: {key: lumen.load, direction: in, event: load}\n"
+BREAKS: tuple[tuple[str, str, str], ...] = (
+    (TOUR, "onDone: any_question", "onDone: any_questoin"),
+    (TOUR, "id: tour\n", "id: tour\n\tx: 1\n"),
+    (TOUR, "{play: sing}", "{play: sign}"),
+    (MAIN, "languages: [en, id]", "languages: [en, id"),
+    (MAIN, "behavior: tour", "behaviour: tour"),
+)
+
+
+@dataclass
+class Outcome:
+    """What was seen; times in [s]."""
+
+    edits: int
+    broken: int = 0
+    sent: int = 0
+    counted: int = 0
+    ticks: int = 0
+    missed: int = 0
+    gap: float = 0.0
+    beside: int = 0
+    wrong: list[str] = field(default_factory=list)
+    applied: int = 0
+    refused: int = 0
+    waited: int = 0
+    unanswered: int = 0
+    verdicts: list[float] = field(default_factory=list)
+    own: list[float] = field(default_factory=list)
+    swaps: list[float] = field(default_factory=list)
+    memory: tuple[int, int] = (0, 0)
+    threads: tuple[int, int] = (0, 0)
+    handles: tuple[int, int] = (0, 0)
+
+    @property
+    def lost(self) -> int:
+        return self.sent - self.counted
+
+    @property
+    def growth(self) -> float:
+        """Of the resident memory, in percent."""
+        before, after = self.memory
+        return 100.0 * (after - before) / before if before else 0.0
+
+
+class Told(NamedTuple):
+    """A verdict: when it came, on which files, and how long our own work and the swap took; times in [s]."""
+
+    at: float
+    verdict: str
+    hash: str
+    own: float
+    swap: float
+    reason: str
+
+
+def told_of(bulletin: Bulletin, at: float) -> Told:
+    own = bulletin.judged.took if bulletin.judged else 0.0
+    reason = next(bulletin.lines(), "")
+    return Told(at, bulletin.verdict, bulletin.after, own, bulletin.took.get("applying", 0.0), reason)
+
+
+class Writer:
+    """Edits a project as people and programs do; `good` and `bad` are the hashes of all states it completed."""
+
+    def __init__(self, root: Path, seed: int) -> None:
+        self.root, self.random = root, random.Random(seed)
+        self.good = {fingerprint(read_files(root))}
+        self.bad: set[str] = set()
+        self.number = 0
+        self.mending: tuple[str, ...] = ()
+        self.ways: list[Callable[[dict[str, str]], None]] = [
+            self.in_place, self.truncated, self.atomically, self.one_after_the_other, self.checked_out,
+        ]  # fmt: skip
+
+    def edit(self) -> tuple[str, bool]:
+        """Make the next edit; the hash of what the files are now, and whether they are good."""
+        self.number += 1
+        broken = self.number % 3 == 0
+        way = self.ways[self.number % len(self.ways)]
+        chosen = FIVE if way in self.ways[3:] else (self.random.choice(FIVE),)
+        files = {path: self.marked(path) for path in (*self.mending, *chosen)}
+        self.mending = ()
+        if broken:
+            path, old, new = self.random.choice(BREAKS)
+            text = files.get(path) or self.marked(path)
+            assert old in text, (path, old)
+            files[path] = text.replace(old, new, 1)
+            self.mending = (path,)
+        way(files)
+        hash = fingerprint(read_files(self.root))
+        (self.bad if broken else self.good).add(hash)
+        return hash, not broken
+
+    def marked(self, path: str) -> str:
+        """The file as it was at first, with the number of this edit in a text of it."""
+        text = self.read_first(path)
+        old = {MAIN: "name: Lumen at", TOUR: "en: Never mind."}.get(path, "title: ")
+        assert old in text, path
+        return text.replace(old, f"{old} {self.number} ".rstrip(), 1)
+
+    def read_first(self, path: str) -> str:
+        return (self.root.parent / "first" / path).read_text("utf-8")
+
+    def in_place(self, files: dict[str, str]) -> None:
+        for path, text in files.items():
+            with (self.root / path).open("r+", encoding="utf-8") as file:
+                file.write(text)
+                file.truncate()
+
+    def truncated(self, files: dict[str, str]) -> None:
+        """Emptied, and half of it written before the rest."""
+        for path, text in files.items():
+            with (self.root / path).open("w", encoding="utf-8") as file:
+                file.flush()
+                time.sleep(0.05)
+                file.write(text[: len(text) // 2])
+                file.flush()
+                time.sleep(0.05)
+                file.write(text[len(text) // 2 :])
+
+    def atomically(self, files: dict[str, str]) -> None:
+        """As vim does: the old file becomes a backup, and another takes its name."""
+        for path, text in files.items():
+            file = self.root / path
+            (file.parent / "4913").touch()
+            (file.parent / "4913").unlink()
+            os.replace(file, file.with_name(f"{file.name}~"))
+            time.sleep(0.02)
+            draft = file.with_name(f".{file.name}.swp")
+            draft.write_text(text, "utf-8")
+            os.replace(draft, file)
+            file.with_name(f"{file.name}~").unlink()
+
+    def one_after_the_other(self, files: dict[str, str]) -> None:
+        for path, text in files.items():
+            (self.root / path).write_text(text, "utf-8")
+            if path != list(files)[-1]:
+                time.sleep(self.pause)
+
+    pause = 0.12
+
+    def checked_out(self, files: dict[str, str]) -> None:
+        """Two revisions of the project, and from one to the other."""
+        for path, text in files.items():
+            (self.root.parent / "work" / path).write_text(text, "utf-8")
+        _git(self.root.parent / "work", "commit", "-qam", f"edit {self.number}")
+        _git(self.root, "fetch", "-q", "origin")
+        _git(self.root, "checkout", "-qf", "origin/HEAD")
+
+
+@contextmanager
+def project() -> Iterator[Path]:
+    """A copy of the shipped tour that counts events, as a clone of a git repository."""
+    with tempfile.TemporaryDirectory(prefix="lumen-reload-") as name:
+        folder = Path(name)
+        first = folder / "first"
+        for part in ("behaviors", "fuzzy", "motions", "schemas", "models"):
+            shutil.copytree(ROOT / part, first / part)
+        for story in (first / "behaviors" / "stories").glob("*.yaml"):
+            if story.stem not in STORIES:
+                story.unlink()
+        main = (ROOT / MAIN).read_text("utf-8").replace("story: visitor", "story: refuses")
+        (first / MAIN).write_text(main.replace("routes:\n", f"routes:\n{ROUTE}", 1), "utf-8")
+        tour = (ROOT / TOUR).read_text("utf-8").replace("context:\n", "context:\n  loaded: 0\n", 1)
+        (first / TOUR).write_text(tour.rstrip("\n") + "\n" + COUNTER, "utf-8")
+        shutil.copytree(first, folder / "work")
+        _git(folder / "work", "init", "-q", "-b", "main")
+        _git(folder / "work", "add", ".")
+        _git(folder / "work", "commit", "-qm", "first")
+        _git(folder, "clone", "-q", "work", "show")
+        yield folder / "show"
+
+
+METRONOME = f"""
+import sys, threading, time
+ended, missed, before = threading.Event(), 0, time.monotonic()
+threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
+while not ended.is_set():
+    time.sleep({TICK})
+    now = time.monotonic()
+    missed, before = missed + (now - before > {2 * TICK}), now
+print(missed)
+"""
+
+
+@contextmanager
+def metronome() -> Iterator[list[int]]:
+    """Another process that does nothing but tick: how many ticks the machine itself lets miss, once it is over."""
+    missed: list[int] = []
+    with subprocess.Popen([sys.executable, "-c", METRONOME], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        yield missed
+        told, _ = process.communicate()
+        missed.append(int(told))
+
+
+class Load(threading.Thread):
+    """Sends events on a bus of its own, numbered by their count, at `RATE` a second."""
+
+    def __init__(self, show: Show, url: str) -> None:
+        super().__init__(daemon=True)
+        self.sent, self.ended = 0, threading.Event()
+        self._bus = show.exhibition.bus if url.startswith("memory") else connect(url)
+        self._own = not url.startswith("memory")
+
+    def run(self) -> None:
+        due = time.monotonic()
+        while not self.ended.wait(max(0.0, due - time.monotonic())):
+            self._bus.publish("lumen.load", {"number": self.sent})
+            self.sent += 1
+            due += 1 / RATE
+        if self._own:
+            self._bus.close()
+
+
+class Soak:
+    """A show in real time with a writer beside it."""
+
+    def __init__(self, root: Path, url: str, quiet: float, seed: int, edits: int) -> None:
+        bundle = lumen.load(root)
+        robot = RecordingRobot(bundle.body)
+        self.show = Show(bundle, Cast(robot, SimulatedClock(robot.advance, 1.0), robot), url)
+        transcript = Transcript(self.show.exhibition.clock.now, lambda: bundle.machine, StringIO())
+        home = Home(root / ".lumen")
+        home.hold()
+        records = Records(home)
+        self.reloading = Reloading(self.show, transcript, records=records, quiet=quiet)
+        self.show.exhibition.parts += [self.reloading.tick, self.look]
+        self.show.closing.insert(0, self.reloading.close)
+        self.show.closing.append(home.release)
+        self.show.after.append(lambda _: records.keep(self.show.exhibition))
+        self.outcome, self.writer = Outcome(edits), Writer(root, seed)
+        self.load = Load(self.show, url)
+        self._told: list[Told] = []
+        self._last: Bulletin | None = None
+        self._before = time.monotonic()
+        self._running = bundle.hash
+        self._verdict = threading.Event()
+        self._editing = threading.Thread(target=self.edit, daemon=True)
+        self._done = threading.Event()
+
+    def look(self, _: float) -> None:
+        """On the running thread: every tick, every verdict, every bundle."""
+        now, outcome = time.monotonic(), self.outcome
+        gap, self._before = now - self._before, now
+        outcome.ticks += 1
+        outcome.gap = max(outcome.gap, gap)
+        outcome.missed += gap > 2 * TICK
+        if self.reloading.last is not self._last and self.reloading.last:
+            self._last = self.reloading.last
+            self._told.append(told_of(self._last, now))
+            self._verdict.set()
+        hash = self.show.exhibition.project.hash
+        if hash != self._running:
+            self._running = hash
+            self._applied = hash
+
+    _applied = ""
+
+    def edit(self) -> None:
+        """On the writer's thread: one edit after the other."""
+        for number in range(1, self.outcome.edits + 1):
+            seen = len(self._told)
+            hash, good = self.writer.edit()
+            saved = time.monotonic()
+            self.outcome.broken += not good
+            self.wait(hash, saved, seen)
+            if number == max(1, int(WARM * self.outcome.edits)):
+                self.count(0)
+        self._done.set()
+
+    def wait(self, hash: str, saved: float, seen: int) -> None:
+        """Until there is a verdict on these files, and what was good is in force."""
+        outcome, deadline = self.outcome, saved + PATIENCE
+        first = True
+        while time.monotonic() < deadline:
+            while seen < len(self._told):
+                told = self._told[seen]
+                seen += 1
+                self.check(told)
+                if told.hash != hash:
+                    continue
+                if first:
+                    outcome.verdicts.append(told.at - saved)
+                    outcome.own.append(told.own)
+                    first = False
+                if told.verdict != "waiting":
+                    return
+                outcome.waited += 1
+            self._verdict.wait(0.5)
+            self._verdict.clear()
+        outcome.unanswered += 1
+
+    def check(self, told: Told) -> None:
+        """Whether that verdict is right."""
+        outcome = self.outcome
+        if told.verdict == "applied":
+            outcome.applied += 1
+            outcome.swaps.append(told.swap)
+            if told.hash not in self.writer.good:
+                outcome.wrong.append(f"applied {told.hash[:8]}, which the writer never completed, or broke")
+        elif told.verdict == "refused":
+            outcome.refused += 1
+            if told.hash in self.writer.good:
+                outcome.wrong.append(f"refused good files: {told.reason}")
+
+    def count(self, place: int) -> None:
+        """Memory [bytes], threads and files of this process."""
+        import gc
+
+        gc.collect()
+        memory = int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        found = memory, threading.active_count(), len(os.listdir("/proc/self/fd"))
+        for name, value in zip(("memory", "threads", "handles"), found, strict=True):
+            both = list(getattr(self.outcome, name))
+            both[place] = value
+            setattr(self.outcome, name, tuple(both))
+
+    def run(self) -> Outcome:
+        show, outcome = self.show, self.outcome
+        try:
+            show.start()
+            assert show.walker
+            show.walker.arrive(Visitor())
+            self.load.start()
+            settled()
+            self.until(time.monotonic() + 2.0)
+            outcome.missed, outcome.gap, outcome.ticks = 0, 0.0, 0
+            with metronome() as beside:
+                self._editing.start()
+                while not self._done.is_set():
+                    show.tick()
+            outcome.beside = beside[0]
+            self.count(1)
+            self.load.ended.set()
+            self.load.join()
+            outcome.sent = self.load.sent
+            deadline = time.monotonic() + PATIENCE
+            while self.counted() < outcome.sent and time.monotonic() < deadline:
+                show.tick()
+            outcome.counted = self.counted()
+        finally:
+            show.close()
+        return outcome
+
+    def until(self, deadline: float) -> None:
+        while time.monotonic() < deadline:
+            self.show.tick()
+
+    def counted(self) -> int:
+        return int(self.show.exhibition.runtime.snapshot.context["loaded"])
+
+
+def soak(edits: int, url: str = "memory://", quiet: float = 0.3, seed: int = 1) -> Outcome:
+    """So many edits, and what came of them."""
+    with project() as root:
+        one = Soak(root, url, quiet, seed, edits)
+        one.writer.pause = 0.4 * quiet
+        return one.run()
+
+
+def _git(folder: Path, *words: str) -> None:
+    who = [
+        "-c",
+        "user.name=soak",
+        "-c",
+        "user.email=soak@localhost",
+        "-c",
+        "gc.auto=0",
+        "-c",
+        "init.defaultBranch=main",
+    ]
+    subprocess.run(["git", *who, *words], cwd=folder, check=True, capture_output=True)
+
+
+def _spread(times: list[float]) -> str:
+    if len(times) < 2:
+        return "no measure"
+    cuts = quantiles(times, n=20, method="inclusive")
+    return f"p50 {1000 * cuts[9]:.0f} ms, p95 {1000 * cuts[18]:.0f} ms, worst {1000 * max(times):.0f} ms"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--edits", type=int, default=50)
+    parser.add_argument("--bus", default="memory://")
+    parser.add_argument("--quiet", type=float, default=0.3)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    began = time.monotonic()
+    found = soak(options.edits, options.bus, options.quiet, options.seed)
+    print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
+    print(f"{found.edits} edits ({found.broken} broken) in {time.monotonic() - began:.0f} s on {options.bus}")
+    print(f"applied {found.applied}, refused {found.refused}, waited for the robot {found.waited}", end="")
+    print(f", without a verdict {found.unanswered}")
+    print(f"wrong or mixed bundles applied  {len(found.wrong)}")
+    print(f"events lost                     {found.lost} of {found.sent:,}")
+    print(f"ticks missed                    {found.missed} of {found.ticks:,}", end="")
+    print(f" (longest {1000 * found.gap:.0f} ms); a process that only ticks missed {found.beside} beside it")
+    print(f"saved to verdict                {_spread(found.verdicts)}")
+    print(f"  of which the quiet period     {1000 * options.quiet:.0f} ms")
+    print(f"  and our own work              {_spread(found.own)}")
+    print(f"swap                            {_spread(found.swaps)} (a tick is {1000 * TICK:.0f} ms)")
+    before, after = (size / 2**20 for size in found.memory)
+    print(f"memory                          {before:.1f} -> {after:.1f} MiB ({found.growth:+.1f} %)")
+    print(f"threads, files open             {found.threads[0]} -> {found.threads[1]}", end="")
+    print(f", {found.handles[0]} -> {found.handles[1]}")
+    for line in found.wrong[:10]:
+        print(f"  {line}")
+
+
+if __name__ == "__main__":
+    main()
