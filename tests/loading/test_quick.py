@@ -13,19 +13,16 @@ from lumen.loading.files import read_files
 from lumen.loading.quick import quick
 from lumen.loading.schema import KINDS, load_schema
 from lumen.loading.source import Document, parse
+from lumen.lsp.grammar import kind_of
 
 SHIPPED = read_files(Path(__file__).parents[2])
-FOLDERS = {
-    "lumen.yaml": "lumen", "behaviors/tour": "behavior", "behaviors/stories/": "story", "fuzzy/": "controller",
-    "motions/": "motion", "models/": "body", "schemas/messages/": "message",
-}  # fmt: skip
 
 
 def documents() -> list[tuple[str, Document]]:
     found = []
     for file, content in SHIPPED.items():
-        kind = next(kind for start, kind in FOLDERS.items() if file.startswith(start))
-        document = None if file.endswith(".xml") else parse(file, content)[0]
+        kind = kind_of(file)
+        document = parse(file, content)[0] if kind else None
         if document:
             found.append((kind, document))
     return found

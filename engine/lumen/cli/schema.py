@@ -11,14 +11,14 @@ from lumen.errors import UsageError
 from lumen.loading.packaged import MAIN_FILE, find_project, schema_folder
 from lumen.loading.schema import KINDS, load_schema
 
-FILES: Mapping[str, str] = {
-    "lumen": MAIN_FILE,
-    "behavior": "behaviors/*.yaml",
-    "story": "behaviors/stories/*.yaml",
-    "controller": "fuzzy/*.yaml",
-    "motion": "motions/*.yaml",
-    "body": "models/*.yaml",
-    "message": "schemas/messages/*.schema.json",
+FILES: Mapping[str, tuple[str, ...]] = {
+    "lumen": (MAIN_FILE,),
+    "behavior": ("behaviors/*.yaml",),
+    "story": ("behaviors/stories/*.yaml",),
+    "controller": ("fuzzy/*.yaml",),
+    "motion": ("motions/*.yaml", "models/passages/*.yaml"),
+    "body": ("models/*.yaml",),
+    "message": ("schemas/messages/*.schema.json",),
 }
 """Which files of a project are of which kind."""
 
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
         write_result(_json(load_schema(options.kind)), options.output)
     else:
         wide = max(map(len, KINDS))
-        lines = [f"{kind:{wide}}  {FILES.get(kind, ''):32} {load_schema(kind)['title']}" for kind in KINDS]
+        lines = [f"{kind:{wide}}  {', '.join(FILES.get(kind, ())):40} {load_schema(kind)['title']}" for kind in KINDS]
         write_result("\n".join(lines) + "\n", options.output)
     return 0
 
@@ -53,9 +53,9 @@ def settings(root: Path) -> dict[str, Any]:
         own = f"schemas/{kind}.schema.json"
         schema = f"./{own}" if (root / own).is_file() else (schema_folder() / f"{kind}.schema.json").as_uri()
         if kind == "message":
-            found["json.schemas"] = [{"fileMatch": [f"/{files}"], "url": schema}]  # type: ignore[assignment]
+            found["json.schemas"] = [{"fileMatch": [f"/{f}" for f in files], "url": schema}]  # type: ignore[assignment]
         else:
-            found["yaml.schemas"][schema] = [files]
+            found["yaml.schemas"][schema] = list(files)
     return found
 
 

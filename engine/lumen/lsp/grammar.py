@@ -13,6 +13,7 @@ FILES: Mapping[str, str] = {
     "fuzzy": "controller",
     "motions": "motion",
     "models": "body",
+    "models/passages": "motion",
     "schemas/messages": "message",
 }
 """The folders and the kinds of file in them, as the schemas call those."""

@@ -1,0 +1,108 @@
+"""The published schemas complete and explain in an editor: every property says what it is and shows a value."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from lumen.cli.main import main
+from lumen.cli.schema import FILES, merged, settings
+from lumen.loading.schema import KINDS, load_schema
+
+ROOT = Path(__file__).parents[2]
+SAMPLES = {"examples", "enum", "const", "default", "properties"}
+
+
+def properties(schema: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, Any]]:
+    """Every property of a schema and of the schemas within it."""
+    if not isinstance(schema, dict):
+        return
+    for name, inner in schema.get("properties", {}).items():
+        yield "/".join((*path, name)), inner
+    for keyword in ("properties", "patternProperties", "$defs"):
+        for name, inner in schema.get(keyword, {}).items():
+            yield from properties(inner, (*path, name))
+    for keyword in ("items", "additionalProperties", "then", "else", "if"):
+        yield from properties(schema.get(keyword), path)
+    for keyword in ("allOf", "anyOf", "oneOf", "prefixItems"):
+        for inner in schema.get(keyword, ()):
+            yield from properties(inner, path)
+
+
+def whole(schema: Any, root: Any) -> dict[str, Any]:
+    """A schema with what it refers to; its own words come first."""
+    found = dict(schema)
+    while reference := schema.get("$ref"):
+        schema = root["$defs"][reference.rpartition("/")[2]]
+        found = {**schema, **found}
+    return found
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_property_is_described_and_shown(kind: str) -> None:
+    root = load_schema(kind)
+    Draft202012Validator.check_schema(root)
+    assert {"$schema", "$id", "title", "description"} <= root.keys()
+    named = list(properties(root))
+    assert len(named) > 10
+    for name, schema in named:
+        known = whole(schema, root)
+        assert known.get("description"), name
+        assert SAMPLES & known.keys() or known.get("type") == "boolean" or "$ref" in str(schema), name
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_examples_and_defaults_fit(kind: str) -> None:
+    root = load_schema(kind)
+    for name, schema in properties(root):
+        validator = Draft202012Validator({**schema, "$defs": root.get("$defs", {})})
+        for value in [*schema.get("examples", ()), *([schema["default"]] if "default" in schema else ())]:
+            assert validator.is_valid(value), (name, value, next(validator.iter_errors(value)).message)
+
+
+def test_a_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["schema", "motion"]) == 0
+    assert json.loads(capsys.readouterr().out) == load_schema("motion")
+    assert main(["schema"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(KINDS)
+
+
+def test_every_kind_has_its_files() -> None:
+    assert FILES.keys() == set(KINDS)
+    for patterns in FILES.values():
+        assert list(ROOT.glob(patterns[0])), patterns
+
+
+def test_settings_join_those_that_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    file = tmp_path / ".vscode" / "settings.json"
+    assert main(["schema", "--vscode", "-o", str(file)]) == 0
+    first = json.loads(file.read_text())
+    assert first["yaml.schemas"]["./schemas/story.schema.json"] == ["behaviors/stories/*.yaml"]
+    file.write_text(
+        json.dumps({"editor.tabSize": 2, "yaml.schemas": {"x.json": ["*.x"]}, "json.schemas": [{"url": "y"}]})
+    )
+    assert main(["schema", "--vscode", "-o", str(file)]) == 0
+    again = json.loads(file.read_text())
+    assert again == merged(json.loads(file.read_text()), settings(ROOT))
+    assert again["editor.tabSize"] == 2
+    assert again["yaml.schemas"] == {"x.json": ["*.x"], **first["yaml.schemas"]}
+    assert again["json.schemas"] == [{"url": "y"}, *first["json.schemas"]]
+
+
+def test_a_project_without_schemas_uses_those_of_lumen(tmp_path: Path) -> None:
+    for schema in settings(tmp_path)["yaml.schemas"]:
+        assert schema.startswith("file://")
+
+
+@pytest.mark.parametrize("text", ["// mine\n{}", "[1]"])
+def test_settings_that_can_not_be_read_stay(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "settings.json"
+    file.write_text(text)
+    assert main(["schema", "--vscode", "-o", str(file)]) == 2
+    assert file.read_text() == text
+    assert "can't add to" in capsys.readouterr().err
+    assert main(["schema", "--vscode", "motion"]) == 2
