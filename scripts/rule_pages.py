@@ -13,7 +13,7 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import Unreadable, read_files
 from lumen.rules import check_files
 from lumen.rules.codes import CODES, FAMILIES
-from lumen.rules.pages import Page, Sheet, page
+from lumen.rules.pages import Page, Example, page
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs/rules"
@@ -22,7 +22,7 @@ BASE = ROOT / "tests/lint/pages/base"
 _BLOCK = re.compile(r"^(?=[^\s#])", re.MULTILINE)
 
 
-def laid(base: Mapping[str, bytes], sheets: Iterable[Sheet]) -> dict[str, bytes]:
+def laid(base: Mapping[str, bytes], sheets: Iterable[Example]) -> dict[str, bytes]:
     """The files of the small project with those of an example laid over them."""
     files = dict(base)
     for sheet in sheets:
@@ -36,7 +36,7 @@ def laid(base: Mapping[str, bytes], sheets: Iterable[Sheet]) -> dict[str, bytes]
     return dict(sorted(files.items()))
 
 
-def _kept(below: str, sheet: Sheet) -> str:
+def _kept(below: str, sheet: Example) -> str:
     """The blocks of a YAML file whose keys an example leaves as they are."""
     if sheet.language != "yaml" or sheet.note:
         return ""
@@ -45,7 +45,7 @@ def _kept(below: str, sheet: Sheet) -> str:
 
 
 @cache
-def said(sheets: tuple[Sheet, ...]) -> list[Diagnostic]:
+def said(sheets: tuple[Example, ...]) -> list[Diagnostic]:
     """What lint says of an example."""
     return list(check_files(BASE, laid(read_files(BASE), sheets))[1])
 
@@ -84,7 +84,7 @@ def _section(found: Page) -> str:
     )
 
 
-def _sheet(sheet: Sheet) -> str:
+def _sheet(sheet: Example) -> str:
     return f"`{sheet.file}`\n\n```{sheet.language}\n{sheet.text}```\n"
 
 

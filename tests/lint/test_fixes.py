@@ -11,7 +11,8 @@ from lumen.cli.main import main
 from lumen.language.diagnostics import has_errors
 from lumen.loading.project import read_files
 from lumen.rules import check_files
-from lumen.rules.fixes import edited, fixes, near
+from lumen.rules.fixes import edited, fixes
+from lumen.rules.fixes.words import near
 from lumen.rules.repairs import repaired
 
 HERE = Path(__file__).parent
@@ -42,6 +43,8 @@ def fixed(file: str, old: str, new: str) -> bytes:
         (TOUR, "    onError: idle\n", "    onError: idle\n    onDone: talk\n"),
         (WAVE, "joints: {LShoulderPitch: -60}", 'joints: {LSholderPitch: "-60"}'),
         (TOUR, "    onError: idle\n", "    onError: idle\n    onError: idle\n"),
+        (TOUR, "{{ context.visitor }}", "{context.visitor}"),
+        (TOUR, '{en: "I am small."', "{en: “I am small.”"),
         ("fuzzy/head.yaml", "Turn is Left", "Turn is Lfet"),
         ("fuzzy/head.yaml", "if Face is Left then", "if Face is Left than"),
         ("lumen.yaml", "story: hello", "story: helo"),

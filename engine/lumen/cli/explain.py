@@ -9,7 +9,7 @@ from lumen.cli.terminal import coloured, paint
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Severity
 from lumen.rules.codes import CODES, FAMILIES
-from lumen.rules.pages import Page, Sheet, page
+from lumen.rules.pages import Page, Example, page
 from lumen.rules.selection import unknown_code
 
 _COLOURS = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.INFO: "blue"}
@@ -79,7 +79,7 @@ def _text(found: Page, on: bool) -> str:
     )
 
 
-def _sheet(sheet: Sheet, on: bool) -> Iterator[str]:
+def _sheet(sheet: Example, on: bool) -> Iterator[str]:
     """The lines of an example, the wrong word underlined."""
     yield f"  {paint(sheet.file, 'bold', on=on)}" + (f" ({_NOTES[sheet.note]})" if sheet.note else "")
     for number, line in enumerate(sheet.text.splitlines(), 1):

@@ -29,7 +29,7 @@ class Mark(NamedTuple):
     last: int
 
 
-class Sheet(NamedTuple):
+class Example(NamedTuple):
     """A file of an example. `note` says what text alone can't: `latin-1`, or `folder` in place of the file."""
 
     file: str
@@ -45,8 +45,8 @@ class Page(NamedTuple):
     code: str
     what: str
     why: str
-    wrong: tuple[Sheet, ...]
-    right: tuple[Sheet, ...]
+    wrong: tuple[Example, ...]
+    right: tuple[Example, ...]
 
 
 @cache
@@ -56,12 +56,12 @@ def page(code: str) -> Page:
     said, _, examples = text.partition("\nWrong:\n")
     wrong, _, right = examples.partition("\nRight:\n")
     what, _, why = said.strip().partition("\n\n")
-    return Page(code, what, why.strip(), _sheets(wrong), _sheets(right))
+    return Page(code, what, why.strip(), _examples(wrong), _examples(right))
 
 
-def _sheets(text: str) -> tuple[Sheet, ...]:
+def _examples(text: str) -> tuple[Example, ...]:
     return tuple(
-        Sheet(
+        Example(
             found["file"],
             found["language"],
             found["text"],

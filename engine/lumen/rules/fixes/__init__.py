@@ -1,0 +1,33 @@
+"""What can be repaired without asking: findings to edits of the text, comments and layout untouched.
+
+A fix is a proposal: whoever applies one lints again and keeps it only where the finding is gone and no other has come
+(`rules.repairs`).
+"""
+
+from collections.abc import Callable, Mapping
+
+from lumen.language.diagnostics import Diagnostic
+from lumen.rules.fixes.edits import Edit, Fix, Sheet, edited
+from lumen.rules.fixes.lines import fewer_ignores, once, spaces
+from lumen.rules.fixes.words import filled_in, slip, straight_quotes
+
+__all__ = ["Edit", "Fix", "Sheet", "edited", "fixes"]
+
+_FIXERS: Mapping[str, Callable[[Diagnostic, Sheet], list[Fix]]] = {
+    "curly-quotes": straight_quotes,
+    "duplicate-key": once,
+    "not-filled-in": filled_in,
+    "rule-syntax": slip,
+    "tab": spaces,
+    "unused-ignore": fewer_ignores,
+}
+"""How to repair what; a word that is unknown or wrong may be a slip."""
+
+
+def fixes(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> list[Fix]:
+    """What may repair this finding, the likeliest first; nothing where only its author can know."""
+    content = files.get(diagnostic.place.file)
+    fixer = _FIXERS.get(diagnostic.code) or (slip if diagnostic.code.startswith(("unknown-", "wrong-")) else None)
+    if content is None or fixer is None:
+        return []
+    return fixer(diagnostic, Sheet(diagnostic.place.file, content))

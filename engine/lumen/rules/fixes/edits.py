@@ -1,0 +1,65 @@
+"""Edits of a file's text, and the text by its lines as places count them."""
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from lumen.language.diagnostics import Place
+
+_BREAK = re.compile("(\r\n|[\n\r\x85\u2028\u2029])")
+_BOM = b"\xef\xbb\xbf"
+
+
+class Edit(NamedTuple):
+    """The text at `place` becomes `text`."""
+
+    place: Place
+    text: str
+
+
+class Fix(NamedTuple):
+    """What a fix does, in words, and the edits that do it."""
+
+    title: str
+    edits: tuple[Edit, ...]
+
+
+class Sheet:
+    """The text of a file by its lines, as places count them."""
+
+    def __init__(self, file: str, content: bytes) -> None:
+        self.file = file
+        self.bom = content.startswith(_BOM)
+        self.text = content.decode("utf-8-sig", "replace")
+        parts = _BREAK.split(self.text)
+        self.lines, self.breaks = parts[::2], [*parts[1::2], ""]
+
+    def line(self, number: int) -> str:
+        return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
+
+    def at(self, place: Place) -> str:
+        """The text at a place of one line, empty where it has several."""
+        one = place.line == place.end_line
+        return self.line(place.line)[place.column - 1 : place.end_column - 1] if one else ""
+
+    def whole(self, number: int) -> Place:
+        """The place of a line with its break."""
+        if number < len(self.lines):
+            return Place(self.file, number, 1, number + 1, 1)
+        return Place(self.file, number, 1, number, len(self.line(number)) + 1)
+
+    def offset(self, line: int, column: int) -> int:
+        """Where a place is in the text."""
+        before = sum(len(t) + len(b) for t, b in zip(self.lines[: line - 1], self.breaks, strict=False))
+        return min(before + column - 1, len(self.text))
+
+
+def edited(content: bytes, edits: Sequence[Edit]) -> bytes:
+    """The file after these edits; of two that overlap the first one counts."""
+    sheet = Sheet("", content)
+    spans = [(sheet.offset(*e.place[1:3]), sheet.offset(*e.place[3:5]), e.text) for e in dict.fromkeys(edits)]
+    text, done = sheet.text, len(sheet.text) + 1
+    for start, end, new in sorted(spans, reverse=True):
+        if end <= done and not (end == done and start == end):
+            text, done = text[:start] + new + text[end:], start
+    return (_BOM if sheet.bom else b"") + text.encode("utf-8", "surrogatepass")

@@ -1,0 +1,68 @@
+"""Fixes of a word or a text: what was meant stands in the finding."""
+
+import re
+
+from lumen.language.diagnostics import Diagnostic
+from lumen.rules.fixes.edits import Edit, Fix, Sheet
+
+_MEANT = re.compile(r"did you mean `([^`]+)`\?")
+_INSTEAD = re.compile(r"write `(true|false)`|leave out the quotes: (\S+)")
+_SAYS = re.compile(r"`([^`]+)`")
+
+
+def slip(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+    """The word that was meant, where it is so near that there is no doubt."""
+    there = sheet.at(diagnostic.place)
+    if instead := _INSTEAD.search(diagnostic.hint):
+        new = instead[1] or instead[2]
+        return [Fix(f"write {new}", (Edit(diagnostic.place, new),))] if there else []
+    meant = _MEANT.search(diagnostic.hint)
+    said = [word for word in _SAYS.findall(diagnostic.message) if meant and word != meant[1] and near(word, meant[1])]
+    if meant is None or len(said) != 1 or there.count(said[0]) != 1:
+        return []
+    start = diagnostic.place.column + there.index(said[0])
+    spot = diagnostic.place._replace(column=start, end_column=start + len(said[0]))
+    return [Fix(f"write {meant[1]}", (Edit(spot, meant[1]),))]
+
+
+def near(word: str, meant: str) -> bool:
+    """Whether one is a slip of the other: another case, a letter too many, too few, wrong, or two exchanged.
+
+    Not where it could be another name: in a short word, in its first letter (`LHand`, `RHand`), in a digit.
+    """
+    a, b = word.lower(), meant.lower()
+    if a == b:
+        return True
+    short = min(len(a), len(b)) < 4
+    if short or a[0] != b[0] or re.findall(r"\d", a) != re.findall(r"\d", b):
+        return False
+    return _one_slip(a, b)
+
+
+def _one_slip(a: str, b: str) -> bool:
+    i = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
+    rest_a, rest_b = a[i:], b[i:]
+    return (
+        rest_a[1:] == rest_b
+        or rest_a == rest_b[1:]
+        or rest_a[1:] == rest_b[1:]
+        or (rest_a[:2] == rest_b[:2][::-1] and rest_a[2:] == rest_b[2:])
+    )
+
+
+def straight_quotes(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+    """Straight quotes around a text that has curly ones around it, and no others in it."""
+    there = sheet.at(diagnostic.place)
+    if len(there) < 2 or there[0] not in "“”„‟" or there[-1] not in "“”‟" or any(c in '"\\' for c in there):
+        return []
+    return [Fix("write straight quotes", (Edit(diagnostic.place, f'"{there[1:-1]}"'),))]
+
+
+def filled_in(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+    """Two braces on both sides of what is to be filled in."""
+    there, said, right = sheet.at(diagnostic.place), _SAYS.search(diagnostic.message), _SAYS.search(diagnostic.hint)
+    if said is None or right is None or there.count(said[1]) != 1 or not right[1].startswith("{{"):
+        return []
+    start = diagnostic.place.column + there.index(said[1])
+    spot = diagnostic.place._replace(column=start, end_column=start + len(said[1]))
+    return [Fix(f"write {right[1]}", (Edit(spot, right[1]),))]
