@@ -21,6 +21,7 @@ VERBS = {
     "say": "let the robot of a running exhibition say something",
     "stop": "let the robot of a running exhibition rest, at once",
     "reload": "have a running exhibition take its files, or say how it stands with them",
+    "diff": "say what differs between two versions of a project, and where a reload would lead",
     "lint": "say what is wrong in a project, and where",
     "explain": "say what a code of lint means, and show an example",
     "lsp": "answer an editor (Language Server Protocol)",

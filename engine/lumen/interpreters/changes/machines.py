@@ -68,13 +68,17 @@ class _Comparison:
             (" on leaving", old.exit, new.exit),
         ):
             yield from block_changes(before, after, title, when, self.file)
-        yield from transition_changes(old, new, title, self.file, self.mapped, lambda path: self.new.states[path].name)
+        yield from transition_changes(old, new, title, self.file, self.mapped, self.named_now)
         yield from self.invokes(old, new, title)
         if self.mapped((old.on_reload,) if old.on_reload else ()) != ((new.on_reload,) if new.on_reload else ()):
             target = f"leads to `{self.new.states[new.on_reload].name}`" if new.on_reload else "is gone"
             yield self.change("state", title, f"`onReload` of {title} {target}")
         if old.output != new.output:
             yield self.change("state", title, f"{title} hands on other data")
+
+    def named_now(self, path: str) -> str:
+        """What a state is called; one that is gone, what it was called."""
+        return (self.new.states.get(path) or self.old.states[path]).name
 
     def mapped(self, paths: tuple[str, ...]) -> tuple[str, ...]:
         """Old paths as they are called now."""

@@ -13,7 +13,7 @@ Name = Callable[[str], str]
 
 
 def transition_changes(old: State, new: State, title: str, file: str, mapped: Mapped, name: Name) -> Iterator[Change]:
-    """The changes, trigger by trigger; `mapped` gives old paths their new names, `name` what a new path is called."""
+    """The changes, trigger by trigger; `mapped` gives old paths their new names, `name` what a state is called."""
     comparison = _Comparison(title, file, name)
     before = _by_trigger([replace(t, targets=mapped(t.targets), source=new.path) for t in old.transitions])
     after = _by_trigger(list(new.transitions))
@@ -67,13 +67,7 @@ class _Comparison:
         return f"goes to {self.to(transition)}" if transition.targets else "stays where it is and acts"
 
     def to(self, transition: Transition) -> str:
-        return names(self.known(path) for path in transition.targets) or "anywhere"
-
-    def known(self, path: str) -> str:
-        try:
-            return self.name(path)
-        except KeyError:  # it is gone
-            return path
+        return names(self.name(path) for path in transition.targets) or "anywhere"
 
 
 def _by_trigger(transitions: list[Transition]) -> dict[str, list[Transition]]:

@@ -39,7 +39,8 @@ def move(old: Machine, new: Machine, snapshot: Snapshot, how: How, behavior: str
     except KeyError as error:
         raise SnapshotError(f"`{old.id}` has no state {error}, which is active in the snapshot") from None
     if isinstance(moving.placement, Homeless):
-        return moving.refusal(moving.placement, behavior)
+        busy = None if how.now else moving.busy()
+        return busy or moving.refusal(moving.placement, behavior)
     wait = next(moving.waits(moving.placement), None)
     if wait and not how.now:
         return wait
@@ -72,13 +73,18 @@ class _Moving:
             hint = f"give {title} an `onReload`, or say under `renamed` what `{gone.path}` is called now"
         return Refusal(reason, hint, gone.name, behavior, state.state.where if state.state else ())
 
+    def busy(self) -> Wait | None:
+        """The first state that is gone and still does something: it may lead elsewhere by itself."""
+        gone = [node for node in self.start.ordered if node.path and self.identity.state(node.path) is None]
+        return next((_gone(node) for node in gone if node.path in self.before.doing), None)
+
     def waits(self, placement: Placement) -> Iterator[Wait]:
         """What is under way and could not go on, in the order of the old file."""
         doing = self.before.doing
         changed = self.changed(placement)
         for node in self.start.ordered:
             if node.path in doing and node in placement.left:
-                yield Wait(f"`{node.name}` is gone, and is still doing something", node.name)
+                yield _gone(node)
             elif node in changed:
                 yield Wait(f"what `{node.name}` is doing has changed", node.name)
         for id in self.ending(placement):
@@ -189,6 +195,10 @@ class _Moving:
         after = [s.name for s in self.new.chart.machine.states.values() if s.name in set(step.entered) & names]
         on = f": on to `{after[-1]}`" if after else ""
         yield from (f"`{node.name}` is gone{on}" for node in sorted(inner, key=lambda node: node.index))
+
+
+def _gone(node: Node) -> Wait:
+    return Wait(f"`{node.name}` is gone, and is still doing something", node.name)
 
 
 def _behind(program: Program, path: str, id: str) -> str:

@@ -1,0 +1,109 @@
+"""`lumen diff`: what a reload from one version of a project to another would change, and where it would lead."""
+
+import argparse
+import json
+import sys
+from typing import Any
+
+from lumen.cli.fates import Fate, Fates, fate_of, fates
+from lumen.cli.terminal import coloured, paint
+from lumen.cli.versions import LIVE, Version, version
+from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
+
+BOUND = 10_000
+COLOURS = {"refused": "red", "waits": "yellow", "moved": "blue", "kept": "green"}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    which = f"a folder, a revision of the project here (HEAD~1), or `{LIVE}`: what runs now"
+    parser.add_argument("old", metavar="OLD", help=which)
+    parser.add_argument("new", metavar="NEW", nargs="?", help="likewise; default: the project here or above")
+    parser.add_argument(
+        "--configurations", action="store_true", help="say of everywhere that the behaviour can be where it would go"
+    )
+    parser.add_argument("--bound", type=int, metavar="N", default=BOUND, help=f"how many at most (default: {BOUND:,})")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """1 where a reload would be refused somewhere, else 0, whatever differs."""
+    old, new = version(options.old), version(options.new)
+    found = changes(old.project, new.project)
+    running = fate_of(old.project, live(old.project, new.project), old.snapshot) if old.snapshot else None
+    everywhere = _fates(old, new, options.bound) if options.configurations else None
+    if options.format == "json":
+        print(json.dumps(_json(old, new, found, running, everywhere), indent=2, ensure_ascii=False))
+    else:
+        print("\n".join(_text(found, running, everywhere, coloured())))
+    said = (*(everywhere.rows if everywhere else ()), *([running] if running else ()))
+    return int(any(fate.outcome == "refused" for fate in said))
+
+
+def _fates(old: Version, new: Version, bound: int) -> Fates:
+    terminal = sys.stderr.isatty()
+
+    def tell(walked: int, waiting: int) -> None:
+        if terminal and walked % 50 == 0:
+            print(f"\r{walked:,} configurations, {waiting:,} in sight ", end="", file=sys.stderr, flush=True)
+
+    found = fates(old.project, live(old.project, new.project), bound, tell)
+    if terminal:
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+    return found
+
+
+def _text(found: tuple[Change, ...], running: Fate | None, everywhere: Fates | None, colour: bool) -> list[str]:
+    lines = []
+    file = ""
+    for change in found:
+        if change.file != file:
+            file = change.file
+            lines.append(paint(file, "bold", on=colour))
+        mark = f" ({change.risk})" if change.risk is not Risk.COSMETIC else ""
+        lines.append(f"  {change}{mark}")
+    count = f"{len(found)} change{'s' * (len(found) != 1)}, risk: {risk(found)}" if found else summary(found)
+    lines.append(paint(count, "bold", on=colour))
+    if running:
+        lines += ["", f"now: {_row(running, colour)}"]
+    if everywhere:
+        lines += ["", *_table(everywhere, colour)]
+    return lines
+
+
+def _table(everywhere: Fates, colour: bool) -> list[str]:
+    lines = [_row(fate, colour) for fate in everywhere.rows]
+    counts = {outcome: sum(fate.count for fate in everywhere.rows if fate.outcome == outcome) for outcome in COLOURS}
+    told = ", ".join(f"{number:,} {outcome}" for outcome, number in counts.items() if number)
+    more = f"; {everywhere.waiting:,} were not walked on from: say --bound N" if everywhere.waiting else ""
+    return [*lines, paint(f"{everywhere.configurations:,} configurations: {told}{more}", "bold", on=colour)]
+
+
+def _row(fate: Fate, colour: bool) -> str:
+    told = f": {fate.told}" if fate.told else f": to {', '.join(fate.after)}" if fate.outcome == "moved" else ""
+    return f"{paint(f'{fate.outcome:<8}', COLOURS[fate.outcome], on=colour)}{', '.join(fate.states)}{told}"
+
+
+def _json(
+    old: Version, new: Version, found: tuple[Change, ...], running: Fate | None, everywhere: Fates | None
+) -> dict[str, Any]:
+    body: dict[str, Any] = {
+        "old": {"name": old.name, "hash": old.project.hash},
+        "new": {"name": new.name, "hash": new.project.hash},
+        "summary": summary(found),
+        "risk": str(risk(found)),
+        "changes": [
+            {"kind": c.kind, "about": c.about, "file": c.file, "risk": str(c.risk), "sentence": c.sentence}
+            for c in found
+        ],
+    }
+    if running:
+        body["now"] = _fate(running)
+    if everywhere:
+        body["configurations"] = [_fate(fate) for fate in everywhere.rows]
+        body["complete"] = not everywhere.waiting
+    return body
+
+
+def _fate(fate: Fate) -> dict[str, Any]:
+    row = {"states": fate.states, "outcome": fate.outcome, "after": fate.after, "told": fate.told, "count": fate.count}
+    return {key: list(value) if isinstance(value, tuple) else value for key, value in row.items()}

@@ -1,0 +1,70 @@
+"""Where a reload would lead from every configuration that a behaviour can be in."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from lumen.cli.exploring import outside
+from lumen.cli.show import MORNING, time_of_day
+from lumen.interpreters.exploration.walking import Walk, leaves
+from lumen.interpreters.migration import Plan, Verdict, Wait, plan
+from lumen.interpreters.statechart import Snapshot
+from lumen.language.projects import Project
+
+
+@dataclass(frozen=True)
+class Fate:
+    """What happens to those who are in these innermost states: `kept`, `moved`, `waits` or `refused`, and how.
+
+    `after` are the innermost states that it leads to, `count` how many configurations it is said of.
+    """
+
+    states: tuple[str, ...]
+    outcome: str
+    told: str
+    after: tuple[str, ...]
+    verdict: Verdict
+    count: int = 1
+
+
+@dataclass(frozen=True)
+class Fates:
+    """The fates of all configurations walked; `waiting` are those that the bound left out."""
+
+    rows: tuple[Fate, ...]
+    configurations: int
+    waiting: int
+
+
+def fates(old: Project, new: Project, bound: int, tell: Callable[[int, int], None]) -> Fates:
+    """The fate of every configuration of the old behaviour, those of the same states and fate counted together."""
+    machine = old.machine
+    language, epoch = old.languages[0], time_of_day(MORNING)
+    walk = Walk(machine, outside(old, machine), language=language, epoch=epoch)
+    for walked in walk.go(bound):
+        tell(walked, walk.waiting)
+    found: dict[tuple[object, ...], Fate] = {}
+    for spot in walk.spots.values():
+        fate = fate_of(old, new, spot.snapshot)
+        key = (fate.states, fate.outcome, fate.told, fate.after)
+        found[key] = replace(fate, count=found[key].count + 1 if key in found else 1)
+    order = ("refused", "waits", "moved", "kept")
+    rows = sorted(found.values(), key=lambda fate: order.index(fate.outcome))
+    return Fates(tuple(rows), len(walk.spots), walk.waiting)
+
+
+def fate_of(old: Project, new: Project, snapshot: Snapshot) -> Fate:
+    """What a reload at that moment would do."""
+    verdict = plan(old, new, snapshot, at=snapshot.at)
+    before = _inner(old, snapshot)
+    if isinstance(verdict, Plan):
+        after = _inner(new, verdict.snapshot)
+        outcome = "moved" if verdict.exited or verdict.entered else "kept"
+        return Fate(before, outcome, "; ".join(verdict.notes), after, verdict)
+    if isinstance(verdict, Wait):
+        return Fate(before, "waits", verdict.reason, (), verdict)
+    return Fate(before, "refused", verdict.reason, (), verdict)
+
+
+def _inner(project: Project, snapshot: Snapshot) -> tuple[str, ...]:
+    machine = project.machine
+    return tuple(machine.states[path].name for path in leaves(machine, snapshot.configuration))

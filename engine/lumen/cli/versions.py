@@ -1,0 +1,71 @@
+"""Which version of a project somebody means: a folder, a revision of its repository, or what runs now."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from lumen.errors import ProjectError, UsageError
+from lumen.interpreters.statechart import Snapshot, thaw
+from lumen.language.projects import Project
+from lumen.loading.packaged import find_project
+from lumen.loading.project import read_files
+from lumen.loading.revisions import files_at
+from lumen.rules import check_files
+from lumen.runtime.home import Home, home_of
+from lumen.runtime.keeping import Keeper, Kept
+
+LIVE = "live"
+
+
+class Version(NamedTuple):
+    """A project in one version; `snapshot` is where it stands, for one that runs now."""
+
+    name: str
+    project: Project
+    files: Mapping[str, bytes]
+    snapshot: Snapshot | None = None
+
+
+def version(name: str | None, here: Path | None = None) -> Version:
+    """The version of that name: `live`, a folder, or a revision of the project `here` (default: this one, or above).
+
+    Without a name it is that project as it stands. Raises UsageError where there is none, ProjectError where its files
+    have errors.
+    """
+    root = here or find_project()
+    kept: Kept | None = None
+    if name is None:
+        files: Mapping[str, bytes] = read_files(root)
+    elif name == LIVE:
+        kept, files = _running(root)
+    elif os.path.exists(name):
+        root = find_project(name)
+        files = read_files(root)
+    else:
+        files = _revision(root, name)
+    project, diagnostics = check_files(root, files)
+    if project is None:
+        raise ProjectError(diagnostics)
+    return Version(name or str(root), project, files, thaw(project.machine, kept.frozen) if kept else None)
+
+
+def _running(root: Path) -> tuple[Kept, Mapping[str, bytes]]:
+    home = Home(home_of(root))
+    keeper = Keeper(home)
+    kept = keeper.kept()
+    if kept is None or not home.held():
+        raise UsageError(f"no exhibition of {root} runs on this machine: start it with `lumen run`")
+    files = keeper.files(kept.bundle)
+    if files is None:
+        raise UsageError(f"the files that run are not in {home.folder} any more")
+    return kept, files
+
+
+def _revision(root: Path, name: str) -> Mapping[str, bytes]:
+    files = files_at(root, name)
+    if files is None:
+        raise UsageError(f"`{name}` is no folder, no revision of {root}, and not `{LIVE}`")
+    if not files:
+        raise UsageError(f"there is no project in {root} at `{name}`")
+    return files
