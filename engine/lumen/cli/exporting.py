@@ -1,4 +1,4 @@
-"""`lumen export`: a behaviour for another tool."""
+"""`lumen export`: a behaviour or a fuzzy controller for another tool."""
 
 import argparse
 import sys
@@ -13,11 +13,13 @@ from lumen.cli.writing import write_result
 from lumen.errors import UsageError
 from lumen.formats.dot import dot
 from lumen.formats.findings import Placing
+from lumen.formats.fll import write_fll
 from lumen.formats.mermaid import mermaid
 from lumen.formats.scxml import write_scxml
 from lumen.formats.xstate import write_xstate
 from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
 from lumen.language.machines import Machine
+from lumen.language.projects import Project
 from lumen.loading.packaged import find_project
 from lumen.loading.source import Document, parse
 
@@ -33,11 +35,13 @@ WRITERS: Mapping[str, Writer] = {
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Write a behaviour as SCXML, as an XState configuration, or as a diagram for Mermaid or Graphviz. What the"
-        " format can't say is listed, with its line; then the exit code is 1, and the rest is written all the same."
+        "Write a behaviour as SCXML, as an XState configuration, or as a diagram for Mermaid or Graphviz; or a fuzzy"
+        " controller in FuzzyLite Language. What the format can't say is listed, with its line; then the exit code is"
+        " 1, and the rest is written all the same."
     )
-    parser.add_argument("target", metavar="FORMAT", choices=tuple(WRITERS), help=" | ".join(WRITERS))
-    parser.add_argument("behavior", nargs="?", help="a behaviour's name; default: the one that runs")
+    parser.add_argument("target", metavar="FORMAT", choices=(*WRITERS, "fll"), help=" | ".join((*WRITERS, "fll")))
+    which = "of a behaviour (default: the one that runs), or of a controller (default: the only one)"
+    parser.add_argument("behavior", nargs="?", metavar="NAME", help=which)
     parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="write it there instead of printing it")
     parser.add_argument("--format", choices=tuple(FORMATS), default="text", help="of the list (default: text)")
@@ -46,11 +50,26 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """0 where everything could be said, 1 where something is left out."""
     project = lumen.load(options.project)
+    if options.target == "fll":
+        return _written(*_controller(project, options), options)
     name = options.behavior or project.behavior
     if name not in project.behaviors:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
     document = _document(find_project(options.project), f"behaviors/{name}.yaml")
-    text, diagnostics = WRITERS[options.target](project.behaviors[name], document.place)
+    return _written(*WRITERS[options.target](project.behaviors[name], document.place), document, options)
+
+
+def _controller(project: Project, options: argparse.Namespace) -> tuple[str, list[Diagnostic], Document]:
+    """The text of a controller, and what it leaves out."""
+    name = options.behavior or (next(iter(project.controllers)) if len(project.controllers) == 1 else "")
+    if name not in project.controllers:
+        hint = did_you_mean(name, project.controllers, "fuzzy/ has")
+        raise UsageError(f"no controller `{name}`: {hint}" if name else f"which controller? {hint}")
+    document = _document(find_project(options.project), f"fuzzy/{name}.yaml")
+    return *write_fll(project.controllers[name], document.place), document
+
+
+def _written(text: str, diagnostics: list[Diagnostic], document: Document, options: argparse.Namespace) -> int:
     write_result(text, options.output)
     if diagnostics or options.format != "text":
         files = {document.file: document.text.encode()}
@@ -59,7 +78,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _document(root: Path, file: str) -> Document:
-    """The behaviour's file, for the lines of what is listed."""
+    """The file, for the lines of what is listed."""
     document = parse(file, (root / file).read_bytes())[0]
     assert document is not None  # it was loaded a moment ago
     return document

@@ -1,4 +1,4 @@
-"""`lumen import`: a statechart or a motion of another tool as a file of ours."""
+"""`lumen import`: a statechart, a motion or a fuzzy controller of another tool as a file of ours."""
 
 import argparse
 import re
@@ -15,7 +15,10 @@ from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
 from lumen.formats.document import document_yaml
+from lumen.formats.fcl import read_fcl
 from lumen.formats.findings import ForeignFileError
+from lumen.formats.fis import read_fis
+from lumen.formats.fll import read_fll
 from lumen.formats.gestures import ENDINGS, read_gesture
 from lumen.formats.scxml import read_scxml
 from lumen.formats.scxml.elements import MAX_BYTES
@@ -24,6 +27,7 @@ from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import Machine
 from lumen.language.robots import Body
 from lumen.loading.behaviors import build_machine
+from lumen.loading.controllers import build_controller
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
 from lumen.loading.source import Report, parse
@@ -31,16 +35,23 @@ from lumen.loading.source import Report, parse
 Reader = Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]
 
 CHARTS: Mapping[str, Reader] = {".scxml": read_scxml, ".xml": read_scxml, ".json": read_xstate}
+CONTROLLERS: Mapping[str, Reader] = {".fll": read_fll, ".fcl": read_fcl, ".fis": read_fis}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Turn a statechart (SCXML, XState's JSON) into a behaviour file, or a motion (Webots, Choregraphe, NAOqi's"
-        " Python) into a motion file. What can't be carried over is listed, with its line; then the exit code is 1, and"
+        "Turn a statechart (SCXML, XState's JSON) into a behaviour file, a motion (Webots, Choregraphe, NAOqi's"
+        " Python) into a motion file, or a fuzzy controller (FuzzyLite's FLL, FCL of IEC 61131-7, MATLAB's .fis) into a"
+        " controller file. What can't be carried over is listed, with its line; then the exit code is 1, and"
         " the rest is written all the same."
     )
     add = parser.add_argument
-    add("file", metavar="FILE", type=Path, help="chart.scxml, machine.json, wave.motion, behavior.xar or keyframes.py")
+    add(
+        "file",
+        metavar="FILE",
+        type=Path,
+        help="chart.scxml, machine.json, wave.motion, behavior.xar, keyframes.py, head.fll",
+    )
     add("-o", "--output", metavar="OUT.yaml", type=Path, help="write it there instead of printing it")
     add("--timeline", metavar="NAME", default="", help="which one of a .xar file that has several")
     add("--project", metavar="DIR", help="whose robot a motion is for; default: here or above, else the shipped one")
@@ -52,8 +63,9 @@ def run(options: argparse.Namespace) -> int:
     content = foreign_content(options.file)
     title = _title(options.output or options.file)
     body = lumen.load(options.project).body if options.file.suffix.lower() in ENDINGS else None
-    kind = "motion" if body else "behavior"
-    read = partial(_gesture, body, options.timeline) if body else _chart(options.file, content)
+    fuzzy = CONTROLLERS.get(options.file.suffix.lower())
+    kind = "motion" if body else "controller" if fuzzy else "behavior"
+    read = partial(_gesture, body, options.timeline) if body else fuzzy or _chart(options.file, content)
     try:
         data, diagnostics = read(str(options.file), content, title)
     except ForeignFileError as error:
@@ -91,7 +103,8 @@ def _chart(path: Path, content: bytes) -> Reader:
         return CHARTS[path.suffix.lower()]
     start = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
     if start not in (b"<", b"{"):
-        raise UsageError(f"{path} is neither SCXML, the JSON of XState, nor a motion ({', '.join(ENDINGS)})")
+        endings = ", ".join((*ENDINGS, *CONTROLLERS))
+        raise UsageError(f"{path} is neither SCXML, the JSON of XState, nor a motion or a controller ({endings})")
     return read_scxml if start == b"<" else read_xstate
 
 
@@ -110,6 +123,8 @@ def _faults(file: str, text: str, kind: str, body: Body | None) -> list[Diagnost
     data = check_schema(document, kind, report)
     if body:
         build_motion(data, report, name="imported", body=body)
+    elif kind == "controller":
+        build_controller(data, report, name="imported")
     else:
         build_machine(data, report, name="imported", into=Machine)
     return [*found, *report.diagnostics]

@@ -27,20 +27,24 @@ def _concave(m: Arithmetic, h: float, i: float, e: float) -> Callable[[Number], 
 
 
 def _sigmoid(m: Arithmetic, h: float, i: float, s: float) -> Callable[[Number], Number]:
-    return lambda w: i - m.log(m.maximum(h / m.maximum(w, _TINY) - 1.0, _TINY)) / s
+    def value(w: Number) -> Number:
+        rest = h / m.maximum(w, _TINY) - 1.0
+        return m.where(rest > 0.0, i - m.log(m.maximum(rest, _TINY)) / s, nan)
+
+    return value
 
 
 def _s_shape(m: Arithmetic, h: float, s: float, e: float) -> Callable[[Number], Number]:
     def value(w: Number) -> Number:
         low, high = m.sqrt(w / (2.0 * h)), m.sqrt(m.maximum(h - w, 0.0) / (2.0 * h))
-        return m.where(w <= h / 2.0, s + (e - s) * low, e - (e - s) * high)
+        return m.where(w > h, nan, m.where(w <= h / 2.0, s + (e - s) * low, e - (e - s) * high))
 
     return value
 
 
 def _arc(m: Arithmetic, h: float, s: float, e: float) -> Callable[[Number], Number]:
     r = e - s
-    return lambda w: e - r * m.sqrt(m.maximum(1.0 - (w / h) * (w / h), 0.0))
+    return lambda w: m.where(w > h, nan, e - r * m.sqrt(m.maximum(1.0 - (w / h) * (w / h), 0.0)))
 
 
 INVERSES: Mapping[str, Callable[..., Callable[[Number], Number]]] = {
@@ -51,7 +55,10 @@ INVERSES: Mapping[str, Callable[..., Callable[[Number], Number]]] = {
     "concave": _concave,
     "arc": _arc,
 }
-"""For each monotonic kind the x at which the membership is w, from the term's height and parameters."""
+"""For each monotonic kind the x at which the membership is w, from the term's height and parameters.
+
+NaN where there is none: above the height. Straight ones and `concave` go on.
+"""
 
 
 def value(m: Arithmetic, term: Term, names: Sequence[str] = (), inputs: int = 0) -> Value:

@@ -1,0 +1,34 @@
+"""FuzzyLite's words for terms, norms, methods and what else a controller says."""
+
+from collections.abc import Mapping
+from math import inf
+
+from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, S_NORMS, T_NORMS, TERMS
+
+
+def _camel(word: str) -> str:
+    return "".join(part.capitalize() for part in word.split("-"))
+
+
+SHAPES: Mapping[str, str] = {_camel(kind): kind for kind in TERMS}
+NORMS: Mapping[str, str] = {_camel(norm): norm for norm in (*T_NORMS, *S_NORMS)}
+METHODS: Mapping[str, str] = {_camel(method): method for method in DEFUZZIFIERS}
+ACTIVATED: Mapping[str, str] = {_camel(method): method for method in ACTIVATIONS}
+"""FuzzyLite's names to ours."""
+
+
+def foreign(words: Mapping[str, str], ours: str) -> str:
+    """FuzzyLite's name for one of ours."""
+    return next(name for name, word in words.items() if word == ours)
+
+
+def written(value: float) -> str:
+    """A number as FuzzyLite reads it, no digit lost."""
+    if value in (inf, -inf):
+        return "inf" if value > 0 else "-inf"
+    return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(float(value))
+
+
+def plain(value: float) -> int | float:
+    """A number as the YAML says it: whole ones without a point."""
+    return int(value) if abs(value) < 1e15 and value == int(value) else value
