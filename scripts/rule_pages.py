@@ -13,7 +13,7 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import Unreadable, read_files
 from lumen.rules import check_files
 from lumen.rules.codes import CODES, FAMILIES
-from lumen.rules.pages import Page, Example, page
+from lumen.rules.pages import Example, Page, page
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs/rules"

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
-from lumen.rules.codes import CODES
+from lumen.rules.codes import CODES, FAMILIES
 
 BASE = Path(__file__).parent / "base"
 ENGINE = Path(__file__).parents[2] / "engine"
@@ -143,6 +143,7 @@ def test_what_is_typed_stands_in_place_of_the_file(
     ("arguments", "part"),
     [
         (["--select", "speling"], "no code `speling`"),
+        (["--select", ""], "a code is missing"),
         (["--ignore", "unkown-state"], "did you mean `unknown-state`?"),
         (["/dev/null/x"], "does not exist"),
         (["-"], "--stdin-filename"),
@@ -204,6 +205,21 @@ def test_explain(capsys: pytest.CaptureFixture[str]) -> None:
 
 def rows(shown: str) -> list[str]:
     return [line for line in shown.splitlines() if line.startswith("  ")]
+
+
+def test_explain_lists_what_a_word_stands_for(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "speech"]) == 0
+    assert [row.split()[0] for row in rows(capsys.readouterr().out)] == list(FAMILIES["speech"])
+    assert main(["explain", "[unknown]"]) == 0
+    assert all(row.startswith("  unknown-") for row in rows(capsys.readouterr().out))
+
+
+def test_the_shipped_project_is_not_repaired_from_elsewhere(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["lint", "--fix"]) == 2
+    assert "no project here" in capsys.readouterr().err
 
 
 def test_explain_for_programs(capsys: pytest.CaptureFixture[str]) -> None:

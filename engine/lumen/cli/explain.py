@@ -2,34 +2,31 @@
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
+from lumen.cli.render.words import COLOURS
 from lumen.cli.terminal import coloured, paint
-from lumen.errors import UsageError
-from lumen.language.diagnostics import Severity
 from lumen.rules.codes import CODES, FAMILIES
-from lumen.rules.pages import Page, Example, page
-from lumen.rules.selection import unknown_code
-
-_COLOURS = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.INFO: "blue"}
+from lumen.rules.pages import Example, Page, page
+from lumen.rules.selection import selected
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("code", nargs="?", metavar="CODE", help="as lint prints it; default: list all, by family")
+    parser.add_argument("code", nargs="?", metavar="CODE", help="as lint prints it, or its first words, or a family")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
-    code = options.code and options.code.strip("[]`")
-    if code and code not in CODES and code not in FAMILIES:
-        raise UsageError(unknown_code(code))
-    if code in CODES:
-        found = page(code)
-        print(json.dumps(_as_json(found), indent=2) if options.format == "json" else _text(found, coloured()))
+    """Show the page of a code, or list those that the word stands for; without one all."""
+    word = (options.code or "").strip("[]`")
+    json_wanted = options.format == "json"
+    if word in CODES:
+        found = page(word)
+        print(json.dumps(_as_json(found), indent=2) if json_wanted else _text(found, coloured()))
     else:
-        families = [code] if code else list(FAMILIES)
-        print(_json_list(families) if options.format == "json" else _list(families, coloured()))
+        codes = selected([word]) if word else CODES.keys()
+        print(_json_list(codes) if json_wanted else _list(codes, coloured()))
     return 0
 
 
@@ -38,20 +35,21 @@ def family(code: str) -> str:
     return next(name for name, codes in FAMILIES.items() if code in codes)
 
 
-def _list(families: list[str], on: bool) -> str:
-    width = max(len(code) for name in families for code in FAMILIES[name])
+def _list(wanted: Collection[str], on: bool) -> str:
+    width = max(map(len, wanted))
     blocks = []
-    for name in families:
+    for name, codes in FAMILIES.items():
         rows = [
-            f"  {paint(f'{code:{width}}', _COLOURS[entry.severity], on=on)}  {entry.summary}"
-            for code, entry in FAMILIES[name].items()
+            f"  {paint(f'{code:{width}}', COLOURS[entry.severity], on=on)}  {entry.summary}"
+            for code, entry in codes.items()
+            if code in wanted
         ]
-        blocks.append("\n".join([paint(name, "bold", on=on), *rows]))
+        blocks += ["\n".join([paint(name, "bold", on=on), *rows])] if rows else []
     return "\n\n".join([*blocks, "`lumen explain CODE` says more."])
 
 
-def _json_list(families: list[str]) -> str:
-    return json.dumps({"codes": [_entry(code) for name in families for code in FAMILIES[name]]}, indent=2)
+def _json_list(wanted: Collection[str]) -> str:
+    return json.dumps({"codes": [_entry(code) for code in CODES if code in wanted]}, indent=2)
 
 
 def _entry(code: str) -> dict[str, Any]:
@@ -71,7 +69,7 @@ def _as_json(found: Page) -> dict[str, Any]:
 
 def _text(found: Page, on: bool) -> str:
     severity = CODES[found.code].severity
-    title = f"{paint(found.code, 'bold', _COLOURS[severity], on=on)}  {severity}, {family(found.code)}"
+    title = f"{paint(found.code, 'bold', COLOURS[severity], on=on)}  {severity}, {family(found.code)}"
     wrong = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.wrong)
     right = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.right)
     return "\n\n".join(

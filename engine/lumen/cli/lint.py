@@ -4,6 +4,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 from lumen.cli.findings import Findings
 from lumen.cli.linting import Asked, Wanted, asked, lint
@@ -11,6 +12,7 @@ from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic, Severity
+from lumen.loading.packaged import shipped_root
 from lumen.rules.selection import selected
 
 
@@ -32,6 +34,8 @@ def run(options: argparse.Namespace) -> int:
     wanted = _wanted(options)
     _consistent(options)
     projects = asked(options.paths, options.stdin_filename)
+    if options.fix and not options.paths and projects[0].root == shipped_root() and not _here(projects[0]):
+        raise UsageError("there is no project here or above to repair: name its folder")
     if options.watch:
         from lumen.cli.watching import watch
 
@@ -59,6 +63,7 @@ def show(text: str) -> None:
 
 
 def _wanted(options: argparse.Namespace) -> Wanted:
+    """Which findings --select and --ignore leave."""
     chosen = selected(options.select) if options.select is not None else None
     left_out = selected(options.ignore or ())
 
@@ -66,6 +71,11 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         return (chosen is None or diagnostic.code in chosen) and diagnostic.code not in left_out
 
     return wanted
+
+
+def _here(project: Asked) -> bool:
+    """Whether one stands in the project."""
+    return Path.cwd().is_relative_to(project.root.resolve())
 
 
 def _consistent(options: argparse.Namespace) -> None:

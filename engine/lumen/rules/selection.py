@@ -12,9 +12,7 @@ def selected(words: Iterable[str]) -> frozenset[str]:
 
     `unknown` is every code that begins with `unknown-`. Raises UsageError for a word that stands for nothing.
     """
-    return frozenset(
-        code for text in words for word in text.split(",") if word.strip() for code in _codes(word.strip())
-    )
+    return frozenset(code for text in words for word in text.split(",") for code in _codes(word.strip()))
 
 
 def _codes(word: str) -> Iterable[str]:
@@ -29,5 +27,7 @@ def _codes(word: str) -> Iterable[str]:
 
 def unknown_code(word: str) -> str:
     """What to say of a word that is no code."""
+    if not word:
+        return "a code is missing: `lumen explain` lists them all"
     hint = did_you_mean(word, [*CODES, *FAMILIES])
     return f"no code `{word}`: {hint if hint.startswith('did') else '`lumen explain` lists them all'}"

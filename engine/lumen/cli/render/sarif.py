@@ -45,7 +45,7 @@ def _run(found: Findings) -> dict[str, Any]:
 def _bases(found: Findings) -> dict[str, Any]:
     repository = Path(found.repository)
     inside = os.path.relpath(os.path.abspath(found.root), repository).replace(os.sep, "/")
-    here = {"uri": "" if inside == "." else f"{quote(inside)}/", "uriBaseId": "SRCROOT"}
+    here = {"uri": "" if inside == "." else f"{quote(os.fsencode(inside))}/", "uriBaseId": "SRCROOT"}
     return {"PROJECT": here, "SRCROOT": {"uri": repository.absolute().as_uri() + "/"}}
 
 
