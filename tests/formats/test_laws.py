@@ -4,8 +4,7 @@ import json
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings
 
 from lumen.formats.document import document_yaml
 from lumen.formats.findings import dotted
@@ -16,6 +15,8 @@ from lumen.loading.source import parse
 from lumen.statechart import Machine
 from tests.formats.making import HAPPENINGS, charts, run
 
+FEW = settings(max_examples=20, deadline=None)
+MANY = settings(max_examples=500, deadline=None, database=None, suppress_health_check=list(HealthCheck))
 FORMATS = {"scxml": (write_scxml, read_scxml), "xstate": (write_xstate, read_xstate)}
 
 
@@ -44,37 +45,49 @@ def trace(machine: Machine, happenings: list[str]) -> list[tuple[Any, ...]]:
     ]
 
 
-@settings(max_examples=60, deadline=None)
+def behaves_the_same(format: str, chart: dict[str, Any], happenings: list[str]) -> None:
+    machine = Machine.from_dict(chart)
+    assert trace(Machine.from_dict(through(machine, format)), happenings) == trace(machine, happenings)
+
+
+def settles(format: str, chart: dict[str, Any]) -> None:
+    """The second time nothing changes, and the YAML holds the same data."""
+    once = through(Machine.from_dict(chart), format)
+    twice = through(Machine.from_dict(once), format)
+    assert json.dumps(twice) == json.dumps(once)
+    document, diagnostics = parse("machine.yaml", document_yaml(once).encode())
+    assert not diagnostics
+    assert document is not None
+    assert json.dumps(document.data) == json.dumps(once)
+
+
+@FEW
 @given(chart=charts(), happenings=HAPPENINGS)
 def test_what_comes_back_from_scxml_behaves_the_same(chart: dict[str, Any], happenings: list[str]) -> None:
-    machine = Machine.from_dict(chart)
-    assert trace(Machine.from_dict(through(machine, "scxml")), happenings) == trace(machine, happenings)
+    behaves_the_same("scxml", chart, happenings)
 
 
-@settings(max_examples=60, deadline=None)
+@FEW
 @given(chart=charts(deep=False), happenings=HAPPENINGS)
 def test_what_comes_back_from_xstate_behaves_the_same(chart: dict[str, Any], happenings: list[str]) -> None:
     """But for an `initial` that leads deeper than to a child, which becomes a state of its own, and for candidates that
     are written twice: the second failure at one place is passed over, that at another is not.
     """
-    machine = Machine.from_dict(chart)
-    assert trace(Machine.from_dict(through(machine, "xstate")), happenings) == trace(machine, happenings)
+    behaves_the_same("xstate", chart, happenings)
 
 
 @pytest.mark.parametrize("format", FORMATS)
-@settings(max_examples=60, deadline=None)
+@FEW
 @given(chart=charts())
 def test_the_second_time_nothing_changes(format: str, chart: dict[str, Any]) -> None:
-    once = through(Machine.from_dict(chart), format)
-    twice = through(Machine.from_dict(once), format)
-    assert json.dumps(twice) == json.dumps(once)
+    settles(format, chart)
 
 
-@settings(max_examples=60, deadline=None)
-@given(chart=charts(), pick=st.sampled_from(sorted(FORMATS)))
-def test_the_yaml_holds_the_same_data(chart: dict[str, Any], pick: str) -> None:
-    data = through(Machine.from_dict(chart), pick)
-    document, diagnostics = parse("machine.yaml", document_yaml(data).encode())
-    assert not diagnostics
-    assert document is not None
-    assert json.dumps(document.data) == json.dumps(data)
+@pytest.mark.soak
+@MANY
+@given(chart=charts(), plain=charts(deep=False), happenings=HAPPENINGS)
+def test_five_hundred_machines(chart: dict[str, Any], plain: dict[str, Any], happenings: list[str]) -> None:
+    behaves_the_same("scxml", chart, happenings)
+    behaves_the_same("xstate", plain, happenings)
+    for format in FORMATS:
+        settles(format, chart)

@@ -190,7 +190,29 @@ def test_what_the_bound_leaves_out_is_said_and_nothing_concluded_from_it() -> No
 
 def test_no_rest_is_found() -> None:
     states = {"a": {"on": {"go": "b"}}, "b": {"always": "c"}, "c": {"always": "b"}}
-    assert found(walked(states)) == [("restless", "a", 0)]
+    assert found(walked(states)) == [("restless", "a", 1)]
+
+
+def test_the_story_of_no_rest_ends_there(story: Callable[..., Path], capsys: pytest.CaptureFixture[str]) -> None:
+    folder = story("  - wait: 1s\n")
+    assert main(["test", str(folder), "--explore", "--behavior", "door"]) == 1
+    told = capsys.readouterr().out
+    assert "no rest: `door` never comes to rest" in told
+    lines = told.partition("    # yaml-language-server")[2].split("\n\n")[0].splitlines()
+    assert lines[-1].strip() == "- event: spin"
+    pasted = "\n".join(line[4:] for line in lines[1:])
+    (folder / "behaviors" / "stories" / "found.yaml").write_text(pasted + "\n", "utf-8")
+    assert main(["test", str(folder), "found"]) == 1
+    assert "`door` never comes to rest" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("guard", ["size(context.s) > 5", "size(context.l) >= 6"])
+def test_what_grows_is_told_apart_by_its_length(guard: str) -> None:
+    grow = {"assign": {"s": "context.s + 'a'", "l": "context.l + [1]"}}
+    states = {"a": {"on": {"go": [{"guard": guard, "target": "b"}, {"actions": grow}]}}, "b": {"on": {"back": "a"}}}
+    exploration = walked(states, context={"s": "", "l": []})
+    assert found(exploration) == []
+    assert exploration.never_taken == ()
 
 
 def test_what_is_invoked_is_walked_too() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.interpreters.exploration.liveness import Liveness
 from lumen.interpreters.exploration.reading import behind, of_state
-from lumen.interpreters.expressions.tree import Literal, walk
+from lumen.interpreters.expressions.tree import Call, Literal, walk
 from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 from lumen.language.machines import Machine
 
@@ -21,7 +21,8 @@ class Abstraction:
     """The key of a snapshot: equal keys, one configuration.
 
     Of the context only keys that can still matter count. Of a number only whether it is one of those near the numbers
-    that the behaviour mentions, or below or above them all; of a text whether it is empty or one that is mentioned.
+    that the behaviour mentions, or below or above them all; of a text whether it is empty or one that is mentioned;
+    where the behaviour asks for a `size`, of texts, lists and maps also that, as a number.
     Times, ids, what has been drawn and (unless it is asked for) the language do not count.
     """
 
@@ -32,6 +33,7 @@ class Abstraction:
         literals = {node.value for use in uses for node, _ in walk(use.tree) if isinstance(node, Literal)}
         self._texts = {value for value in literals if isinstance(value, str)}
         self._numbers = sorted({v for v in literals if isinstance(v, int | float) and not isinstance(v, bool)} | {0})
+        self._sized = any(isinstance(n, Call) and n.function == "size" for use in uses for n, _ in walk(use.tree))
         self._language = any(re.search(r"\bstate\.language\b", t) for t in _guards(machine))
         self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 
@@ -58,10 +60,13 @@ class Abstraction:
         if isinstance(value, int | float):
             return self._number(value)
         if isinstance(value, str):
-            return value if not value or value in self._texts else "…"
+            known = value if not value or value in self._texts else "…"
+            return (known, self._number(len(value))) if self._sized else known
         if isinstance(value, Mapping):
-            return tuple((k, self.value(v)) for k, v in sorted(value.items())[:ITEMS])
-        return tuple(self.value(item) for item in value[:ITEMS])
+            items: tuple[Any, ...] = tuple((k, self.value(v)) for k, v in sorted(value.items())[:ITEMS])
+        else:
+            items = tuple(self.value(item) for item in value[:ITEMS])
+        return (items, self._number(len(value))) if self._sized else items
 
     def _number(self, value: float) -> tuple[int, float]:
         least, most = self._numbers[0] - 1, self._numbers[-1] + 1

@@ -111,5 +111,7 @@ def _region(machine: Machine, name: str) -> str:
 
 
 def _finding(machine: Machine, kind: Sort, path: str, message: str, spot: Spot) -> Finding:
-    way = tuple(Stay(s.move, tuple(innermost(machine, s.snapshot))) for s in spot.way())
-    return Finding(kind, path, message, way)
+    way = [Stay(s.move, tuple(innermost(machine, s.snapshot))) for s in spot.way()]
+    if kind == "restless":
+        way.append(Stay(spot.endless, way[-1].states))
+    return Finding(kind, path, message, tuple(way))

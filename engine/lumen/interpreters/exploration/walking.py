@@ -16,9 +16,12 @@ from lumen.language.machines import Machine
 
 
 class Spot:
-    """A configuration come upon: one snapshot that stands for it, the cheapest way to it, and where it leads."""
+    """A configuration come upon: one snapshot that stands for it, the cheapest way to it, and where it leads.
 
-    __slots__ = ("before", "commands", "cost", "exits", "move", "restless", "snapshot", "walked")
+    `restless` says how the machine never comes to rest after the move `endless`.
+    """
+
+    __slots__ = ("before", "commands", "cost", "endless", "exits", "move", "restless", "snapshot", "walked")
 
     def __init__(
         self,
@@ -32,6 +35,7 @@ class Spot:
         self.before, self.move = before, move
         self.exits: list[Spot] = []
         self.restless = ""
+        self.endless: Move | None = None
         self.walked = False
 
     @property
@@ -97,6 +101,7 @@ class Walk:
             try:
                 taken = step(self._machine, spot.snapshot, move.event)
             except LumenError as error:
+                spot.endless = spot.endless or move
                 spot.restless = spot.restless or str(error)
                 continue
             if taken.snapshot is not spot.snapshot:
