@@ -80,6 +80,7 @@ def test_a_quick_yes_is_never_wrong(chosen: tuple[str, Document], random: Random
         ({"uniqueItems": True}, ["a", "b"], ["a", "a"]),
         ({"dependentRequired": {"a": ["b"]}}, {"b": 1}, {"a": 1}),
         ({"propertyNames": {"maxLength": 1}}, {"a": 1}, {"ab": 1}),
+        ({"$ref": "#/$defs/a/items", "$defs": {"a": {"items": {"type": "null"}}}}, None, 1),
         ({"$ref": "#/$defs/tree", "$defs": {"tree": {"items": {"$ref": "#/$defs/tree"}, "type": "array"}}}, [[]], [1]),
     ],
 )
@@ -91,7 +92,16 @@ def test_keywords(schema: dict[str, Any], fits: Any, fails: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    "schema", [{"oneOf": [True]}, {"not": {"type": "null"}}, {"$ref": "#"}, {"$ref": "other"}, {"format": "x"}, False]
+    "schema",
+    [
+        {"oneOf": [True]},
+        {"not": {"type": "null"}},
+        {"$ref": "#"},
+        {"$ref": "other"},
+        {"$ref": "#/$defs/none"},
+        {"format": "x"},
+        False,
+    ],
 )
 def test_nobody_knows(schema: Any) -> None:
     assert not quick(schema)(1)

@@ -84,16 +84,13 @@ class _Compiler:
 
     def _reference(self, reference: Any) -> Quick | None:
         """What it refers to, compiled when it is first met, for a schema may refer to itself."""
-        if not isinstance(reference, str) or not re.fullmatch(r"#/\$defs/[^/~%]+", reference):
+        target, named = _target(self._root, reference), self._named
+        if target is None:
             return None
-        definitions = self._root.get("$defs", {}) if isinstance(self._root, Mapping) else {}
-        name, named = reference.removeprefix("#/$defs/"), self._named
-        if name not in definitions:
-            return None
-        if name not in named:
-            named[name] = _never
-            named[name] = self.compiled(definitions[name])
-        return lambda data: named[name](data)
+        if reference not in named:
+            named[reference] = _never
+            named[reference] = self.compiled(target)
+        return lambda data: named[reference](data)
 
     def _parts(self, schema: Mapping[str, Any]) -> list[Quick | None]:
         """The tests of keywords that look at each other."""
@@ -142,6 +139,15 @@ class _Compiler:
         condition, sure = self.compiled(schema["if"]), _decidable(schema["if"])
         then, otherwise = self.compiled(schema.get("then", True)), self.compiled(schema.get("else", True))
         return lambda data: then(data) if condition(data) else otherwise(data) and (sure or then(data))
+
+
+def _target(root: Any, reference: Any) -> Any:
+    """The schema that a plain pointer below `$defs` means, None for any other reference."""
+    if not isinstance(reference, str) or not re.fullmatch(r"#/\$defs(/[^/~%]+)+", reference):
+        return None
+    for step in reference.split("/")[1:]:
+        root = root.get(step) if isinstance(root, Mapping) else None
+    return root
 
 
 def _decidable(condition: Any) -> bool:
