@@ -11,6 +11,7 @@ from jsonschema import Draft4Validator
 from lumen.cli.findings import Findings
 from lumen.cli.render import FORMATS, render
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
+from lumen.loading.files import Unreadable
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[2]
@@ -67,6 +68,12 @@ def test_nothing_in_a_file_reaches_a_terminal_as_a_command(format: str) -> None:
     hostile = Diagnostic("wrong-type", "a \x1b]0;x\x07\x9b", Place("a\x1b[2J.yaml", 1, 1, 1, 5), "\x08")
     shown = render(format, [Findings((hostile,), {"a\x1b[2J.yaml": b"\x1b[31mred\n"})])
     assert not re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f]", shown)
+
+
+def test_the_reason_why_a_file_can_not_be_read_is_not_shown_as_its_text() -> None:
+    finding = Diagnostic("unreadable-file", "this can't be read: it is a folder", Place("a.yaml"))
+    shown = render("text", [Findings((finding,), {"a.yaml": Unreadable(b"it is a folder")})])
+    assert shown.count("it is a folder") == 1
 
 
 def test_wide_characters_move_the_mark() -> None:

@@ -7,6 +7,7 @@ from lumen.cli.findings import Findings
 from lumen.cli.render.words import COLOURS, clean, summary, width
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Diagnostic, Place
+from lumen.loading.files import Unreadable
 
 WIDTH = 140
 """Characters of a line that are shown; of a longer one those around the word."""
@@ -72,7 +73,9 @@ class _Excerpts:
 
     def lines(self, file: str) -> list[str]:
         if file not in self.texts:
-            self.texts[file] = _BREAK.split(self.found.files.get(file, b"").decode("utf-8-sig", "replace"))
+            content = self.found.files.get(file, b"")
+            shown = b"" if isinstance(content, Unreadable) else content
+            self.texts[file] = _BREAK.split(shown.decode("utf-8-sig", "replace"))
         return self.texts[file]
 
 
