@@ -47,6 +47,13 @@ class Tracker:
         self._lost_since: float | None = None
         self._held: Angles = {}
 
+    def succeed(self, before: "Tracker") -> None:
+        """Go on where another one stood that moved the same joints: with the poses it knew, and what it saw last."""
+        if set(self.joints) <= set(before.joints):
+            self._poses.extend((time, {j: angles[j] for j in self.joints}) for time, angles in before._poses)
+            self._seen, self._lost_since = before._seen, before._lost_since
+            self._held = {joint: before._held[joint] for joint in self.joints if joint in before._held}
+
     def pose(self, time: float, angles: Mapping[str, float], *, now: float = inf) -> None:
         """Remember where the joints stand [rad], measured at `time`, as a message says that comes in at `now`.
 

@@ -29,14 +29,16 @@ class Tracking:
         self.reload(project)
 
     def reload(self, project: Project) -> None:
-        """Go on with another bundle: a controller that is on and has changed begins anew where the joints are."""
+        """Go on with another bundle: a controller that is on and has changed goes on with what was seen last."""
         old, self._project = self._project, project
         for name in list(self._trackers):
             controller = project.controllers.get(name)
             if controller is None:
                 del self._trackers[name]
             elif controller != old.controllers[name]:
+                before = self._trackers[name]
                 self._trackers[name] = Tracker(controller, project.body)
+                self._trackers[name].succeed(before)
         self._listen()
 
     @property
@@ -45,11 +47,11 @@ class Tracking:
         return tuple(self._trackers)
 
     def switch(self, track: Track) -> None:
-        """Switch a controller on or off; one that is on already goes on."""
+        """Switch a controller on or off; one that is on already goes on, one that a reload has taken away stays off."""
         if not track.on:
             self._trackers.pop(track.controller, None)
-        elif track.controller not in self._trackers:
-            self._trackers[track.controller] = Tracker(self._project.controllers[track.controller], self._project.body)
+        elif track.controller not in self._trackers and (found := self._project.controllers.get(track.controller)):
+            self._trackers[track.controller] = Tracker(found, self._project.body)
 
     def tick(self, now: float) -> None:
         """Take what has come in, and aim."""

@@ -52,11 +52,7 @@ _ROUTE: Mapping[str, Callable[[Any], str]] = {
 def _controller(old: Controller, new: Controller) -> Iterator[str]:
     title = f"`{new.name}`"
     for i, (before, after) in enumerate(zip(old.rules, new.rules, strict=False), 1):
-        if (before.antecedent, before.consequents, before.weight) != (
-            after.antecedent,
-            after.consequents,
-            after.weight,
-        ):
+        if replace(before, text="") != replace(after, text=""):
             yield f"fuzzy rule {i} of {title} changed: {code(after.text)}"
     if len(old.rules) != len(new.rules):
         yield f"{title} has {len(new.rules)} fuzzy rules, not {len(old.rules)}"

@@ -1,0 +1,170 @@
+"""A running exhibition under other files: the head, a motion, messages under way, the language."""
+
+import threading
+from dataclasses import replace
+
+from lumen.buses.memory import MemoryBus
+from lumen.cli.cast import Cast
+from lumen.cli.show import Show
+from lumen.clocks.simulated import SimulatedClock
+from lumen.interpreters.migration import Plan, Wait
+from lumen.interpreters.statechart import Step
+from lumen.language.events import Event
+from lumen.language.motions import Motion
+from lumen.language.projects import Project
+from lumen.language.routes import Direction, Route
+from lumen.language.stories import Visitor
+from lumen.loading.packaged import find_project
+from lumen.robots.recording import RecordingRobot
+from lumen.robots.simulation import SimulatedRobot
+from lumen.rules import load
+from lumen.runtime.exhibition import TICK, Exhibition, Observer
+from lumen.statechart import Machine
+from tests import exhibits
+
+
+class Seen(Observer):
+    """The names of all events that the behaviour took, and when the robot answered what."""
+
+    def __init__(self) -> None:
+        self.events: list[str] = []
+        self.answers: list[tuple[str, float]] = []
+
+    def stepped(self, step: Step) -> None:
+        if step.event:
+            self.events.append(step.event.name)
+
+    def answered(self, event: Event) -> None:
+        self.answers.append((event.name, event.at))
+
+
+def machine(**parts: object) -> Machine:
+    return Machine.from_dict({"id": "tour", **parts}, "tour")
+
+
+def running(project: Project) -> tuple[Exhibition, Seen]:
+    robot, seen = RecordingRobot(project.body), Seen()
+    exhibition = Exhibition(project, robot, MemoryBus(), SimulatedClock(robot.advance))
+    exhibition.observers.append(seen)
+    exhibition.start()
+    return exhibition, seen
+
+
+def swap(exhibition: Exhibition, project: Project, **how: bool) -> Plan:
+    plan = exhibition.plan(project, **how)
+    assert isinstance(plan, Plan)
+    exhibition.apply(project, plan)
+    return plan
+
+
+def test_the_head_goes_on_smoothly_under_another_controller() -> None:
+    project = load(find_project())
+    robot = SimulatedRobot(project.body, find_project() / "models", project.hall)
+    show = Show(project, Cast(robot, SimulatedClock(robot.advance), robot), sensing=True)
+    show.start()
+    assert show.walker
+    show.walker.arrive(Visitor(1.2, 0.8))
+    head = {name: robot.motors.index[name] for name in ("HeadYaw", "HeadPitch")}
+    quick = replace(project.controllers["head"].tracking, speed=0.9, looks=1)
+    bindings = tuple(replace(b, gain=-b.gain) for b in project.controllers["head"].output_bindings)
+    wild = replace(project.controllers["head"], tracking=quick, output_bindings=bindings)
+    before = {name: float(robot.motors.goal[i]) for name, i in head.items()}
+    moved = dict.fromkeys(head, 0.0)
+    for tick in range(130):
+        if tick == 65:
+            assert moved["HeadYaw"] > 0.1  # it follows the visitor
+            moved = dict.fromkeys(head, 0.0)
+            changed = replace(project, controllers={**project.controllers, "head": wild})
+            plan = show.plan(changed)
+            assert isinstance(plan, Plan)
+            show.apply(changed, plan)
+        show.tick()
+        for name, i in head.items():
+            goal = float(robot.motors.goal[i])
+            assert abs(goal - before[name]) <= project.body.joints[name].speed * TICK + 1e-9
+            moved[name] += abs(goal - before[name])
+            before[name] = goal
+    assert moved["HeadYaw"] > 0.1  # so it does under the other one
+    show.close()
+
+
+DANCING = machine(states={"a": {"do": {"play": "dance"}, "onDone": "b"}, "b": {"do": {"play": "dance"}}})
+
+
+def test_a_motion_that_plays_ends_as_it_began_and_is_the_new_one_the_next_time() -> None:
+    project = exhibits.project(behaviors={"tour": DANCING})
+    exhibition, seen = running(project)
+    exhibition.tick()
+    longer = {**project.motions, "dance": Motion("dance", 3.0, project.motions["dance"].tracks)}
+    swap(exhibition, replace(project, motions=longer))
+    while len(seen.answers) < 2:
+        exhibition.tick()
+    (first, at), (second, later) = seen.answers
+    assert (first, second) == ("done.command.d1", "done.command.d2")
+    assert abs(at - 1.0) < 2 * TICK
+    assert abs(later - at - 3.0) < 2 * TICK
+
+
+def test_a_motion_that_plays_may_be_deleted_when_it_has_ended() -> None:
+    project = exhibits.project(behaviors={"tour": DANCING})
+    exhibition, seen = running(project)
+    calm = machine(states={"a": {"do": {"say": "no"}, "onDone": "b"}, "b": {}})
+    without = replace(project, behaviors={"tour": calm}, motions={})
+    assert exhibition.plan(without) == Wait("what `a` is doing has changed", "a")
+    while len(seen.answers) < 2:
+        exhibition.tick()
+    exhibition.tick()
+    assert swap(exhibition, without).commands == ()
+
+
+def test_cancelled_rather_than_waited_for_it_begins_what_is_new() -> None:
+    project = exhibits.project(behaviors={"tour": DANCING})
+    exhibition, seen = running(project)
+    exhibition.tick()
+    singing = machine(states={"a": {"do": {"play": "sing"}, "onDone": "b"}, "b": {}})
+    swap(exhibition, replace(project, behaviors={"tour": singing}), now=True)
+    while "b" not in exhibition.runtime.snapshot.configuration:
+        exhibition.tick()
+    assert [name for name, _ in seen.answers] == ["cancelled.command.d1", "done.command.d2"]
+
+
+def test_no_message_is_lost_while_routes_come_and_go() -> None:
+    listening = machine(events={"face": {}}, states={"a": {"on": {"*": {"actions": {"log": "x"}}}}})
+    project = exhibits.project(behaviors={"tour": listening})
+    exhibition, seen = running(project)
+    other = Route("other", "lumen.other", Direction.IN, event="other")
+    face = replace(project.routes["face"], ttl=3.0)
+    variants = [
+        replace(project, routes={**project.routes, "other": other}),
+        replace(project, routes={**project.routes, "face": face}),
+        project,
+    ]
+    turns, each = 40, 50
+    go = threading.Semaphore(0)
+
+    def publish() -> None:
+        for _ in range(turns):
+            go.acquire()
+            for _ in range(each):
+                exhibition.bus.publish("lumen.visual.face.detection", {"x": 0.0, "y": 0.0})
+
+    publisher = threading.Thread(target=publish)
+    publisher.start()
+    for turn in range(turns):
+        go.release()
+        swap(exhibition, variants[turn % 3])  # while it publishes
+        exhibition.tick()
+    publisher.join()
+    exhibition.tick()
+    assert seen.events.count("face") == turns * each
+
+
+def test_a_language_that_is_gone_is_no_longer_spoken() -> None:
+    project = exhibits.project(behaviors={"tour": DANCING})
+    exhibition, _ = running(project)
+    exhibition.runtime.apply(project, exhibition.runtime.snapshot._replace(language="id"))
+    plan = swap(exhibition, replace(project, languages=("nl", "en")))
+    assert plan.notes == ("language `id` is gone: on in `nl`",)
+    assert exhibition.runtime.snapshot.language == "nl"
+    assert swap(exhibition, replace(project, languages=("en", "nl"))).notes == ()
+    assert exhibition.runtime.snapshot.language == "nl"
