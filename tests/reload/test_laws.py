@@ -3,6 +3,7 @@
 from contextlib import suppress
 from copy import deepcopy
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -40,9 +41,13 @@ def assert_sound(machine: Machine, snapshot: Snapshot) -> None:
         assert stands.context.keys() == inner.context.keys()
 
 
-@settings(PATIENT, max_examples=120)
+@settings(PATIENT, max_examples=30)
 @given(st.data(), machine_data(deeds=True), happenings, happenings)
 def test_a_plan_is_legal_and_goes_on(data: st.DataObject, old: Data, events: Happenings, later: Happenings) -> None:
+    legal(data, old, events, later)
+
+
+def legal(data: st.DataObject, old: Data, events: Happenings, later: Happenings) -> None:
     """Or it is refused, or waits for a `do` that is under way; with `now` nothing waits."""
     before, after = Machine.from_dict(old), built(data.draw(edits(old) | machine_data(deeds=True)))
     for snapshot in snapshots(before, events) if after else ():
@@ -67,9 +72,13 @@ def goes_on(machine: Machine, snapshot: Snapshot, events: Happenings) -> None:
         assert_sound(machine, snapshot)
 
 
-@settings(PATIENT, max_examples=60)
+@settings(PATIENT, max_examples=4)
 @given(machines(), machines(), HAPPENINGS)
 def test_invoked_behaviours_are_legal_as_well(before: Machine, after: Machine, events: list[str]) -> None:
+    invoked_legal(before, after, events)
+
+
+def invoked_legal(before: Machine, after: Machine, events: list[str]) -> None:
     for taken in run(before, events):
         for now in (False, True):
             verdict = migrate(before, after, taken.snapshot, now=now)
@@ -77,7 +86,7 @@ def test_invoked_behaviours_are_legal_as_well(before: Machine, after: Machine, e
                 assert_sound(after, verdict.snapshot)
 
 
-@settings(PATIENT, max_examples=40)
+@settings(PATIENT, max_examples=15)
 @given(machine_data(deeds=True), happenings)
 def test_the_same_content_does_nothing(data: Data, events: Happenings) -> None:
     before, after = Machine.from_dict(data), Machine.from_dict(deepcopy(data))
@@ -85,7 +94,7 @@ def test_the_same_content_does_nothing(data: Data, events: Happenings) -> None:
         assert migrate(before, after, snapshot, at=snapshot.at + 1.0) == Plan(snapshot)
 
 
-@settings(PATIENT, max_examples=40)
+@settings(PATIENT, max_examples=15)
 @given(machine_data(deeds=True), happenings)
 def test_what_differs_elsewhere_changes_nothing(data: Data, events: Happenings) -> None:
     """A new state that nothing leads to: translated, everything is where it was."""
@@ -99,7 +108,7 @@ def test_what_differs_elsewhere_changes_nothing(data: Data, events: Happenings) 
             assert migrate(after, before, there.snapshot, back=True) == Plan(snapshot)
 
 
-@settings(PATIENT, max_examples=80)
+@settings(PATIENT, max_examples=30)
 @given(st.data(), machine_data(deeds=True), happenings)
 def test_there_and_back_restores_what_did_not_change(data: st.DataObject, old: Data, events: Happenings) -> None:
     before, after = Machine.from_dict(old), built(data.draw(edits(old)))
@@ -118,7 +127,7 @@ def test_there_and_back_restores_what_did_not_change(data: st.DataObject, old: D
             assert kept == {p: w for p, w in again.snapshot.doing.items() if p in snapshot.doing}
 
 
-@settings(PATIENT, max_examples=80)
+@settings(PATIENT, max_examples=30)
 @given(st.data(), machine_data(), happenings)
 def test_what_is_left_runs_its_old_exit_actions_from_the_inside(
     data: st.DataObject, old: Data, events: Happenings
@@ -143,7 +152,7 @@ def test_what_is_left_runs_its_old_exit_actions_from_the_inside(
             assert not any(c.text.startswith("new") for c in verdict.leaving if isinstance(c, Log))
 
 
-@settings(PATIENT, max_examples=60)
+@settings(PATIENT, max_examples=30)
 @given(st.data(), machine_data(deeds=True), happenings)
 def test_deadlines_are_kept(data: st.DataObject, old: Data, events: Happenings) -> None:
     before, after = Machine.from_dict(old), built(data.draw(edits(old)))
@@ -157,7 +166,7 @@ def test_deadlines_are_kept(data: st.DataObject, old: Data, events: Happenings) 
                 assert (timer.kind, timer.due, timer.delay) in dues or moved or timer.kind == "wait"
 
 
-@settings(PATIENT, max_examples=40)
+@settings(PATIENT, max_examples=10)
 @given(st.data(), machine_data(deeds=True), happenings)
 def test_a_plan_is_pure(data: st.DataObject, old: Data, events: Happenings) -> None:
     before, after = Machine.from_dict(old), built(data.draw(edits(old)))
@@ -166,3 +175,17 @@ def test_a_plan_is_pure(data: st.DataObject, old: Data, events: Happenings) -> N
         assert migrate(before, after, snapshot, now=True) == migrate(before, after, snapshot, now=True)
         assert freeze(before, snapshot) == stored
         assert initial(before) == initial(Machine.from_dict(old))
+
+
+@pytest.mark.soak
+@settings(PATIENT, max_examples=1000)
+@given(st.data(), machine_data(deeds=True), happenings, happenings)
+def test_a_thousand_edits(data: st.DataObject, old: Data, events: Happenings, later: Happenings) -> None:
+    legal(data, old, events, later)
+
+
+@pytest.mark.soak
+@settings(PATIENT, max_examples=200)
+@given(machines(), machines(), HAPPENINGS)
+def test_two_hundred_behaviours_within_others(before: Machine, after: Machine, events: list[str]) -> None:
+    invoked_legal(before, after, events)

@@ -9,7 +9,6 @@ import pytest
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import ProjectError, SnapshotError, UsageError
 from lumen.interpreters.statechart import freeze, thaw
-from lumen.runtime.reload import Refusal, migrate
 from lumen.statechart import Event, Interpreter, Machine, due, initial, step
 
 QUIZ: dict[str, Any] = {
@@ -95,24 +94,6 @@ def test_a_snapshot_with_another_machine_inside_is_refused() -> None:
     for damage in ({"x": frozen["invoked"]["quiz"]}, {"quiz": {"state": "b"}}, {"quiz": 3}, None):
         with pytest.raises(SnapshotError):
             thaw(tour(), {**frozen, "invoked": damage})
-
-
-def test_a_reload_leaves_what_is_invoked_alone_or_waits() -> None:
-    snapshot = initial(tour()).snapshot
-    more = {**TOUR["states"], "c": None}
-    kept = migrate(tour(), tour(states=more), snapshot)
-    assert not isinstance(kept, Refusal)
-    assert kept.invoked == snapshot.invoked
-    for changed in (
-        tour({**QUIZ, "context": {"asked": 1}}),
-        tour(states={**more, "a": {"on": {"go": "b"}, "after": {"7s": "b"}}}),
-        tour(states={**more, "a": {**TOUR["states"]["a"], "invoke": {"id": "other", "behavior": "quiz"}}}),
-    ):
-        refused = migrate(tour(), changed, snapshot)
-        assert isinstance(refused, Refusal)
-        assert "`a`" in refused.reason
-        left = step(tour(), snapshot, Event("go")).snapshot
-        assert not isinstance(migrate(tour(), changed, left), Refusal)
 
 
 def test_invoked_files_stand_beside_the_file(tmp_path: Path) -> None:
