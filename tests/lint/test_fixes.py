@@ -71,6 +71,13 @@ def test_what_only_its_author_can_know_is_left(file: str, old: str, new: str) ->
     assert fixed(file, old, new).decode() == BASE[file].decode().replace(old, new)
 
 
+def test_where_the_definition_has_the_slip_the_references_stay() -> None:
+    controller = BASE["fuzzy/head.yaml"]
+    text = controller.replace(b"Face: {range", b"Faec: {range")
+    files = {**BASE, "fuzzy/head.yaml": text}
+    assert repaired(files, lambda f: check_files(HERE, f)[1], lambda d: True)[0] == files
+
+
 def test_line_ends_comments_and_a_byte_order_mark_stay() -> None:
     text = BASE[TOUR].decode().replace("onError: idle", "onError: idel   # home").replace("\n", "\r\n")
     files = {**BASE, TOUR: b"\xef\xbb\xbf" + text.encode()}

@@ -7,9 +7,10 @@ A fix is a proposal: whoever applies one lints again and keeps it only where the
 from collections.abc import Callable, Mapping
 
 from lumen.language.diagnostics import Diagnostic
+from lumen.rules.codes import FAMILIES
 from lumen.rules.fixes.edits import Edit, Fix, Sheet, edited
 from lumen.rules.fixes.lines import fewer_ignores, once, spaces
-from lumen.rules.fixes.words import filled_in, slip, straight_quotes
+from lumen.rules.fixes.words import filled_in, outnumbered, slip, straight_quotes
 
 __all__ = ["Edit", "Fix", "Sheet", "edited", "fixes"]
 
@@ -30,4 +31,8 @@ def fixes(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> list[Fix]:
     fixer = _FIXERS.get(diagnostic.code) or (slip if diagnostic.code.startswith(("unknown-", "wrong-")) else None)
     if content is None or fixer is None:
         return []
-    return fixer(diagnostic, Sheet(diagnostic.place.file, content))
+    sheet = Sheet(diagnostic.place.file, content)
+    proposed = fixer(diagnostic, sheet)
+    if fixer is not slip or diagnostic.code in FAMILIES["shape"]:
+        return proposed
+    return [fix for fix in proposed for edit in fix.edits if not outnumbered(sheet.at(edit.place), edit.text, files)]

@@ -1,6 +1,7 @@
 """Fixes of a word or a text: what was meant stands in the finding."""
 
 import re
+from collections.abc import Mapping
 
 from lumen.language.diagnostics import Diagnostic
 from lumen.rules.fixes.edits import Edit, Fix, Sheet
@@ -23,6 +24,20 @@ def slip(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
     start = diagnostic.place.column + there.index(said[0])
     spot = diagnostic.place._replace(column=start, end_column=start + len(said[0]))
     return [Fix(f"write {meant[1]}", (Edit(spot, meant[1]),))]
+
+
+def outnumbered(word: str, meant: str, files: Mapping[str, bytes]) -> bool:
+    """Whether the word stands in the project several times, and what is said to be meant no oftener.
+
+    Then it is rather the one place where that is defined that has the slip in it.
+    """
+    often, seldom = _count(word, files), _count(meant, files)
+    return often > 1 and often >= seldom
+
+
+def _count(word: str, files: Mapping[str, bytes]) -> int:
+    whole = re.compile(rb"(?<!\w)" + re.escape(word.encode("utf-8", "surrogatepass")) + rb"(?!\w)")
+    return sum(len(whole.findall(content)) for content in files.values())
 
 
 def near(word: str, meant: str) -> bool:
