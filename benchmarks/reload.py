@@ -47,7 +47,7 @@ STORIES = ("known_visitor", "refuses", "unknown_visitor")
 TOUR, MAIN = "behaviors/tour.yaml", "lumen.yaml"
 FIVE = (MAIN, TOUR, *(f"behaviors/stories/{name}.yaml" for name in STORIES))
 PATIENCE = 60.0
-WARM = 0.2
+WARM = 0.4
 """The part of the edits after which memory, threads and files are counted for the first time."""
 
 COUNTER = """
@@ -282,7 +282,7 @@ class Soak:
         home = Home(root / ".lumen")
         home.hold()
         records = Records(home)
-        self.reloading = Reloading(self.show, transcript, records=records, quiet=quiet)
+        self.reloading = Reloading(self.show, transcript, records=records, quiet=quiet, apart=True)
         self.show.exhibition.parts += [self.reloading.tick, self.look]
         self.show.closing.insert(0, self.reloading.close)
         self.show.closing.append(home.release)

@@ -143,7 +143,9 @@ class Shortcuts:
         return found
 
     def find(self, names: frozenset[str], name: str) -> Way | None:
-        """The way of an event in a configuration; kept."""
+        """The way of an event in a configuration; kept, but for the robot's answers: each has a name of its own."""
+        if ".command." in name:
+            return None
         bound(self.ways)
         ways = self.ways.setdefault(name, {})
         bound(ways)
@@ -153,7 +155,7 @@ class Shortcuts:
     def way(self, start: Configuration, name: str) -> Way | None:
         groups = start.candidates(name)
         asked = _asked(source for group in groups for rule in group for source in _sources(rule.transition))
-        if ".command." in name or start.eventless or self.planner.chart.has_history or asked & {"state", "In"}:
+        if start.eventless or self.planner.chart.has_history or asked & {"state", "In"}:
             return None
         if len(groups) > 1:
             return Way("event" in asked, (), groups, {})

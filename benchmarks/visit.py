@@ -1,0 +1,59 @@
+"""A visit to the shipped tour as a stream of events: faces five times a second, what is said, and the robot's answers.
+
+The robot is done with everything at once; timers end when they are due. Every step is the pure `step`.
+"""
+
+from collections import deque
+from collections.abc import Iterator
+from pathlib import Path
+
+from peers import Work
+
+from lumen.language.commands import Start
+from lumen.statechart import Event, Machine, Step, due, initial, step
+
+TOUR = Path(__file__).parents[1] / "behaviors" / "tour.yaml"
+SAID = (
+    "My name is Dewi", "Not bad", "Who made you?", "And how do you keep looking at me?",
+    "What is the capital of France?", "Then introduce yourself", "Can you dance?", "Speak Indonesian, please", "Tidak, terima kasih",
+)  # fmt: skip
+FACES, PERIOD = 10, 0.2
+
+
+def happenings() -> Iterator[Event]:
+    """One visitor after another, without end."""
+    number = 0
+    while True:
+        for text in SAID:
+            for _ in range(FACES):
+                number += 1
+                yield Event("face", {"x": 80.0 + number % 40, "y": 120.0}, number * PERIOD)
+            yield Event("heard", {"result": text}, number * PERIOD)
+        number += round(60 / PERIOD)  # nobody is there
+
+
+def tour() -> Work:
+    """Events per second of the tour; each step counts, those of timers and of the robot's answers too."""
+    machine = Machine.load(TOUR)
+
+    def work(count: int) -> int:
+        taken, done, waiting = initial(machine, language="en"), 0, deque[Event]()
+        world = happenings()
+        while done < count:
+            waiting.extend(_answers(taken))
+            event = waiting.popleft() if waiting else next(world)
+            timer = due(taken.snapshot)
+            if timer and timer.at <= event.at:
+                waiting.appendleft(event)
+                event = timer
+            taken = step(machine, taken.snapshot, event)
+            done += 1
+        return done
+
+    return work
+
+
+def _answers(taken: Step) -> Iterator[Event]:
+    for command in taken.commands:
+        if isinstance(command, Start):
+            yield Event(f"done.command.{command.id}", None, taken.snapshot.at)
