@@ -1,11 +1,11 @@
 """What a motion asks of a body beyond what it can give."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from math import inf
 from typing import NamedTuple
 
-from lumen.interpreters.trajectory import Trajectory
+from lumen.interpreters.trajectory import Track, Trajectory
 from lumen.language.motions import Key, Motion
 from lumen.language.robots import Body, CoupledLimit
 
@@ -27,7 +27,9 @@ class Excess(NamedTuple):
 
 def beyond_limits(motion: Motion, body: Body) -> list[Excess]:
     """Where a joint leaves its limits [rad], coupled ones included: in its keys, or on a Bezier curve between them."""
-    return [*_beyond(motion, body), *(e for limit in body.coupled for e in _beyond_coupled(motion, limit))]
+    tracks = {track.joint: track for track in Trajectory(motion).tracks}
+    coupled = (excess for limit in body.coupled for excess in _beyond_coupled(motion, limit, tracks))
+    return [*_beyond(motion, body, tracks), *coupled]
 
 
 def overspeed(motion: Motion, body: Body) -> list[Excess]:
@@ -56,8 +58,8 @@ def coupled_range(limit: CoupledLimit, on: float) -> tuple[float, float]:
     return rows[-1][1:]
 
 
-def _beyond(motion: Motion, body: Body) -> Iterator[Excess]:
-    for track in Trajectory(motion).tracks:
+def _beyond(motion: Motion, body: Body, tracks: Mapping[str, Track]) -> Iterator[Excess]:
+    for track in tracks.values():
         if joint := body.joints.get(track.joint):
             for key, segment in zip(motion.tracks[track.joint], track.segments, strict=True):
                 low, high = segment.extremes()
@@ -67,11 +69,10 @@ def _beyond(motion: Motion, body: Body) -> Iterator[Excess]:
                     yield Excess(track.joint, key, max(high, key.angle), joint.maximum)
 
 
-def _beyond_coupled(motion: Motion, limit: CoupledLimit) -> Iterator[Excess]:
+def _beyond_coupled(motion: Motion, limit: CoupledLimit, tracks: Mapping[str, Track]) -> Iterator[Excess]:
     """Judged at the keys of both joints: moving either may close the range of the other."""
     if limit.on not in motion.tracks or limit.joint not in motion.tracks:
         return
-    tracks = {track.joint: track for track in Trajectory(motion).tracks}
     keys = {key.time: key for joint in (limit.on, limit.joint) for key in motion.tracks[joint]}
     for time, key in sorted(keys.items()):
         angle = tracks[limit.joint].at(time)
