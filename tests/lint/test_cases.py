@@ -1,8 +1,9 @@
 """One mistake, or several, in a small project: exactly these findings, at the very word, with the right hint.
 
 Each YAML file beside this one is a table of cases. A case changes the project in base/: `edit` maps a file to [old,
-new], `write` to its whole content, `delete` lists the beginnings of paths. `find` lists what lint has to say, as
-"file:line:column code | part of the hint"; it must say nothing else.
+new, …], `write` to its whole content, `delete` lists the beginnings of paths. `find` lists what lint has to say, as
+"file:line:column code | part of the hint", and " @ file:line:column" where another place is shown first; it must say
+nothing else.
 """
 
 from pathlib import Path
@@ -32,15 +33,17 @@ def cases() -> list[Any]:
 def changed(case: dict[str, Any]) -> dict[str, bytes]:
     gone = tuple(case.get("delete", ()))
     files = {name: content for name, content in BASE.items() if not name.startswith(gone)} if gone else dict(BASE)
-    for name, (old, new) in case.get("edit", {}).items():
-        text = files[name].decode()
-        assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in {name}"
-        files[name] = text.replace(old, new).encode()
+    for name, edits in case.get("edit", {}).items():
+        for old, new in zip(edits[::2], edits[1::2], strict=True):
+            text = files[name].decode()
+            assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in {name}"
+            files[name] = text.replace(old, new).encode()
     return files | {name: text.encode() for name, text in case.get("write", {}).items()}
 
 
 def said(diagnostic: Diagnostic) -> str:
-    return f"{diagnostic.place} {diagnostic.code} | {diagnostic.hint}"
+    related = f" @ {diagnostic.related[0].place}" if diagnostic.related else ""
+    return f"{diagnostic.place} {diagnostic.code} | {diagnostic.hint}{related}"
 
 
 def test_the_project_the_cases_are_made_from_is_sound() -> None:
@@ -50,7 +53,7 @@ def test_the_project_the_cases_are_made_from_is_sound() -> None:
 
 
 def test_there_are_many_cases() -> None:
-    assert len(cases()) >= 100
+    assert len(cases()) >= 300
 
 
 @pytest.mark.parametrize("case", cases())
@@ -58,8 +61,10 @@ def test_a_mistake_is_found_at_its_word(case: dict[str, Any]) -> None:
     project, diagnostics = check_files(HERE / "base", changed(case))
     found = [said(d) for d in diagnostics]
     for line, expected in zip(found, case["find"], strict=False):
-        where, _, hint = expected.partition(" |")
+        finding, _, related = expected.partition(" @ ")
+        where, _, hint = finding.partition(" |")
         assert line.startswith(f"{where} | "), f"found {found}"
         assert hint.strip() in line.partition(" | ")[2], f"found {found}"
+        assert related in line, f"found {found}"
     assert len(found) == len(case["find"]), f"found {found}"
     assert (project is None) == any(d.severity == "error" for d in diagnostics)

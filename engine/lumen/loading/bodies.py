@@ -85,7 +85,9 @@ class _Builder:
             for i, name in enumerate(names):
                 if self.known(name, ("parts", part, i)) and owner.setdefault(name, part) != part:
                     message = f"`{name}` stands in `{owner[name]}` and in `{part}`"
-                    self.report("joint-in-two-parts", ("parts", part, i), message, hint="a joint has one owner")
+                    related = [(("parts", owner[name]), "the other part stands here")]
+                    hint = "a joint has one owner"
+                    self.report("joint-in-two-parts", ("parts", part, i), message, hint=hint, related=related)
             parts[part] = tuple(n for n in names if owner.get(n) == part)
         for name in [n for n in self.joints if n not in owner and whole]:
             self.report("joint-without-part", ("joints", name), f"no part moves `{name}`", hint="name it in `parts`")

@@ -82,6 +82,8 @@ def _unknown_keys(error: Error, path: Path, root: Any) -> Iterator[Complaint]:
         hint = f"did you mean `{meant}`?" if meant else did_you_mean(key, free, "allowed here:")
         if key == "<<":
             hint = "YAML 1.2 has no merge keys: write the keys themselves"
+        elif key.isdecimal() and not meant:
+            hint = "put a list into brackets, and write a number with a point, as in `0.5`"
         elif not meant and (owner := _owner(key, root)):
             hint = f"it belongs into {owner}"
         message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key that can stand here"

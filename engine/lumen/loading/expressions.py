@@ -58,7 +58,7 @@ class Expressions:
         """Whether the context declares this key; reported where not."""
         if key in self.keys:
             return True
-        hint = did_you_mean(key, self.keys, "context: declares")
+        hint = did_you_mean(key, self.keys, "`context` has")
         message = f"the context has no `{key}`"
         cause = f"{self.report.document.file} context {key}"
         self.report("unknown-context-key", where, message, hint=hint, key=True, cause=cause)

@@ -162,7 +162,8 @@ class KeyframeReader:
             beats = f" (beat {now / self.beat:g})" if self.beat and "beat" in item else ""
             message = f"at {begin:g} s is not after what stands before it"
             hint = f"that lasts until {now:g} s{beats}; times count from the beginning of their list and increase"
-        self.report("time-not-increasing", path, message, hint=hint)
+        cause = f"{self.report.document.file} {here[:-1]} until {now}"
+        self.report("time-not-increasing", path, message, hint=hint, cause=cause)
 
     def _too_many(self, here: Path) -> None:
         hint = "use fewer keyframes, joints or rounds"

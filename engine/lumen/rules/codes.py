@@ -88,6 +88,7 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "always-loop": Code(WARNING, "an `always` would run for ever while its guard is true"),
         "dead-end": Code(WARNING, "nothing leads on from a state"),
         "no-way-back": Code(WARNING, "no way leads back from a state to where the behaviour begins"),
+        "history-of-end": Code(WARNING, "a history is gone to that remembers the end of its state"),
         "cut-short": Code(WARNING, "an `after` comes before the `do` beside it can be done"),
         "waits-for-ever": Code(WARNING, "a state is left only if a visitor does something"),
         "constant-guard": Code(WARNING, "a guard is always true, or never"),

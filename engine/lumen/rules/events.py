@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.language.actions import Raise, Send
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import Path, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import Kind, Machine, Transition
 from lumen.loading.draft import Draft
@@ -27,7 +27,7 @@ def check(draft: Draft) -> None:
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         _waited(draft, machine, report)
-        if not report.diagnostics:
+        if report.whole:
             _raised(machine, report)
 
 
@@ -104,6 +104,7 @@ def _waited(draft: Draft, machine: Machine, report: Report) -> None:
             if not event or transition.exact or event in said or any(hears(event, name) for name in known):
                 continue
             said.add(event)
+            report.missed.add(event)
             if _of_the_engine(event):
                 if sound and not report.lost.intersection(event.split(".")) and (hint := ending_fault(machine, event)):
                     path, message = _descriptor(transition.where, event), f"nothing raises the event `{event}`"
@@ -136,6 +137,8 @@ def _raised(machine: Machine, report: Report) -> None:
             case Raise(event=event) | Send(event=event) if not any(hears(d, event) for d in waited):
                 verb = "raise" if isinstance(site.step.action, Raise) else "send"
                 path = first(report, (*site.step.where, verb, "event"), (*site.step.where, verb))
+                if nearest(event, report.missed):
+                    continue  # it was meant there
                 hint = did_you_mean(event, {d for d in waited if "*" not in d})
                 hint = hint if "mean" in hint else "react to it with `on:`, or delete this"
                 find(report, "unused-event", path, f"nothing waits for the event `{event}`", hint)

@@ -1,11 +1,13 @@
 """Expressions: names and types, against the declared context and the messages' schemas."""
 
-from collections.abc import Mapping
+import json
+import re
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.interpreters.expressions import Finding, check_expression, check_template, schema_of
 from lumen.language.actions import Template
-from lumen.language.diagnostics import Diagnostic
+from lumen.language.diagnostics import Diagnostic, Related
 from lumen.language.machines import Machine, Transition
 from lumen.loading.draft import Draft
 from lumen.loading.expressions import cause_of, place_within
@@ -63,10 +65,19 @@ class _Expressions:
             return outcome(self.machine, transition)
         return {name: schema for name, schema in self.events.items() if hears(transition.event, name)} or None
 
+    def declared(self, spot: Spot, part: str, finding: Finding) -> Iterator[Related]:
+        """Where the context keys stand whose types don't fit."""
+        if finding.code == "type-mismatch":
+            keys = [*re.findall(r"\bcontext\.(\w+)", part), *([spot.key] if spot.key else [])]
+            for key in dict.fromkeys(k for k in keys if k in self.machine.context):
+                place = self.report.document.place(("context", key), key=True)
+                yield Related(place, f"`{key}` begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}")
+
     def say(self, spot: Spot, finding: Finding) -> None:
         source = spot.text.text if isinstance(spot.text, Template) else spot.text.source
         place = place_within(self.report.document, spot.text.where, source, finding.offset, finding.length)
         severity = CODES[finding.code].severity
         cause = cause_of(self.report.document.file, finding)
-        found = Diagnostic(finding.code, finding.message, place, finding.hint, severity, cause=cause)
+        related = tuple(self.declared(spot, source[finding.offset : finding.offset + finding.length], finding))
+        found = Diagnostic(finding.code, finding.message, place, finding.hint, severity, related, cause)
         self.report.diagnostics.append(found)

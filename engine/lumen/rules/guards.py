@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from lumen.interpreters.expressions.phrases import is_heard
-from lumen.interpreters.expressions.tree import Call, Literal, Node
+from lumen.interpreters.expressions.tree import Call, Literal, Logic, Node
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import Path
 from lumen.language.machines import Machine, State, Transition
@@ -54,7 +54,7 @@ def _constant(guard: Expression, report: Report) -> None:
 
 
 def _simple(node: Node) -> bool:
-    return isinstance(node, Literal)
+    return not isinstance(node, Logic)
 
 
 def _late(machine: Machine, state: State, report: Report) -> None:
@@ -77,6 +77,8 @@ def _takes_all(earlier: Transition, later: Transition, machine: Machine, report:
     """Whether the earlier one leaves nothing for the later one; said, as is where it leaves less than was meant."""
     related = [(earlier.where, "the earlier one stands here")]
     if earlier.guard is None:
+        if report.broken((*earlier.where, "guard")):
+            return False
         line = report.document.place(earlier.where).line
         message = f"this is never taken: the transition in line {line} always is, before it"
         hint = "give that one a `guard`, or swap them"
@@ -88,10 +90,11 @@ def _takes_all(earlier: Transition, later: Transition, machine: Machine, report:
     first, second = _heard(one), _heard(other)
     taken = set(_taken(first, second, machine.phrases)) if first and second else set()
     if implies(other, one) and not never(other):
-        message = (
-            f"this is never taken: `{_short(earlier.guard.source)}` is true wherever its guard is, and comes first"
-        )
-        find(report, "shadowed-transition", later.where, message, "put this one before it", related=related)
+        message, hint = "this is never taken: one with the same guard comes first", "delete one of the two"
+        if one != other:
+            wide = _short(earlier.guard.source)
+            message, hint = f"this is never taken: `{wide}` is true wherever its guard is", "put this one before it"
+        find(report, "shadowed-transition", later.where, message, hint, related=related)
         return True
     if taken and first and second and not _alike(earlier, later):
         said = sorted({p for texts in machine.phrases[second.name].values() for p in texts})

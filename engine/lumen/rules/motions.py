@@ -50,7 +50,8 @@ def _too_far(report: Report, excess: Excess, unit: str, body: Body) -> None:
     message = f"`{excess.joint}` would come to {value:g} {unit} here, and {limit:g} is as far as it can go"
     coupled = [c.on for c in body.coupled if c.joint == excess.joint]
     hint = f"how far it can go depends on `{coupled[0]}`" if coupled else "bring the handles nearer to the key"
-    find(report, "angle-out-of-range", excess.key.where, message, hint)
+    cause = f"{report.document.file} {message}"
+    find(report, "angle-out-of-range", excess.key.where, message, hint, cause=cause)
 
 
 def _shown(excess: Excess, unit: str, body: Body) -> tuple[float, float]:

@@ -38,7 +38,8 @@ def check(draft: Draft) -> None:
             other = events.setdefault((route.key_for(settings.robot), route.event), name)
             if other != name:
                 message = f"`{other}` has the same key and becomes the same event"
-                find(report, "duplicate-route", (*route.where, "key"), message, "delete one of them")
+                related = [((*settings.routes[other].where, "key"), "the other one stands here")]
+                find(report, "duplicate-route", (*route.where, "key"), message, "delete one of them", related=related)
 
 
 def _missing(draft: Draft, routes: Mapping[str, Route], report: Report) -> None:

@@ -59,10 +59,13 @@ def _silent(draft: Draft, languages: tuple[str, ...]) -> dict[str, tuple[str, li
             for language in _written(report, where):
                 found.setdefault(language, report.document.place((*where, language), key=True))
     spoken = found.keys() - {"", "any"}
-    if not spoken or count < FEW:
-        return {}
     strangers = sorted(spoken - set(languages))
-    near = {language: nearest(language, strangers) for language in languages if language not in spoken}
+    silent = [language for language in languages if language not in spoken]
+    near = {language: nearest(language, strangers) for language in silent}
+    if len(silent) == len(strangers) == 1 and len(languages) > 1:
+        near = {silent[0]: strangers[0]}
+    if not spoken or (count < FEW and not any(near.values())):
+        return {}
     return {
         language: (meant, [Related(found[meant], f"this is said in `{meant}`")] if meant else [])
         for language, meant in near.items()
@@ -105,7 +108,8 @@ class _Speech:
         """What is said in several languages should be said in all."""
         self.each(report, path, texts)
         said = {*texts, *_written(report, path)}
-        missing = [language for language in self.languages if language not in said]
+        astray = {language for language in self.languages if (*path[:-1], language) in report.pruned}
+        missing = [language for language in self.languages if language not in said | astray]
         if missing and said.isdisjoint(("", "any")):
             message = f"this is not said in {_listed(missing)}"
             find(report, "missing-language", path, message, f"write `{missing[0]}:` and the text beside it", key=True)

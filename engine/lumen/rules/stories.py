@@ -69,6 +69,9 @@ class _Script:
             return
         machine, rest = next(meant(self.machine, name))
         state = machine.states.get(rest)
+        pruned = self.draft.report("behaviors", self.behavior).pruned
+        if any((*s.where, "id") in pruned and s.path.endswith(rest) for s in machine.states.values()):
+            return  # its id was refused
         hint = did_you_mean(name, _names(machine, name.removesuffix(rest)))
         if state and rest:
             hint = f"it is called by its id: `{name.removesuffix(rest)}{state.name}`"

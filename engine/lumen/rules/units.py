@@ -99,8 +99,8 @@ def _turned(report: Report, path: Path, theta: float, unit: str) -> None:
 
 
 def _walk(report: Report, path: Path, value: float, unit: str, room: tuple[float, float] | None) -> None:
-    most = room[1] - room[0] + 1e-6 if room else FAR
-    if abs(value) <= most:
+    most = room[1] - room[0] if room else FAR
+    if abs(value) <= most + 1e-6:
         return
     where = "the stage is" if room else "a hall is at the most"
     message = f"{value / LENGTHS[unit]:g} {unit} is farther than {where} wide ({most:g} m)"

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from lumen.language.commands import Play, Track
-from lumen.language.diagnostics import Path, has_errors
+from lumen.language.diagnostics import Path, has_errors, nearest
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect
 from lumen.loading.draft import Draft
@@ -46,7 +46,7 @@ def _inside(draft: Draft, name: str, machine: Machine, report: Report) -> None:
             find(report, f"unused-{part}", (part, key), f"nothing asks for the {part} `{key}`", hint, key=True)
     waited = set(descriptors(machine))
     for event in machine.events:
-        if not any(hears(d, event) for d in waited):
+        if not (any(hears(d, event) for d in waited) or nearest(event, report.missed)):
             message = f"nothing waits for the event `{event}`"
             hint = "react to it with `on:`, or delete it"
             find(report, "unused-event", ("events", event), message, hint, key=True)

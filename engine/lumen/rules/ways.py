@@ -25,6 +25,24 @@ def check(draft: Draft) -> None:
         report = draft.report("behaviors", name)
         if report.whole and not any(d.code in _RESTLESS for d in report.diagnostics):
             _Ways(machine, report, events).check()
+            _ended(machine, report)
+
+
+def _ended(machine: Machine, report: Report) -> None:
+    """Histories that are gone to from where their parent's end leads: they remember that end, and end at once."""
+    for path, state in machine.states.items():
+        parent = machine.states[state.parent] if state.parent is not None else None
+        if state.kind is not Kind.HISTORY or parent is None:
+            continue
+        if not any(machine.states[child].kind is Kind.FINAL for child in parent.children):
+            continue
+        done = [t for t in parent.transitions if t.event == f"done.state.{parent.name}" and t.targets]
+        for transition in (t for d in done for target in d.targets for t in machine.states[target].transitions):
+            if path in transition.targets:
+                message = f"`{path}` remembers the end of `{parent.name}`, which is over at once"
+                hint = f"go to `{parent.name}` itself to begin it anew"
+                related = [(done[0].where, "it was left at its end here")]
+                find(report, "history-of-end", transition.where, message, hint, related=related)
 
 
 @dataclass
