@@ -15,7 +15,8 @@ from lumen.statechart import Event, Machine, Step, due, initial, step
 TOUR = Path(__file__).parents[1] / "behaviors" / "tour.yaml"
 SAID = (
     "My name is Dewi", "Not bad", "Who made you?", "And how do you keep looking at me?",
-    "What is the capital of France?", "Then introduce yourself", "Can you dance?", "Speak Indonesian, please", "Tidak, terima kasih",
+    "What is the capital of France?", "Then introduce yourself", "Can you dance?", "Speak Indonesian, please",
+    "Tidak, terima kasih",
 )  # fmt: skip
 FACES, PERIOD = 10, 0.2
 
