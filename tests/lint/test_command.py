@@ -54,6 +54,23 @@ def test_an_error_with_its_excerpt(project: Path, capsys: pytest.CaptureFixture[
     ]
 
 
+def test_the_page_about_lint_shows_what_it_prints(
+    project: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    edit(project / "behaviors/tour.yaml", "onError: idle", "onError: idel")
+    monkeypatch.chdir(project)
+    assert main(["lint"]) == 1
+    shown = capsys.readouterr().out
+    assert f"```text\n{shown}```" in (ENGINE.parent / "docs/lint.md").read_text()
+
+
+def test_every_option_stands_on_the_page_about_lint(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["lint", "--help"])
+    page = (ENGINE.parent / "docs/lint.md").read_text()
+    assert all(option in page for option in re.findall(r"--[a-z-]+", capsys.readouterr().out) if option != "--help")
+
+
 def test_a_warning_counts_with_strict_only(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     edit(project / "behaviors/tour.yaml", ', id: "Halo"', "")
     assert main(["lint", str(project)]) == 0

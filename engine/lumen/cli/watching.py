@@ -16,7 +16,7 @@ from lumen.runtime.watcher import Saved, Watcher
 QUIET = 0.01
 """How long files have to be left alone [s]: nothing runs on them, so half a file is a finding for a moment only."""
 
-_CLEAR = "\x1b[2J\x1b[3J\x1b[H"
+_CLEAR = "\x1b[2J\x1b[H"
 
 
 def watch(projects: Sequence[Asked], wanted: Wanted, format: str, ended: Callable[[], bool] = lambda: False) -> int:
