@@ -1,6 +1,7 @@
 """`--fix` and `--diff`: what is repaired, what is left to its author, and that nothing gets worse."""
 
 import shutil
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.cli.main import main
-from lumen.language.diagnostics import has_errors
+from lumen.language.diagnostics import Diagnostic, Place, has_errors
 from lumen.loading.project import read_files
 from lumen.rules import check_files
 from lumen.rules.fixes import edited, fixes
@@ -108,6 +109,21 @@ def test_every_repair_of_many_mistakes_leaves_less_to_say() -> None:
 def test_of_two_lines_the_one_with_the_comment_stays() -> None:
     after = fixed(TOUR, "    onError: idle\n", "    onError: idle\n    onError: idle  # home\n")
     assert after.decode() == BASE[TOUR].decode().replace("    onError: idle\n", "    onError: idle  # home\n")
+
+
+def test_many_slips_cost_few_looks() -> None:
+    names = "".join(f"  s{i:03}: {{do: {{play: wvae}}}}\n" for i in range(64))
+    looks = []
+
+    def check(files: Mapping[str, bytes]) -> Sequence[Diagnostic]:
+        looks.append(1)
+        wrong = [n for n, line in enumerate(files["a.yaml"].decode().splitlines(), 1) if "wvae" in line]
+        bad = "there is no motion `wvae`"
+        return [Diagnostic("unknown-key", bad, Place("a.yaml", n, 21, n, 25), "did you mean `wave`?") for n in wrong]
+
+    after, done = repaired({"a.yaml": names.encode()}, check, lambda d: True)
+    assert after == {"a.yaml": names.replace("wvae", "wave").encode()}
+    assert (len(done), len(looks)) == (64, 2)
 
 
 @settings(max_examples=40)

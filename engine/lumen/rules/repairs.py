@@ -29,25 +29,31 @@ class Repair(NamedTuple):
 def repaired(files: Files, check: Check, wanted: Callable[[Diagnostic], bool]) -> tuple[Files, list[Repair]]:
     """The files with every fix of a wanted finding that leaves them better, and what was done.
 
-    Better is: the finding is gone and none has come. All at once where that goes well, else one by one.
+    Better is: the finding is gone and none has come. All at once where that goes well, else by halves.
     """
     found, done = check(files), list[Repair]()
     for _ in range(ROUNDS):
-        proposals = [(d, proposed) for d in found if wanted(d) and (proposed := fixes(d, files))]
-        firsts = [Repair(d, proposed[0]) for d, proposed in proposals]
-        steps = [firsts, *([Repair(d, fix)] for d, proposed in proposals for fix in proposed)]
         before = len(done)
-        for step in filter(None, steps):
-            if not all(r.diagnostic in found for r in step):
-                continue  # repaired meanwhile, or moved: the next round sees it
+        steps = _steps(found, files, wanted)
+        while steps:
+            step = [r for r in steps.pop() if r.diagnostic in found]  # else repaired meanwhile, or moved
             after = applied(files, step)
-            then = check(after)
-            if _better(found, then, step):
+            then = check(after) if step else found
+            if step and _better(found, then, step):
                 files, found = after, then
                 done += step
+            elif len(step) > 1:
+                steps += [step[len(step) // 2 :], step[: len(step) // 2]]
         if len(done) == before:
             break
     return files, done
+
+
+def _steps(found: Sequence[Diagnostic], files: Files, wanted: Callable[[Diagnostic], bool]) -> list[list[Repair]]:
+    """What to try, the last one first: the likeliest fix of each finding together, then the others one by one."""
+    proposals = [(d, fixes(d, files)) for d in found if wanted(d)]
+    others = [[Repair(d, fix)] for d, proposed in proposals for fix in proposed[1:]]
+    return [*reversed(others), [Repair(d, proposed[0]) for d, proposed in proposals if proposed]]
 
 
 def applied(files: Files, repairs: Iterable[Repair]) -> dict[str, bytes]:
