@@ -30,8 +30,8 @@ class Version(NamedTuple):
 def version(name: str | None, here: Path | None = None) -> Version:
     """The version of that name: `live`, a folder, or a revision of the project `here` (default: this one, or above).
 
-    Without a name it is that project as it stands. Raises UsageError where there is none, ProjectError where its files
-    have errors.
+    Without a name it is that project as it stands. Raises UsageError where there is none, and where its files have
+    errors.
     """
     root = here or find_project()
     kept: Kept | None = None
@@ -46,7 +46,7 @@ def version(name: str | None, here: Path | None = None) -> Version:
         files = _revision(root, name)
     project, diagnostics = check_files(root, files)
     if project is None:
-        raise ProjectError(diagnostics)
+        raise UsageError(f"{name or root} has errors: {ProjectError(diagnostics)}")
     return Version(name or str(root), project, files, thaw(project.machine, kept.frozen) if kept else None)
 
 

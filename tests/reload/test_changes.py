@@ -1,0 +1,208 @@
+"""What differs between two bundles, in the words of whoever edits them; and `lumen diff` from the shell."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from lumen.cli.main import main
+from lumen.cli.versions import version
+from lumen.errors import UsageError
+from lumen.interpreters.changes import Risk, changes, live, risk, summary
+from lumen.language.projects import Project
+from lumen.loading.project import read_files
+from lumen.rules import check_files
+from tests.tour.names import ROOT
+
+FILES = read_files(ROOT)
+TOUR = "behaviors/tour.yaml"
+ASK_NAME = ("          ask_name:\n            id: ask_name", "          asking:\n            id: asking")
+RENAMING = [
+    (TOUR, *ASK_NAME),
+    (TOUR, "target: ask_name", "target: asking"),
+    (TOUR, "- ask_name", "- asking"),
+    (TOUR, "onError: ask_name", "onError: asking"),
+]
+
+
+def edited(*edits: tuple[str, str, str]) -> Project:
+    """The shipped project with these replacements."""
+    files = {name: content for name, content in FILES.items() if not name.startswith("behaviors/stories/")}
+    files["lumen.yaml"] = files["lumen.yaml"].replace(b"story: visitor", b"")
+    for file, old, new in edits:
+        assert old in files[file].decode()
+        files[file] = files[file].decode().replace(old, new).encode()
+    found, diagnostics = check_files(ROOT, files)
+    assert found, diagnostics
+    return found
+
+
+PLAIN = edited()
+
+CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
+    ("comments", [(TOUR, "# What the robot remembers.", "# Things.")], [], Risk.COSMETIC),
+    (
+        "a text",
+        [(TOUR, "en: Never mind.", "en: No problem.")],
+        ["state `ask_name` says “No problem.” on `heard` now (en)"],
+        Risk.COSMETIC,
+    ),
+    (
+        "an answer",
+        [(TOUR, "I weigh a little more than five kilograms.", "Five kilograms.")],
+        ["`faq` answers “Five kilograms.” now"],
+        Risk.COSMETIC,
+    ),
+    ("a motion", [(TOUR, "{play: dance}", "{play: photo}")], ["state `dance` now plays `photo`"], Risk.BEHAVIOR),
+    (
+        "a delay",
+        [(TOUR, "after: {12s: ", "after: {15s: ")],
+        ["state `goodbye` waits 15 s, not 12 s"],
+        Risk.BEHAVIOR,
+    ),
+    (
+        "a guard",
+        [(TOUR, "context.mood_tries < 3", "context.mood_tries < 2")],
+        ["state `not_understood` goes to `how_are_you` when it is done if `context.mood_tries < 2` now"],
+        Risk.BEHAVIOR,
+    ),
+    (
+        "a target",
+        [(TOUR, "'fine')\", target: fine}", "'fine')\", target: offer}")],
+        ["state `how_are_you` goes to `offer` on `heard` if `heard(event.data.result, 'fine')` now, not `fine`"],
+        Risk.BEHAVIOR,
+    ),
+    ("phrases", [(TOUR, "en: [dance, dancing]", "en: [dance]")], ["phrases `dance` changed"], Risk.BEHAVIOR),
+    ("a route", [("lumen.yaml", "ttl: 2s, keep", "ttl: 3s, keep")], ["route `command` ttl 2 s → 3 s"], Risk.WIRING),
+    (
+        "a fuzzy rule",
+        [("fuzzy/head.yaml", "if FaceXLoc is Zero then AngleX is Zero", "if FaceXLoc is Zero then AngleX is Positive")],
+        ["fuzzy rule 2 of `head` changed: `if FaceXLoc is Zero then AngleX is Positive`"],
+        Risk.MOTION,
+    ),
+    ("tracking", [("fuzzy/head.yaml", "hold: 2s", "hold: 3s")], ["`head` tracks otherwise: `hold`"], Risk.MOTION),
+    (
+        "the stage",
+        [("lumen.yaml", "x: [-0.4, 0.4]", "x: [-0.3, 0.4]")],
+        ["the stage changed: in force from the next start on"],
+        Risk.RESTART,
+    ),
+    (
+        "a renamed state",
+        [*RENAMING, (TOUR, "type: parallel\n", "renamed: {ask_name: asking}\ntype: parallel\n")],
+        ["state `ask_name` is `guide.talking.asking` now"],
+        Risk.BEHAVIOR,
+    ),
+    (
+        "a state gone and another there",
+        RENAMING,
+        [
+            "state `ask_name` removed",
+            "state `asking` added",
+            "state `greet` goes to `asking` when it is done now, not `ask_name`",
+            "state `greet` goes to `asking` when it fails now, not `ask_name`",
+        ],
+        Risk.BEHAVIOR,
+    ),
+]
+
+
+@pytest.mark.parametrize(("edits", "told", "greatest"), [c[1:] for c in CASES], ids=[c[0] for c in CASES])
+def test_a_change_is_told(edits: list[tuple[str, str, str]], told: list[str], greatest: Risk) -> None:
+    found = changes(PLAIN, edited(*edits))
+    assert [change.sentence for change in found] == told
+    assert risk(found) is greatest
+
+
+def test_all_changes_in_one_line() -> None:
+    other = edited(
+        (TOUR, "{play: dance}", "{play: photo}"),
+        (TOUR, "en: Never mind.", "en: No problem."),
+        (TOUR, "en: Thank you!", "en: Thanks!"),
+        ("lumen.yaml", "ttl: 2s, keep: 10", "ttl: 3s, keep: 10"),
+    )
+    expected = "state `dance` now plays `photo`; route `command` ttl 2 s → 3 s; 2 texts changed"
+    assert summary(changes(PLAIN, other)) == expected
+    assert summary(()) == "nothing that matters changed"
+
+
+def test_what_can_not_change_live_stays_as_it_was() -> None:
+    other = edited(("lumen.yaml", "x: [-0.4, 0.4]", "x: [-0.3, 0.4]"), ("lumen.yaml", "ttl: 2s, keep", "ttl: 3s, keep"))
+    assert [c.risk for c in changes(PLAIN, live(PLAIN, other))] == [Risk.WIRING]
+
+
+@pytest.fixture
+def repository(copy: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A small project, committed, in a folder of a repository."""
+    root = tmp_path_factory.mktemp("repository") / "ours"
+    copy.rename(root)
+    shutil.rmtree(root / "behaviors" / "stories")
+    main_file = root / "lumen.yaml"
+    main_file.write_text(main_file.read_text("utf-8").replace("story: visitor", ""), "utf-8")
+    states = "idle: {on: {touched: talk}}, talk: {states: {ask: {on: {released: dance}}, dance: }}"
+    (root / TOUR).write_text(f"id: tour\nstates: {{{states}}}\n", "utf-8")
+    for command in ("init -q", "add ours", "-c user.name=x -c user.email=x@x commit -qm one"):
+        subprocess.run(["git", "-C", str(root.parent), *command.split()], check=True)
+    monkeypatch.chdir(root)
+    return root
+
+
+def test_a_revision_is_compared_and_every_configuration_told(
+    repository: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["diff", "HEAD"]) == 0
+    assert capsys.readouterr().out == "nothing that matters changed\n"
+    tour = repository / TOUR
+    tour.write_text(tour.read_text().replace("ask: {on: {released: dance}}, ", ""))
+    assert main(["diff", "HEAD", "--configurations"]) == 1
+    out = capsys.readouterr().out.splitlines()
+    assert (
+        out[:3] == [TOUR, "  state `talk.ask` removed (behavior)", "  `talk` begins in `talk.dance` now (behavior)"]
+        or out
+    )
+    assert "refused talk.ask: `talk.ask` is active and gone, and no `onReload` says where to go instead" in out
+    assert "kept    idle" in out
+    assert out[-1] == "3 configurations: 1 refused, 2 kept"
+    tour.write_text(tour.read_text().replace("talk: {", "talk: {onReload: .dance, "))
+    assert main(["diff", "HEAD", ".", "--configurations", "--format", "json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["complete"]
+    assert {row["outcome"]: row["after"] for row in told["configurations"]}["moved"] == ["talk.dance"]
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("HEAD~7", "`HEAD~7` is no folder, no revision of"),
+        ("", "is no folder, no revision of"),
+        ("live", "no exhibition of"),
+    ],
+)
+def test_a_version_that_is_none_is_told(
+    repository: Path, capsys: pytest.CaptureFixture[str], name: str, told: str
+) -> None:
+    assert main(["diff", name]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_errors_of_either_version_are_told(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (repository / TOUR).write_text("states: 3")
+    assert main(["diff", "HEAD"]) == 2
+    assert f"has errors: {TOUR}:1:9: error [wrong-type]" in capsys.readouterr().err
+
+
+def test_what_looks_like_an_option_of_git_is_a_revision_that_is_none(repository: Path) -> None:
+    with pytest.raises(UsageError, match="no revision of"):
+        version("--output=stolen")
+    assert not (repository / "stolen").exists()
+
+
+def test_outside_of_a_repository(
+    tmp_path: Path, copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(copy)
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(copy.parent))
+    assert main(["diff", "HEAD"]) == 2
+    assert "lies in no git repository" in capsys.readouterr().err
