@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
+from lumen.cli.against import against
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import Unreadable, read_files
 from lumen.rules import check_files
@@ -46,8 +47,12 @@ def _kept(below: str, sheet: Example) -> str:
 
 @cache
 def said(sheets: tuple[Example, ...]) -> list[Diagnostic]:
-    """What lint says of an example."""
-    return list(check_files(BASE, laid(read_files(BASE), sheets))[1])
+    """What lint says of an example; of one that was otherwise before, what it says with `--against` that."""
+    before = [sheet._replace(note="") for sheet in sheets if sheet.note == "before"]
+    now, found = check_files(BASE, laid(read_files(BASE), [sheet for sheet in sheets if sheet.note != "before"]))
+    if before and now and (old := check_files(BASE, laid(read_files(BASE), before))[0]):
+        return [*found, *against(old, now)]
+    return list(found)
 
 
 def written() -> dict[str, str]:
@@ -85,7 +90,8 @@ def _section(found: Page) -> str:
 
 
 def _sheet(sheet: Example) -> str:
-    return f"`{sheet.file}`\n\n```{sheet.language}\n{sheet.text}```\n"
+    before = " as it runs" if sheet.note == "before" else ""
+    return f"`{sheet.file}`{before}\n\n```{sheet.language}\n{sheet.text}```\n"
 
 
 def main() -> None:

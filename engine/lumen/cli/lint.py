@@ -22,6 +22,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--format", choices=tuple(FORMATS), default="text", help="how to print it (default: text)")
     add("--select", metavar="CODES", action="append", help="show these only: codes, their first words, or families")
     add("--ignore", metavar="CODES", action="append", help="do not show these")
+    add(
+        "--against",
+        metavar="OLD",
+        help="also say what a reload from there would refuse: a folder, a revision, or `live`",
+    )
     add("--strict", action="store_true", help="count warnings as errors")
     add("--fix", action="store_true", help="repair what can be repaired without asking")
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
@@ -45,6 +50,10 @@ def run(options: argparse.Namespace) -> int:
     if options.fix:
         _fix(projects, wanted)
     found = [lint(what, wanted) for what in projects]
+    if options.against is not None:
+        from lumen.cli.against import compared
+
+        found = [compared(each, options.against, wanted) for each in found]
     show(render(options.format, found, coloured=options.format in ("text", "concise") and coloured()))
     return verdict(found, strict=options.strict)
 
@@ -58,8 +67,10 @@ def show(text: str) -> None:
     """Print it; where nobody reads on (`lumen lint | head`), the verdict still counts."""
     try:
         print(text.encode("utf-8", "replace").decode(), flush=True)
-    except BrokenPipeError:
+    except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            raise UsageError(f"can't print: {(error.strerror or str(error)).lower()}") from None
 
 
 def _wanted(options: argparse.Namespace) -> Wanted:

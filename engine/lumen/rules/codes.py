@@ -99,6 +99,11 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "no-effect": Code(WARNING, "something that is read, and has no effect yet"),
         "unused-event": Code(WARNING, "an event is raised that nothing waits for"),
     },
+    "reload": {
+        "reload-forgets": Code(WARNING, "a reload would lose a value (`--against`)"),
+        "reload-moves": Code(INFO, "a reload would lead from a state that is gone to another (`--against`)"),
+        "reload-refused": Code(ERROR, "a reload would be refused while a state is active (`--against`)"),
+    },
     "expressions": {
         "expression-syntax": Code(ERROR, "an expression can't be read"),
         "type-mismatch": Code(ERROR, "values stand together in an expression that can't go together"),
