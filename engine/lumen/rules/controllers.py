@@ -1,4 +1,4 @@
-"""Controllers: what they are bound to."""
+"""Controllers: what they are bound to, and what is said of them where nothing else is wrong."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,7 +7,9 @@ from lumen.language.controllers import Controller, InputBinding, OutputBinding
 from lumen.language.diagnostics import Path, did_you_mean
 from lumen.language.robots import Body
 from lumen.loading.draft import Draft
+from lumen.loading.recollection import again
 from lumen.loading.source import Report
+from lumen.rules import aims, rulebooks, shapes, surfaces
 from lumen.rules.finding import find
 from lumen.rules.references import known_route
 
@@ -24,6 +26,16 @@ def check(draft: Draft) -> None:
         if draft.body and draft.settings:
             lost = draft.report("models", draft.settings.model).lost
             _joints(controller, report, draft.body, lost)
+        if report.whole and not report.diagnostics:
+            _sense(controller, report, draft, name)
+
+
+def _sense(controller: Controller, report: Report, draft: Draft, name: str) -> None:
+    rulebooks.check(controller, report)
+    shapes.check(controller, report)
+    aims.check(controller, report, draft)
+    given = draft.files[f"fuzzy/{name}.yaml"]
+    surfaces.check(controller, report, again(("surface", name), given, lambda: surfaces.look(controller)))
 
 
 def _input(draft: Draft, report: Report, binding: InputBinding) -> None:

@@ -1,0 +1,144 @@
+"""The surface of a controller, looked over coarsely: what each output does as one of its inputs moves.
+
+In plain Python and with few points, so that lint can afford it: at most 200 points of a set, 65 of an input's range.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from math import isfinite, isnan, nan
+from typing import NamedTuple
+
+from lumen.interpreters.expressions import parse_expression
+from lumen.interpreters.expressions.tree import Name, walk
+from lumen.interpreters.inference.evaluator import Evaluator
+from lumen.language.controllers import (
+    Antecedent,
+    Conjunction,
+    Controller,
+    Disjunction,
+    Negation,
+    Proposition,
+    Term,
+    Variable,
+)
+
+POINTS = 65
+RESOLUTION = 200
+HALVINGS = 14
+
+
+class Slice(NamedTuple):
+    """What `output` says over the range of `input`, the others resting; NaN where no rule for it fires."""
+
+    output: str
+    input: str
+    xs: tuple[float, ...]
+    ys: tuple[float, ...]
+
+
+class Step(NamedTuple):
+    """Between two values of an input that nearly are one, an output jumps from `low` to `high`."""
+
+    x: float
+    low: float
+    high: float
+
+
+class Survey:
+    """A controller to be asked point by point; `rest` is where its inputs are while others move."""
+
+    def __init__(self, controller: Controller, resolution: int = RESOLUTION) -> None:
+        self.controller = controller
+        self._evaluator = Evaluator(silent(controller, resolution))
+        self.rest = {name: resting(variable) for name, variable in controller.inputs.items()}
+
+    def at(self, changed: Mapping[str, float]) -> dict[str, float]:
+        """The outputs there, NaN where no rule fires; other inputs rest."""
+        return self._evaluator.evaluate({**self.rest, **changed})
+
+    def slices(self) -> Iterator[Slice]:
+        """Each output over each input that it depends on and whose range has ends."""
+        for name, variable in self.controller.inputs.items():
+            outputs = [output for output in self.controller.outputs if name in asked(self.controller, output)]
+            if outputs and isfinite(variable.minimum) and isfinite(variable.maximum):
+                xs = grid(variable)
+                said = [self.at({name: x}) for x in xs]
+                for output in outputs:
+                    yield Slice(output, name, xs, tuple(point[output] for point in said))
+
+    def step(self, found: Slice, share: float) -> Step | None:
+        """The greatest jump by more than that share of the output's range, however near one looks."""
+        output = self.controller.outputs[found.output]
+        least = share * (output.maximum - output.minimum)
+        gaps = [(abs(b - a), i) for i, (a, b) in enumerate(zip(found.ys, found.ys[1:], strict=False))]
+        _, i = max((gap for gap in gaps if not isnan(gap[0])), default=(0.0, 0))
+        low, high, a, b = found.xs[i], found.xs[i + 1], found.ys[i], found.ys[i + 1]
+        for _ in range(HALVINGS):
+            if not abs(b - a) > least:
+                return None
+            middle = (low + high) / 2
+            y = self.at({found.input: middle})[found.output]
+            low, high, a, b = (middle, high, y, b) if abs(y - a) < abs(b - y) else (low, middle, a, y)
+        return Step(low, a, b)
+
+
+def silent(controller: Controller, resolution: int) -> Controller:
+    """The controller without defaults, its sets sampled at no more than `resolution` points."""
+    outputs = {
+        name: replace(v, default=nan, lock_previous=False, resolution=min(v.resolution, resolution))
+        for name, v in controller.outputs.items()
+    }
+    return replace(controller, outputs=outputs)
+
+
+def grid(variable: Variable, points: int = POINTS) -> tuple[float, ...]:
+    """Evenly spread values of a variable, both ends of its range among them."""
+    width = variable.maximum - variable.minimum
+    return tuple(variable.minimum + width * i / (points - 1) for i in range(points))
+
+
+def resting(variable: Variable) -> float:
+    """A variable's neutral point, else the middle of its range, else 0."""
+    middle = (variable.minimum + variable.maximum) / 2
+    return variable.neutral if variable.neutral is not None else middle if isfinite(middle) else 0.0
+
+
+def asked(controller: Controller, output: str) -> frozenset[str]:
+    """The inputs that an output depends on, by way of other outputs too."""
+    found: set[str] = set()
+    waiting, known = [output], {output}
+    while waiting:
+        for name in _asked(controller, waiting.pop()):
+            if name in controller.inputs:
+                found.add(name)
+            elif name in controller.outputs and name not in known:
+                known.add(name)
+                waiting.append(name)
+    return frozenset(found)
+
+
+def _asked(controller: Controller, output: str) -> Iterator[str]:
+    for rule in controller.rules:
+        if any(consequent.variable == output for consequent in rule.consequents):
+            yield from (proposition.variable for proposition in propositions(rule.antecedent))
+    for term in controller.outputs[output].terms.values():
+        if term.kind == "linear":
+            yield from controller.inputs
+        elif term.kind == "function":
+            yield from _named(term)
+
+
+def _named(term: Term) -> Iterator[str]:
+    yield from (node.name for node, _ in walk(parse_expression(term.formula)) if isinstance(node, Name))
+
+
+def propositions(node: Antecedent) -> Iterator[Proposition]:
+    """Those of an antecedent, from left to right."""
+    match node:
+        case Proposition():
+            yield node
+        case Negation(operand):
+            yield from propositions(operand)
+        case Conjunction(left, right) | Disjunction(left, right):
+            yield from propositions(left)
+            yield from propositions(right)

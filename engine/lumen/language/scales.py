@@ -1,0 +1,26 @@
+"""Words that have an order: where terms are called so, their numbers should have it too."""
+
+SCALES: tuple[tuple[tuple[str, ...], ...], ...] = (
+    (("negative", "neg", "minus"), ("zero", "neutral", "center", "centre", "null"), ("positive", "pos", "plus")),
+    (("tiny",), ("small", "few", "little"), ("medium", "middle", "some"), ("big", "large", "many", "much"), ("huge",)),
+    (("lowest",), ("low",), ("medium", "middle", "normal", "mid"), ("high",), ("highest",)),
+    (("freezing",), ("cold",), ("cool",), ("warm",), ("hot",)),
+    (("near", "close"), ("medium", "middle"), ("far", "distant")),
+    (("slow",), ("medium", "moderate"), ("fast", "quick")),
+    (("short",), ("medium",), ("long",)),
+    (("dark",), ("dim", "medium"), ("bright",)),
+    (("bad", "poor"), ("fair", "average", "medium"), ("good",), ("excellent",)),
+    (("weak",), ("medium",), ("strong",)),
+    (("young",), ("medium",), ("old",)),
+)
+
+
+def ranks(names: tuple[str, ...]) -> dict[str, int]:
+    """The names that one scale orders, with their ranks in it; empty where fewer than two are ordered."""
+    best: dict[str, int] = {}
+    for scale in SCALES:
+        words = {word: rank for rank, step in enumerate(scale) for word in step}
+        found = {name: words[name.lower()] for name in names if name.lower() in words}
+        if len(set(found.values())) > 1 and len(found) > len(best):
+            best = found
+    return best

@@ -1,0 +1,96 @@
+"""Controllers that are bound: whether a joint is turned the right way, as far as it can, and not too eagerly."""
+
+from lumen.language.controllers import Controller, OutputBinding, Proposition, Variable
+from lumen.language.diagnostics import Path
+from lumen.language.robots import Body
+from lumen.language.scales import ranks
+from lumen.loading.draft import Draft
+from lumen.loading.source import Report
+from lumen.rules.finding import find, first
+
+GREATEST_GAIN = 2.0
+"""With images and commands 100 to 200 ms on their way a loop of gain 1.5 does not overshoot, and one of 3 by 46 %."""
+
+OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "backward", "backward": "forward"}
+COUNTS = {"Yaw": "left", "Pitch": "down"}
+"""Where a joint of that kind turns as its angle grows: NAO's, as everywhere with x ahead, y left and z up."""
+
+
+def check(controller: Controller, report: Report, draft: Draft) -> None:
+    """Report gains that overshoot, signs that turn away, and outputs beyond what a joint can do."""
+    for binding in controller.output_bindings:
+        variable = controller.outputs[binding.variable]
+        path: Path = first(report, (*binding.where, "gain"), binding.where)
+        _sense(controller, variable, report)
+        _sign(variable, binding, path, report)
+        _gain(controller, binding, path, report, draft)
+        if draft.body and binding.joint in draft.body.joints:
+            _limits(controller, variable, binding, report, draft.body)
+
+
+def _sense(controller: Controller, output: Variable, report: Report) -> None:
+    """Report an output whose rules, by the names of their terms, lead away from what its input points at."""
+    for name, variable in controller.inputs.items():
+        if not (trend := _trend(controller, variable, output)) or not output.direction:
+            continue
+        wanted = {output.direction: 1, OPPOSITE[output.direction]: -1}.get(variable.direction, 0)
+        if wanted * trend < 0:
+            same = wanted > 0
+            message = (
+                f"`{name}` counts {variable.direction} and `{output.name}` {output.direction}, and the rules turn"
+                f" {'against' if same else 'along with'} it: the robot looks away from what it sees"
+            )
+            way = OPPOSITE[output.direction]
+            hint = f"write `direction: {way}`, and a gain with the other sign; or swap what the rules conclude"
+            find(report, "wrong-sign", (*output.where, "direction"), message, hint, key=True,
+                 related=[((*variable.where, "direction"), "the input's")])  # fmt: skip
+
+
+def _trend(controller: Controller, variable: Variable, output: Variable) -> int:
+    """Whether rules from one to the other go up (1) or down (-1) with the names of the terms; 0 where none tells."""
+    asked, said = ranks(tuple(variable.terms)), ranks(tuple(output.terms))
+    pairs = [
+        (asked[rule.antecedent.term], said[consequent.term])
+        for rule in controller.rules
+        for consequent in rule.consequents
+        if isinstance(rule.antecedent, Proposition) and rule.antecedent.variable == variable.name
+        and not (rule.antecedent.hedges or consequent.hedges) and consequent.variable == output.name
+        and rule.antecedent.term in asked and consequent.term in said
+    ]  # fmt: skip
+    if len(pairs) < 2:
+        return 0
+    middle = [sum(column) / len(pairs) for column in zip(*pairs, strict=True)]
+    slope = sum((a - middle[0]) * (b - middle[1]) for a, b in pairs)
+    return int(slope > 0) - int(slope < 0)
+
+
+def _sign(variable: Variable, binding: OutputBinding, path: Path, report: Report) -> None:
+    counts = next((way for kind, way in COUNTS.items() if binding.joint.endswith(kind)), "")
+    wanted = {counts: 1, OPPOSITE.get(counts, ""): -1}.get(variable.direction, 0) if variable.direction else 0
+    if wanted * binding.gain < 0:
+        message = f"`{variable.name}` counts {variable.direction}, and `{binding.joint}` {counts}"
+        hint = f"write `gain: {-binding.gain:g}`, or another `direction`"
+        others = [((*variable.where, "direction"), "the output's")]
+        find(report, "wrong-sign", path, message, hint, related=others)
+
+
+def _gain(controller: Controller, binding: OutputBinding, path: Path, report: Report, draft: Draft) -> None:
+    if abs(binding.gain) <= GREATEST_GAIN:
+        return
+    routes = draft.settings.routes if draft.settings else {}
+    late = max((routes[b.route].latency for b in controller.input_bindings if b.route in routes), default=0.0)
+    age = f", and what it sees is {1000 * late:.0f} ms old" if late else ""
+    message = f"a gain of {binding.gain:g} overshoots: each answer turns farther than it says{age}"
+    find(report, "high-gain", path, message, f"write at most {GREATEST_GAIN:g}; 1.5 is quick and does not overshoot")
+
+
+def _limits(controller: Controller, variable: Variable, binding: OutputBinding, report: Report, body: Body) -> None:
+    joint = body.joints[binding.joint]
+    low = joint.minimum if binding.minimum is None else binding.minimum
+    high = joint.maximum if binding.maximum is None else binding.maximum
+    far = max(abs(variable.minimum), abs(variable.maximum)) * abs(binding.gain) * binding.angle
+    if far > high - low:
+        most, whole = far / controller.angle, (high - low) / controller.angle
+        message = f"`{variable.name}` can ask for a turn of {most:.4g}, and `{joint.name}` has {whole:.4g} in all"
+        hint = "narrow the range or the gain; mind the unit"
+        find(report, "range-beyond-joint", (*variable.where, "range"), message, hint)

@@ -1,0 +1,151 @@
+"""Controllers: rules that say a thing twice, or two things, or leave one out."""
+
+from collections.abc import Iterator, Mapping
+from itertools import product
+
+from lumen.interpreters.inference.survey import propositions
+from lumen.language.controllers import (
+    Antecedent,
+    Block,
+    Conjunction,
+    Controller,
+    Disjunction,
+    Negation,
+    Proposition,
+    Rule,
+)
+from lumen.loading.source import Report
+from lumen.rules.finding import find
+
+SHOWN = 3
+MOST = 10_000
+"""Pairs of rules that are compared, and cells of a table that are looked for."""
+
+
+def check(controller: Controller, report: Report) -> None:
+    """Report duplicate, contradicting, subsumed and missing rules, and terms that no rule mentions."""
+    for block in controller.blocks:
+        _pairs(block, controller, report)
+        _missing(block, controller, report)
+    _unused(controller, report)
+
+
+def _pairs(block: Block, controller: Controller, report: Report) -> None:
+    known: dict[object, Rule] = {}
+    conjunctions: dict[Proposition, list[tuple[frozenset[Proposition], Rule]]] = {}
+    for rule in block.rules:
+        asked, said = _sorted(rule.antecedent), frozenset(rule.consequents)
+        if (first := known.get(asked)) is None:
+            known[asked] = rule
+        elif said == frozenset(first.consequents):
+            message, hint = "this rule stands here twice", "delete one of them; a weight makes a rule count less"
+            find(report, "duplicate-rule", rule.where, message, hint, related=[(first.where, "the first one")])
+        elif clash := _clash(first, rule):
+            one, other = clash
+            message = f"where the same is so, `{one.variable}` is `{one.term}` and `{other.term}`"
+            hint = "one of the two is meant otherwise: change what it asks, or delete it"
+            find(report, "contradicting-rule", rule.where, message, hint, related=[(first.where, "the other one")])
+        parts = _conjunction(rule.antecedent)
+        if parts and len(rule.consequents) == 1:
+            conjunctions.setdefault(rule.consequents[0], []).append((parts, rule))
+    if block.operators.activation.method == "general":
+        for concluded, found in conjunctions.items():
+            if controller.outputs[concluded.variable].aggregation == "maximum" and len(found) ** 2 <= MOST:
+                _subsumed(found, report)
+
+
+def _sorted(node: Antecedent) -> object:
+    """The antecedent as a value in which the order of `and` and of `or` does not count."""
+    match node:
+        case Proposition():
+            return node
+        case Negation(operand):
+            return ("not", _sorted(operand))
+    sign = "and" if isinstance(node, Conjunction) else "or"
+    return (sign, frozenset(_sorted(part) for part in _joined(node, type(node))))
+
+
+def _joined(node: Antecedent, kind: type) -> Iterator[Antecedent]:
+    if isinstance(node, kind) and isinstance(node, Conjunction | Disjunction):
+        yield from _joined(node.left, kind)
+        yield from _joined(node.right, kind)
+    else:
+        yield node
+
+
+def _conjunction(node: Antecedent) -> frozenset[Proposition]:
+    """The propositions joined by `and` alone; empty where anything else is in it."""
+    parts = list(_joined(node, Conjunction))
+    found = frozenset(part for part in parts if isinstance(part, Proposition))
+    return found if len(found) == len(parts) else frozenset()
+
+
+def _clash(first: Rule, second: Rule) -> tuple[Proposition, Proposition] | None:
+    """Two plain consequents of one variable that differ."""
+    for one, other in product(first.consequents, second.consequents):
+        if one.variable == other.variable and one.term != other.term and not one.hedges and not other.hedges:
+            return one, other
+    return None
+
+
+def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: Report) -> None:
+    """A rule that asks more than another and concludes the same never fires more than that one."""
+    for asked, rule in found:
+        wider = next((r for parts, r in found if parts < asked and r.weight >= rule.weight), None)
+        if wider:
+            hint = "delete it, or let it conclude something else"
+            message = "this rule adds nothing: another one asks less and concludes the same"
+            find(report, "subsumed-rule", rule.where, message, hint, related=[(wider.where, "that one")])
+
+
+def _missing(block: Block, controller: Controller, report: Report) -> None:
+    """Where more than half of a table of terms has rules, the cells without one."""
+    tables: dict[tuple[str, tuple[str, ...]], list[tuple[Rule, Mapping[str, str]]]] = {}
+    for rule in block.rules:
+        cell = _cell(rule)
+        if len(cell) > 1 and all(name in controller.inputs for name in cell):
+            for output in dict.fromkeys(consequent.variable for consequent in rule.consequents):
+                tables.setdefault((output, tuple(sorted(cell))), []).append((rule, cell))
+    for (output, inputs), found in tables.items():
+        names = [name for name in controller.inputs if name in inputs]
+        cells = 1
+        for name in names:
+            cells *= len(controller.inputs[name].terms)
+        said = {tuple(cell[name] for name in names) for _, cell in found}
+        if len(said) * 2 > cells and cells <= MOST and len(said) < cells and not _others(block, output, found):
+            gaps = [gap for gap in product(*(controller.inputs[name].terms for name in names)) if gap not in said]
+            _absent(output, names, gaps, found[-1][0], report)
+
+
+def _cell(rule: Rule) -> Mapping[str, str]:
+    """Variable to term, where the antecedent is `a is x and b is y and …` without hedges; else empty."""
+    parts = _conjunction(rule.antecedent)
+    cell = {part.variable: part.term for part in parts if not part.hedges}
+    return cell if len(cell) == len(parts) else {}
+
+
+def _others(block: Block, output: str, found: list[tuple[Rule, Mapping[str, str]]]) -> bool:
+    """Whether rules of another form conclude that output as well: they may fill the gaps."""
+    cells = {id(rule) for rule, _ in found}
+    return any(
+        id(rule) not in cells and any(consequent.variable == output for consequent in rule.consequents)
+        for rule in block.rules
+    )
+
+
+def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Rule, report: Report) -> None:
+    shown = [" and ".join(f"{n} is {t}" for n, t in zip(names, gap, strict=True)) for gap in gaps[:SHOWN]]
+    more = f", and in {len(gaps) - SHOWN} more cases" if len(gaps) > SHOWN else ""
+    message = f"no rule says what `{output}` is where {'; or '.join(shown)}{more}"
+    find(report, "missing-rule", last.where, message, f"write below it: if {shown[0]} then {output} is …")
+
+
+def _unused(controller: Controller, report: Report) -> None:
+    asked = {(p.variable, p.term) for rule in controller.rules for p in propositions(rule.antecedent)}
+    asked |= {(p.variable, p.term) for rule in controller.rules for p in rule.consequents}
+    for side, variables in (("asks for", controller.inputs), ("concludes", controller.outputs)):
+        for variable in variables.values():
+            for term in variable.terms.values():
+                if (variable.name, term.name) not in asked:
+                    message = f"no rule {side} `{variable.name} is {term.name}`"
+                    find(report, "unused-term", term.where, message, "write a rule with it, or delete it", key=True)

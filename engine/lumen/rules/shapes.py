@@ -1,0 +1,102 @@
+"""Controllers: terms against their names, their range, and each other."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from math import isfinite
+
+from lumen.interpreters.inference.arithmetic import NUMBERS
+from lumen.interpreters.inference.memberships import membership
+from lumen.interpreters.inference.survey import grid
+from lumen.language.controllers import VALUES, WEIGHTED, Controller, Term, Variable
+from lumen.language.scales import ranks
+from lumen.loading.source import Report
+from lumen.rules.finding import find
+
+EPSILON = 0.01
+"""A membership below this counts as none."""
+
+POINTS = 129
+
+Row = tuple[Term, list[float]]
+
+
+def check(controller: Controller, report: Report) -> None:
+    """Report terms out of the order of their names or of reach, and gaps between them."""
+    for variable in (*controller.inputs.values(), *controller.outputs.values()):
+        weighted = variable.name in controller.outputs and variable.defuzzifier in WEIGHTED
+        if not (isfinite(variable.minimum) and isfinite(variable.maximum)):
+            continue
+        xs = list(grid(variable, POINTS))
+        rows = [] if weighted else [(term, _memberships(term, xs)) for term in variable.terms.values()]
+        _order(variable, rows, xs, report)
+        sets = [row for row in rows if _reached(variable, row, report)]
+        if variable.name in controller.inputs and len(sets) == len(rows) > 1:
+            _gaps(variable, sets, xs, report)
+
+
+def _memberships(term: Term, xs: list[float]) -> list[float]:
+    shape = membership(NUMBERS, term)
+    return [float(shape(x)) for x in xs]
+
+
+def _order(variable: Variable, rows: list[Row], xs: list[float], report: Report) -> None:
+    """Report each term that stands on the wrong side of the one before it by name."""
+    places = {term.name: _top(degrees, xs) for term, degrees in rows}
+    places |= {term.name: term.parameters[0] for term in variable.terms.values() if term.kind == VALUES[0]}
+    scale = ranks(tuple(places))
+    ordered = sorted(scale, key=lambda name: scale[name])
+    for before, after in pairwise(ordered):
+        if scale[before] < scale[after] and places[before] > places[after]:
+            term, other = variable.terms[after], variable.terms[before]
+            message = (
+                f"`{after}` of `{variable.name}` lies at {places[after]:g}, and `{before}` above it,"
+                f" at {places[before]:g}"
+            )
+            hint = f"swap the numbers of `{before}` and `{after}`, or their names"
+            find(report, "term-order", term.where, message, hint, key=True, related=[(other.where, "the other one")])
+
+
+def _top(degrees: list[float], xs: list[float]) -> float:
+    """The middle of where a term is most true."""
+    most = max(degrees)
+    tops = [x for x, degree in zip(xs, degrees, strict=True) if degree >= most - 1e-9]
+    return sum(tops) / len(tops)
+
+
+def _reached(variable: Variable, row: Row, report: Report) -> bool:
+    term, degrees = row
+    inside = [x for x in term.parameters if variable.minimum <= x <= variable.maximum]
+    if max(degrees) > 0.0 or max(_memberships(term, inside), default=0.0) > 0.0:
+        return True
+    low, high = variable.minimum, variable.maximum
+    message = f"`{term.name}` is never true between {low:g} and {high:g}, the range of `{variable.name}`"
+    find(report, "unreachable-term", term.where, message, "move it into the range, or widen the range", key=True)
+    return False
+
+
+def _gaps(variable: Variable, rows: list[Row], xs: list[float], report: Report) -> None:
+    """Report where no term of an input is true, though terms lie around it or end before its range does."""
+    whole = [max(degrees) for degrees in zip(*(degrees for _, degrees in rows), strict=True)]
+    for first, last in _runs([degree < EPSILON for degree in whole]):
+        low, high = xs[max(first - 1, 0)], xs[min(last + 1, len(xs) - 1)]
+        if first == last and _narrow(rows):
+            continue
+        message = f"between {low:g} and {high:g} no term of `{variable.name}` is true: no rule fires"
+        hint = "widen the terms beside the gap, or narrow the range"
+        find(report, "coverage-gap", (*variable.where, "range"), message, hint)
+
+
+def _narrow(rows: list[Row]) -> bool:
+    """Whether a term may slip between two points of the grid."""
+    return any(sum(degree > EPSILON for degree in degrees) < 2 for _, degrees in rows)
+
+
+def _runs(flags: list[bool]) -> Iterator[tuple[int, int]]:
+    """First and last index of each run of true."""
+    start = None
+    for i, flag in enumerate([*flags, False]):
+        if flag and start is None:
+            start = i
+        elif not flag and start is not None:
+            yield start, i - 1
+            start = None

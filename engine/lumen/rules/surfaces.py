@@ -1,0 +1,195 @@
+"""Controllers: what comes out, looked over coarsely, against what the file says should."""
+
+from collections.abc import Iterator
+from itertools import product
+from math import isnan
+from typing import NamedTuple
+
+from lumen.interpreters.inference.survey import Slice, Step, Survey, asked, grid
+from lumen.language.controllers import INTEGRAL, WEIGHTED, Controller, Variable
+from lumen.loading.source import Report
+from lumen.rules.finding import find
+
+STEP, TURN, REST = 0.1, 0.02, 0.02
+"""Shares of an output's range: what is a step, what is a turning back, what is not zero."""
+
+REACH = 0.2
+"""An output that uses less of its declared range than this was meant otherwise."""
+
+FINER = 4
+"""By how much the resolution is raised to see how far off it is."""
+
+CORNERS = 5, 400
+"""Points of each input's range, and how many combinations are asked at most."""
+
+
+class Look(NamedTuple):
+    """All that was seen of a controller's surface."""
+
+    slices: list[Slice]
+    steps: list[tuple[Slice, Step]]
+    rest: dict[str, float]
+    reach: dict[str, tuple[float, float]]
+    silent: dict[str, dict[str, float]]
+    off: dict[str, float]
+
+
+def look(controller: Controller) -> Look:
+    """The surface of a controller."""
+    survey = Survey(controller)
+    slices = list(survey.slices())
+    smooth = [s for s in slices if controller.outputs[s.output].defuzzifier in ("centroid", "bisector", *WEIGHTED)]
+    steps = [(s, step) for s in smooth if (step := survey.step(s, STEP))]
+    corners = [(point, survey.at(point)) for point in _corners(controller)]
+    reach, silent = {}, {}
+    for name in controller.outputs:
+        said = [y for s in slices if s.output == name for y in s.ys] + [outputs[name] for _, outputs in corners]
+        sound = [y for y in said if not isnan(y)]
+        reach[name] = (min(sound, default=0.0), max(sound, default=0.0))
+        found = next((point for point, outputs in _all(slices, corners, survey.rest, name) if isnan(outputs)), None)
+        if found is not None:
+            silent[name] = found
+    return Look(slices, steps, survey.at({}), reach, silent, _off(controller, slices))
+
+
+def _corners(controller: Controller) -> Iterator[dict[str, float]]:
+    """Combinations of the inputs, where several move together."""
+    names = [n for n, v in controller.inputs.items() if abs(v.minimum) < 1e300 and abs(v.maximum) < 1e300]
+    points, most = CORNERS
+    while len(names) > 1 and points > 1 and points ** len(names) > most:
+        points -= 1
+    together = any(len(asked(controller, output)) > 1 for output in controller.outputs)
+    if together and points > 1 and points ** len(names) <= most:
+        for values in product(*(grid(controller.inputs[name], points) for name in names)):
+            yield dict(zip(names, values, strict=True))
+
+
+def _all(
+    slices: list[Slice], corners: list[tuple[dict[str, float], dict[str, float]]], rest: dict[str, float], name: str
+) -> Iterator[tuple[dict[str, float], float]]:
+    for s in slices:
+        if s.output == name:
+            yield from (({**rest, s.input: x}, y) for x, y in zip(s.xs, s.ys, strict=True))
+    yield from ((point, outputs[name]) for point, outputs in corners)
+
+
+def _off(controller: Controller, slices: list[Slice]) -> dict[str, float]:
+    """How far an output with a stated accuracy lies from what four times the resolution gives."""
+    exact = {n: v for n, v in controller.outputs.items() if v.accuracy is not None and v.defuzzifier in INTEGRAL}
+    if not exact:
+        return {}
+    most = max(v.resolution for v in exact.values())
+    survey, finer = Survey(controller, most), Survey(_finer(controller), FINER * most)
+    found: dict[str, float] = {}
+    for s in slices:
+        if s.output in exact:
+            for x in s.xs[::4]:
+                off = abs(survey.at({s.input: x})[s.output] - finer.at({s.input: x})[s.output])
+                found[s.output] = max(found.get(s.output, 0.0), 0.0 if isnan(off) else off)
+    return found
+
+
+def _finer(controller: Controller) -> Controller:
+    from dataclasses import replace
+
+    outputs = {n: replace(v, resolution=FINER * v.resolution) for n, v in controller.outputs.items()}
+    return replace(controller, outputs=outputs)
+
+
+def check(controller: Controller, report: Report, seen: Look) -> None:
+    """Report what the surface has that it should not: silence, steps, turns, a value at rest, an unused range."""
+    for variable in controller.outputs.values():
+        _silence(controller, variable, report, seen)
+        _reached(controller, variable, report, seen)
+        _coarse(variable, report, seen)
+    for found, step in seen.steps:
+        where = controller.outputs[found.output].where
+        message = (
+            f"`{found.output}` jumps from {step.low:.3g} to {step.high:.3g} where `{found.input}` passes {step.x:.4g}"
+        )
+        find(report, "surface-step", where, message, "let neighbouring terms overlap, without vertical edges", key=True)
+    for found in seen.slices:
+        if controller.inputs[found.input].neutral is not None:
+            _turns(controller, found, report)
+            _rests(controller, found, report, seen)
+
+
+def _silence(controller: Controller, variable: Variable, report: Report, seen: Look) -> None:
+    point = seen.silent.get(variable.name)
+    if point is not None and variable.default is None and not variable.lock_previous:
+        where = ", ".join(f"{name} = {x:.4g}" for name, x in point.items() if name in asked(controller, variable.name))
+        message = f"`{variable.name}` has no value at {where}: no rule fires, and it has no default"
+        find(report, "no-default", variable.where, message, "write `default: 0`, or cover it by rules", key=True)
+
+
+def _reached(controller: Controller, variable: Variable, report: Report, seen: Look) -> None:
+    concluded = {c.term for rule in controller.rules for c in rule.consequents if c.variable == variable.name}
+    low, high = seen.reach[variable.name]
+    width = variable.maximum - variable.minimum
+    over = max(high - variable.maximum, variable.minimum - low)
+    where = (*variable.where, "range")
+    if over > 1e-6 * width and not variable.lock_range:
+        message = f"`{variable.name}` goes from {low:.4g} to {high:.4g}, beyond its range"
+        find(report, "attainable-range", where, message, f"write [{low:.4g}, {high:.4g}], or `lock-range: true`")
+    elif 1e-9 * width < high - low < REACH * width and len(concluded) > 1:
+        message = f"`{variable.name}` only goes from {low:.4g} to {high:.4g}, a small part of its range"
+        find(report, "attainable-range", where, message, "move its terms outwards, or narrow the range")
+
+
+def _coarse(variable: Variable, report: Report, seen: Look) -> None:
+    off = seen.off.get(variable.name, 0.0)
+    if variable.accuracy is not None and off > variable.accuracy:
+        message = (
+            f"with {variable.resolution:,} points `{variable.name}` is off by {off:.2g}, and {variable.accuracy:g} is"
+            " stated"
+        )
+        hint = f"raise `resolution` to {FINER * variable.resolution:,}, or state a greater `accuracy`"
+        find(report, "coarse-resolution", (*variable.where, "accuracy"), message, hint)
+
+
+def _turns(controller: Controller, found: Slice, report: Report) -> None:
+    """Over an input with a neutral point an output may only rise or only fall."""
+    output = controller.outputs[found.output]
+    least = TURN * (output.maximum - output.minimum)
+    extremes = list(_extremes(found, least))
+    if len(extremes) > 2:
+        x, y = extremes[1]
+        way = "rises" if y > extremes[0][1] else "falls"
+        message = f"`{output.name}` {way} until `{found.input}` is {x:.4g}, and then turns back"
+        hint = "look at the order of the terms, and at which rule concludes which"
+        find(report, "not-monotone", output.where, message, hint, key=True)
+
+
+def _extremes(found: Slice, least: float) -> Iterator[tuple[float, float]]:
+    """The ends of a curve and where it turns back by more than `least`."""
+    points = [(x, y) for x, y in zip(found.xs, found.ys, strict=True) if not isnan(y)]
+    if not points:
+        return
+    yield points[0]
+    low = high = points[0]
+    way = 0
+    for point in points:
+        low, high = min(low, point, key=_height), max(high, point, key=_height)
+        if way >= 0 and high[1] - point[1] > least:
+            if way > 0:
+                yield high
+            way, low, high = -1, point, point
+        elif way <= 0 and point[1] - low[1] > least:
+            if way < 0:
+                yield low
+            way, low, high = 1, point, point
+    yield points[-1]
+
+
+def _height(point: tuple[float, float]) -> float:
+    return point[1]
+
+
+def _rests(controller: Controller, found: Slice, report: Report, seen: Look) -> None:
+    output, variable = controller.outputs[found.output], controller.inputs[found.input]
+    value = seen.rest[output.name]
+    if abs(value) > REST * (output.maximum - output.minimum) and output.minimum <= 0.0 <= output.maximum:
+        message = f"at rest, with `{variable.name}` at {variable.neutral:g}, `{output.name}` is {value:.3g} and not 0"
+        hint = "the term in the middle of the input should lead to the one around 0"
+        others = [(variable.where, "its neutral point")]
+        find(report, "not-at-rest", output.where, message, hint, key=True, related=others)
