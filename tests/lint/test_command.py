@@ -170,6 +170,8 @@ def test_what_is_typed_stands_in_place_of_the_file(
         (["--watch", "--format", "json"], "for people"),
         (["FOREIGN"], "belongs to no project"),
         (["PROJECT/README"], "nothing that lint reads"),
+        (["-", "--stdin-filename", "PROJECT/README"], "no file that lint reads"),
+        (["-", "--stdin-filename", "FOREIGN"], "belongs to no project"),
     ],
 )
 def test_bad_usage_is_a_line_and_2(
@@ -207,6 +209,13 @@ def test_the_verdict_counts_though_nobody_reads_it(project: Path) -> None:
         ["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=60, check=False
     )
     assert (done.returncode, done.stderr) == (1, "")
+
+
+def test_where_nothing_can_be_printed_that_is_said(project: Path) -> None:
+    command = f"{sys.executable} -m lumen lint {project} > /dev/full"
+    environment = {"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin"}
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=60)
+    assert (done.returncode, done.stderr) == (2, "lumen lint: can't print: no space left on device\n")
 
 
 def test_explain(capsys: pytest.CaptureFixture[str]) -> None:

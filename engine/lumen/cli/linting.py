@@ -8,6 +8,7 @@ from pathlib import Path
 from lumen.cli.findings import Findings
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
+from lumen.loading.files import counts
 from lumen.loading.packaged import MAIN_FILE, find_project
 from lumen.loading.project import read_files
 from lumen.rules import check_files
@@ -101,4 +102,6 @@ def _typed(paths: Sequence[str], name: str | None) -> Asked:
     if root is None:
         raise UsageError(f"{name} belongs to no project: there is no {MAIN_FILE} beside it or above")
     file = Path(name).absolute().relative_to(root).as_posix()
+    if not counts(file):
+        raise UsageError(f"{name} is no file that lint reads: docs/yaml.md lists the files of a project")
     return Asked(root, frozenset((file,)), ((file, sys.stdin.buffer.read()),))

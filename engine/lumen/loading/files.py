@@ -46,6 +46,12 @@ def belongs(path: str) -> bool:
     return path == MAIN_FILE or (not name.startswith(".") and name.endswith(_READ.get(folder, ())))
 
 
+def counts(file: str) -> bool:
+    """Whether a file of that path, from the project's root, is one that is read."""
+    folder, _, name = file.rpartition("/")
+    return file == MAIN_FILE or (name.endswith(_READ.get(folder, ())) and not name.startswith("."))
+
+
 def fingerprint(files: Mapping[str, bytes]) -> str:
     """The hash of all paths and contents."""
     digest = hashlib.sha256()

@@ -25,7 +25,7 @@ def _looked_at(found: Sequence[Findings]) -> str:
     if len(found) > 1:
         checked += f" in {counted(len(found), 'project')}"
     elif found and found[0].root and found[0].name("") not in (".", "./"):
-        checked += f" in {found[0].name('').rstrip('/')}"
+        checked += f" in {clean(found[0].name('').rstrip('/') or '/')}"
     elsewhere = sum(each.elsewhere for each in found)
     return f"{checked}, {counted(elsewhere, 'finding')} in others of them" if elsewhere else checked
 
