@@ -1,7 +1,7 @@
 """What is told of a reload: as JSON on the bus and in the journal, and as lines for people."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from lumen.cli.judging import Judged, told
@@ -39,9 +39,10 @@ class Bulletin:
     took: dict[str, float] = field(default_factory=dict)
     more: dict[str, Any] = field(default_factory=dict)
 
-    @property
-    def well(self) -> bool:
-        return self.verdict != "refused"
+    def kept(self) -> "Bulletin":
+        """The same without the files and the project that it is about."""
+        judged = self.judged and replace(self.judged, project=None, saved=self.judged.saved._replace(files={}))
+        return replace(self, judged=judged)
 
     @property
     def restart(self) -> list[str]:

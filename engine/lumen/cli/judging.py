@@ -1,18 +1,18 @@
 """Saved files on trial: loaded, linted, compared with what runs, and played on the recording robot."""
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 
-from lumen.cli.rehearsal import Rehearsal, rehearse
+from lumen.cli.jury import Here, Jury
+from lumen.cli.rehearsal import Rehearsal
 from lumen.interpreters.changes import Change, Risk, changes
 from lumen.interpreters.statechart.program import compiled
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.files import fingerprint
-from lumen.rules import check_files
 from lumen.runtime.watcher import Saved
 
 BUDGET = 2.0
@@ -50,23 +50,26 @@ class Judged:
 
 
 class Judge:
-    """Judges files against the bundle that runs, which `running` tells; called on a thread that may take its time."""
+    """Judges files against the bundle that runs, which `running` tells; called on a thread that may take its time.
 
-    def __init__(self, root: Path, running: Callable[[], Project], budget: float = BUDGET) -> None:
-        self._root, self._running, self._budget = root, running, budget
+    `court` loads files and plays stories, here or in another process.
+    """
+
+    def __init__(self, court: Here | Jury, running: Callable[[], Project], budget: float = BUDGET) -> None:
+        self._court, self._running, self._budget = court, running, budget
 
     def __call__(self, saved: Saved) -> Judged:
         """What came of them; nothing here raises for what they say."""
         hash = fingerprint(saved.files)
         began = time.perf_counter()
         try:
-            project, diagnostics = check_files(self._root, saved.files)
+            project, diagnostics = self._court.load(saved.files)
             if project is None:
                 return Judged(saved, hash, None, diagnostics, loading=time.perf_counter() - began)
             compiled(project.machine)
             found = changes(self._running(), project)
             loaded = time.perf_counter()
-            failed = tuple(self._play(project, _saved_stories(project, saved.changed), loaded + self._budget))
+            failed = tuple(self._play(project, _saved_stories(project, saved.changed)))
             took = loaded - began, time.perf_counter() - loaded
             return Judged(saved, hash, project, diagnostics, found, failed, "", *took)
         except Exception as error:  # a fault of ours costs the reload, and nothing else
@@ -77,28 +80,19 @@ class Judge:
         if not judged.good or judged.project is None:
             return []
         others = _touched_stories(judged.project, judged.changes, judged.saved.changed)
-        return list(self._play(judged.project, others, time.perf_counter() + self._budget, urgent))
+        return list(self._play(judged.project, others, urgent))
 
     def _play(
-        self, project: Project, stories: Iterable[Story], until: float, urgent: Callable[[], bool] = lambda: False
-    ) -> Iterable[Rehearsal]:
+        self, project: Project, stories: Iterable[Story], urgent: Callable[[], bool] = lambda: False
+    ) -> Iterator[Rehearsal]:
         """Those that fail; one for which there is no time left is left out."""
-
-        def hurry(_: float) -> None:
-            if urgent() or time.perf_counter() > until:
-                raise _EnoughError
-
-        try:
-            for story in stories:
-                rehearsal = rehearse(project, story, parts=[hurry])
-                if rehearsal.failed:
-                    yield rehearsal
-        except _EnoughError:
-            return
-
-
-class _EnoughError(Exception):
-    """There is no time left for this story."""
+        until = time.perf_counter() + self._budget
+        for story in stories:
+            left = until - time.perf_counter()
+            if left <= 0.0 or urgent():
+                return
+            if failed := self._court.play(project, story.name, left):
+                yield failed
 
 
 def _saved_stories(project: Project, changed: Iterable[str]) -> list[Story]:

@@ -77,7 +77,9 @@ class Performance:
         """Be found by other terminals, and take saved files."""
         show, records = self._show, self._premises.records
         self._premises.open(show.bus, self._url, show.exhibition.project)
-        reloading = Reloading(show, self._transcript, mode=mode, records=records, applied=self._premises.announce)
+        reloading = Reloading(
+            show, self._transcript, mode=mode, records=records, applied=self._premises.announce, apart=True
+        )
         show.exhibition.parts.append(reloading.tick)
         show.closing.insert(0, reloading.close)
         if records.keeper and self._story is None:

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from lumen.cli.show import Show
 from lumen.interpreters.changes import live
@@ -26,20 +27,20 @@ class Probation:
 
     def __init__(self, show: Show, back: Callable[[str, Project], None]) -> None:
         self._show, self._back = show, back
-        self.good = show.exhibition.project
+        self.good = _lean(show.exhibition.project)
         self.before: Project | None = None
         self._until: float | None = None
         show.exhibition.rescue = self._rescue
 
     def begin(self, before: Project, now: float) -> None:
         """Another bundle runs since `now` [s]."""
-        self.before, self._until = before, now + PERIOD
+        self.before, self._until = _lean(before), now + PERIOD
 
     def over(self, now: float) -> bool:
         """Whether the bundle has stood it just now."""
         if self._until is None or now < self._until:
             return False
-        self._until, self.good = None, self._show.exhibition.project
+        self._until, self.good = None, _lean(self._show.exhibition.project)
         return True
 
     def left(self, now: float) -> float | None:
@@ -54,7 +55,7 @@ class Probation:
         good = live(bad, self.good)
         _log.debug("a reload failed", exc_info=error)
         commands = self._show.rescue(good, self._plan(good))
-        self.before = bad
+        self.before = _lean(bad)
         self._back(str(error) or repr(error), bad)
         return commands
 
@@ -64,3 +65,8 @@ class Probation:
             return plan
         exhibition = self._show.exhibition
         return anew(good, exhibition.runtime.snapshot, exhibition.clock.now())
+
+
+def _lean(project: Project) -> Project:
+    """A bundle to go back to: without what stands where in its files, which is most of it."""
+    return replace(project, documents={})

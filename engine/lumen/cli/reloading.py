@@ -9,6 +9,7 @@ from pathlib import Path
 
 from lumen.cli.bulletin import Bulletin, refusal_of, what_for
 from lumen.cli.judging import BUDGET, Judge, Judged, told
+from lumen.cli.jury import Here, Jury
 from lumen.cli.orders import COMMAND, STATUS, WAITING, Order, answering, order_from
 from lumen.cli.probation import Probation
 from lumen.cli.records import Records
@@ -53,8 +54,8 @@ class Staged:
 class Reloading:
     """Stages every good bundle and applies it at the first tick at which the running state allows it.
 
-    What comes of it goes to the transcript, to the bus (`lumen.config.status`) and into the records. `quiet` [s] and
-    `budget` [s] are those of the watcher and of stories.
+    What comes of it goes to the transcript, to the bus (`lumen.config.status`) and into the records. `apart` is
+    whether files are judged in another process. `quiet` [s] and `budget` [s] are those of the watcher and of stories.
     """
 
     def __init__(
@@ -65,6 +66,7 @@ class Reloading:
         mode: str = "auto",
         records: Records | None = None,
         applied: Callable[[Project], None] = lambda _: None,
+        apart: bool = False,
         quiet: float = QUIET,
         budget: float = BUDGET,
     ) -> None:
@@ -76,7 +78,8 @@ class Reloading:
         self._staged: Staged | None = None
         self._came: deque[Message] = deque(maxlen=WAITING)
         project = show.exhibition.project
-        judge = Judge(Path(project.root), lambda: self._running, budget)
+        self._court = (Jury if apart else Here)(Path(project.root))
+        judge = Judge(self._court, lambda: self._running, budget)
         self._watcher: Watcher[Judged | list[Rehearsal]] = Watcher(
             Path(project.root),
             read_files(Path(project.root)),
@@ -97,6 +100,7 @@ class Reloading:
     def close(self) -> None:
         self._undo()
         self._watcher.close()
+        self._court.close()
 
     def tick(self, now: float) -> None:
         """Take what was asked, see what the watcher found, and apply what is staged."""
@@ -293,7 +297,7 @@ class Reloading:
     def _tell(self, bulletin: Bulletin, orders: list[Order]) -> None:
         """To the terminal, to the bus, to who asked, and into the journal."""
         lines, body = list(bulletin.lines()), bulletin.to_json()
-        self.last = bulletin
+        self.last = bulletin.kept()
         for line in lines:
             self._transcript.line("reload", line)
         self._records.write({"at": round(self._show.exhibition.clock.now(), 3), **body})

@@ -1,0 +1,187 @@
+"""Saved files judged in a process of its own, so that it never holds up a tick.
+
+Python runs one thread at a time. A thread that loads files would keep the exhibition waiting for as long as the system
+lets it wait itself, some ticks on a busy machine. What comes back is unpacked field by field, and only where it differs
+from what is here already: some milliseconds. The child is our own program, and the pipe to it nobody else's.
+"""
+
+import os
+import pickle
+import struct
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import fields
+from functools import cached_property
+from pathlib import Path
+from typing import IO, Any
+
+from lumen.cli.rehearsal import Rehearsal, rehearse
+from lumen.language.diagnostics import Diagnostic, Places
+from lumen.language.projects import Project
+from lumen.rules import check_files
+
+_LENGTH = struct.Struct(">I")
+Loaded = tuple[Project | None, tuple[Diagnostic, ...]]
+
+
+class EnoughError(Exception):
+    """There is no time left for this story."""
+
+
+class Here:
+    """Loads files, and plays stories, on the thread that asks."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+
+    def load(self, files: Mapping[str, bytes]) -> Loaded:
+        """The project that the files make, None where they have errors, and everything wrong with them."""
+        return check_files(self._root, files)
+
+    def play(self, project: Project, story: str, seconds: float) -> Rehearsal | None:
+        """How a story fails with the project loaded last; None where it does not, or not within this time."""
+        return failure(project, story, seconds)
+
+    def close(self) -> None:
+        """Nothing to let go of."""
+
+
+class Jury:
+    """What `Here` does, in another process; that is begun when it is first needed, and anew where it has died."""
+
+    def __init__(self, root: Path) -> None:
+        self._here = Here(root)
+        self._root = root
+        self._child: subprocess.Popen[bytes] | None = None
+        self._parts: dict[str, tuple[bytes, Any]] = {}
+
+    def load(self, files: Mapping[str, bytes]) -> Loaded:
+        try:
+            parts, diagnostics = self._ask("load", str(self._root), dict(files))
+        except (OSError, EOFError, pickle.UnpicklingError):
+            self.close()
+            return self._here.load(files)
+        return (None if parts is None else self._project(parts)), diagnostics
+
+    def play(self, project: Project, story: str, seconds: float) -> Rehearsal | None:
+        try:
+            found: Rehearsal | None = self._ask("play", story, seconds)
+        except (OSError, EOFError, pickle.UnpicklingError):
+            self.close()
+            return None
+        return found
+
+    def close(self) -> None:
+        """End the process."""
+        child, self._child = self._child, None
+        if child:
+            child.kill()
+            child.communicate()
+
+    def _ask(self, *question: Any) -> Any:
+        if self._child is None or self._child.poll() is not None:
+            self.close()
+            self._child = subprocess.Popen(
+                [sys.executable, "-m", "lumen.cli.jury"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                start_new_session=True,  # Ctrl-C is not for it
+            )
+        assert self._child.stdin
+        assert self._child.stdout
+        _write(self._child.stdin, question)
+        return _read(self._child.stdout)
+
+    def _project(self, parts: Mapping[str, bytes]) -> Project:
+        for name, data in parts.items():
+            if name == "documents":
+                self._parts[name] = data, _Documents(data)
+            elif self._parts.get(name, (b"",))[0] != data:
+                self._parts[name] = data, pickle.loads(data)
+        return Project(**{name: value for name, (_, value) in self._parts.items()})
+
+
+class _Documents(Mapping[str, Places]):
+    """What stands where in the files: unpacked only when somebody asks."""
+
+    def __init__(self, packed: bytes) -> None:
+        self._packed = packed
+
+    @cached_property
+    def _found(self) -> Mapping[str, Places]:
+        found: Mapping[str, Places] = pickle.loads(self._packed)
+        return found
+
+    def __getitem__(self, file: str) -> Places:
+        return self._found[file]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+
+def failure(project: Project, story: str, seconds: float) -> Rehearsal | None:
+    """How a story fails with a project; None where it does not, or not within `seconds` of this machine's time."""
+    until = time.perf_counter() + seconds
+
+    def hurry(_: float) -> None:
+        if time.perf_counter() > until:
+            raise EnoughError
+
+    try:
+        rehearsal = rehearse(project, project.stories[story], parts=[hurry])
+    except EnoughError:
+        return None
+    return rehearsal if rehearsal.failed else None
+
+
+def _write(pipe: IO[bytes], what: Any) -> None:
+    data = pickle.dumps(what, pickle.HIGHEST_PROTOCOL)
+    pipe.write(_LENGTH.pack(len(data)) + data)
+    pipe.flush()
+
+
+def _read(pipe: IO[bytes]) -> Any:
+    """What comes next; raises EOFError at the end."""
+    head = pipe.read(_LENGTH.size)
+    if len(head) < _LENGTH.size:
+        raise EOFError
+    return pickle.loads(pipe.read(*_LENGTH.unpack(head)))
+
+
+def _parts(project: Project | None) -> dict[str, bytes] | None:
+    """A project field by field; no machine takes along what was compiled of it."""
+    if project is None:
+        return None
+    return {f.name: pickle.dumps(getattr(project, f.name), pickle.HIGHEST_PROTOCOL) for f in fields(project)}
+
+
+def _serve(question: Sequence[Any], project: Project | None) -> tuple[Any, Project | None]:
+    """The answer, and the project that is in force after it."""
+    match question:
+        case ["load", str(root), dict(files)]:
+            project, diagnostics = check_files(Path(root), files)
+            return (_parts(project), diagnostics), project
+        case ["play", str(story), float(seconds)] if project:
+            return failure(project, story, seconds), project
+    return None, project
+
+
+def main() -> None:
+    """Answer until the pipe ends; what anybody prints goes to the terminal, not into the pipe."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    project: Project | None = None
+    with suppress(EOFError, BrokenPipeError):
+        while True:
+            answer, project = _serve(_read(sys.stdin.buffer), project)
+            _write(answers, answer)
+
+
+if __name__ == "__main__":
+    main()
