@@ -9,6 +9,7 @@ from pathlib import Path
 from lumen.cli.findings import Findings
 from lumen.cli.linting import Asked, Wanted, asked, lint
 from lumen.cli.render import FORMATS, render
+from lumen.cli.sweeping import unswept
 from lumen.cli.terminal import coloured
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic, Severity
@@ -49,7 +50,8 @@ def run(options: argparse.Namespace) -> int:
         return _diff(projects, wanted)
     if options.fix:
         _fix(projects, wanted)
-    found = [lint(what, wanted) for what in projects]
+    with unswept():
+        found = [lint(what, wanted) for what in projects]
     if options.against is not None:
         from lumen.cli.against import compared
 

@@ -11,6 +11,7 @@ from io import TextIOWrapper
 
 import lumen
 from lumen.cli.intermixed import Intermixed
+from lumen.cli.sweeping import unswept
 from lumen.errors import LumenError, ProjectError
 
 STARTED = time.monotonic()
@@ -47,11 +48,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         prog="lumen", description="Give a humanoid robot its behaviour in YAML.", epilog="lumen VERB --help says more."
     )
     parser.add_argument("--version", action="version", version=f"lumen {lumen.__version__}")
-    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True, parser_class=Intermixed)
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True, parser_class=Intermixed, prog="lumen")
     for verb, summary in VERBS.items():
         command = verbs.add_parser(verb, help=summary, description=summary[0].upper() + summary[1:] + ".")
         if verb in arguments[:1]:
-            module = importlib.import_module(f"lumen.cli.{MODULES.get(verb, verb)}")
+            with unswept():
+                module = importlib.import_module(f"lumen.cli.{MODULES.get(verb, verb)}")
             module.configure(command)
             command.set_defaults(run=module.run)
     options = parser.parse_args(arguments)
