@@ -172,6 +172,23 @@ def test_a_revision_is_compared_and_every_configuration_told(
     assert {row["outcome"]: row["after"] for row in told["configurations"]}["moved"] == ["talk.dance"]
 
 
+def test_lint_finds_what_a_reload_would_refuse_or_move(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tour = repository / TOUR
+    assert main(["lint", "--against", "HEAD", "--ignore", "dead-end", "--format", "concise"]) == 0
+    tour.write_text(tour.read_text().replace("ask: {on: {released: dance}}, ", ""))
+    capsys.readouterr()
+    assert main(["lint", "--against", "HEAD", "--select", "reload", "--format", "concise"]) == 1
+    assert f"{TOUR}:2:46: error[reload-refused] a reload would be refused: `talk.ask`" in capsys.readouterr().out
+    tour.write_text(tour.read_text().replace("talk: {", "talk: {onReload: .dance, "))
+    assert main(["lint", "--against", "HEAD", "--select", "reload", "--format", "concise"]) == 0
+    out = capsys.readouterr().out
+    assert (
+        f"{TOUR}:2:46: info[reload-moves] a reload would lead from `talk.ask`, which is gone, to `talk.dance`" in out
+    )
+    assert out.count("reload-moves") == 1
+    assert main(["lint", "--against", "nothing"]) == 2
+
+
 @pytest.mark.parametrize(
     ("name", "told"),
     [

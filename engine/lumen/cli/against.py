@@ -56,7 +56,7 @@ def _moved(old: Project, new: Project, everywhere: Fates) -> Iterator[Diagnostic
         for name in fate.states:
             if (where := _says(old.machine, new.machine, identity, names[name])) is not None:
                 place = _place(new, new.behavior, where)
-                goals = ", ".join(f"`{state}`" for state in fate.after)
+                goals = ", ".join(f"`{state}`" for state in fate.after if state not in fate.states)
                 message = f"a reload would lead from `{name}`, which is gone, to {goals}"
                 hint = "where it has another name, say so under `renamed`"
                 yield _finding("reload-moves", message, place, hint)
