@@ -3,6 +3,8 @@
 import threading
 from dataclasses import replace
 
+import pytest
+
 from lumen.buses.memory import MemoryBus
 from lumen.cli.cast import Cast
 from lumen.cli.show import Show
@@ -168,3 +170,38 @@ def test_a_language_that_is_gone_is_no_longer_spoken() -> None:
     assert exhibition.runtime.snapshot.language == "nl"
     assert swap(exhibition, replace(project, languages=("en", "nl"))).notes == ()
     assert exhibition.runtime.snapshot.language == "nl"
+
+
+@pytest.mark.parametrize(
+    "point",
+    [
+        "place",
+        "carrying.context",
+        "carrying.timers",
+        "carrying.history",
+        "Session.microstep",
+        "Continued.settle",
+        "goes_on",
+    ],
+)
+def test_a_fault_anywhere_in_a_plan_changes_nothing(point: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    project = exhibits.project(behaviors={"tour": DANCING})
+    exhibition, seen = running(project)
+    before = exhibition.runtime.snapshot
+    more = machine(
+        context={"more": 1}, states={"a": {"do": {"play": "dance"}, "onDone": "b"}, "b": {"do": {"play": "dance"}}}
+    )
+    changed = replace(project, behaviors={"tour": more})
+    with monkeypatch.context() as patched:
+        patched.setattr(f"lumen.interpreters.migration.moving.{point}", fault)
+        with pytest.raises(ZeroDivisionError):
+            exhibition.plan(changed)
+    assert exhibition.project is project
+    assert exhibition.runtime.snapshot is before
+    while not seen.answers:
+        exhibition.tick()
+    assert swap(exhibition, changed).snapshot.context == {"more": 1}
+
+
+def fault(*_: object, **__: object) -> None:
+    raise ZeroDivisionError

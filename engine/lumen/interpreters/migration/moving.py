@@ -65,7 +65,8 @@ class _Moving:
         state, gone, rivals = homeless
         title = f"`{state.name or behavior}`"
         if len(rivals) > 1:
-            names = " and ".join(f"`{node.name}`" for node in rivals)
+            *more, last = (f"`{node.name}`" for node in rivals)
+            names = f"{', '.join(more)} and {last}"
             reason = f"{names} are active, and can't be together in {title} any more"
             hint = f"give {title} an `onReload` that says where to go"
         else:
