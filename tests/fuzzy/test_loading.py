@@ -14,7 +14,7 @@ from lumen.loading.controllers import build_controller
 from lumen.loading.schema import check_schema, load_schema
 from lumen.loading.source import Report, parse
 
-HEAD = Path("fuzzy/head.yaml").read_text()
+HEAD = Path("tests/fuzzy/at_length.yaml").read_text()
 
 
 def diagnose(text: str) -> list[Diagnostic]:
