@@ -1,0 +1,111 @@
+"""The transcript in docs/reload.md: a visitor is shown a dance while somebody edits the files.
+
+    python docs/pictures/reload.py
+
+What the exhibition prints stands as it is; what is done beside it stands between the lines, behind a `$`.
+"""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PARTS = ("behaviors", "fuzzy", "motions", "schemas", "models", "lumen.yaml")
+TOUR = "behaviors/tour.yaml"
+WAIT = 60.0
+
+
+class Visit:
+    """`lumen run` in a copy of the project, with somebody who types and somebody who edits."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        run = [sys.executable, "-m", "lumen", "run", str(folder), "--robot", "recording", "--speed", "1"]
+        self._process = subprocess.Popen(run, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self._told: list[str] = []
+        self._seen = 0
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self._process.stdout
+        for line in self._process.stdout:
+            self._told.append(line)
+            print(line, end="", flush=True)
+
+    def until(self, words: str) -> None:
+        """Wait until the exhibition has printed this since the last time."""
+        deadline = time.monotonic() + WAIT
+        while not (found := [i for i, line in enumerate(self._told) if i >= self._seen and words in line]):
+            if time.monotonic() > deadline:
+                raise SystemExit(f"{words!r} was not told")
+            time.sleep(0.05)
+        self._seen = found[0] + 1
+
+    def types(self, text: str) -> None:
+        assert self._process.stdin
+        self._process.stdin.write(text + "\n")
+        self._process.stdin.flush()
+
+    def does(self, command: str) -> None:
+        """In another terminal."""
+        print(f"$ {command}", flush=True)
+        subprocess.run(command, shell=True, cwd=self.folder, check=False)
+
+    def ends(self) -> None:
+        self._process.terminate()
+        self._reader.join()
+
+
+def steps(visit: Visit) -> Iterator[None]:
+    visit.until("ask_name")
+    visit.types("my name is Ani")
+    visit.until("how_are_you")
+    visit.types("fine")
+    visit.until("What can I do for you?")
+    visit.types("dance")
+    visit.until("plays dance")
+    visit.does(f"sed -i 's/en: Do you have any questions.*/en: Is there anything you would like to know?/' {TOUR}")
+    visit.until("in force")
+    visit.does("sed -i 's/any_question/more_questions/g' behaviors/*.yaml behaviors/stories/*.yaml")
+    visit.until("in force")
+    visit.does(f"sed -i 's/onDone: more_questions/onDone: more_qestions/' {TOUR}")
+    visit.until("refused")
+    visit.does(f"sed -i 's/more_qestions/more_questions/' {TOUR}")
+    visit.until("those that run")
+    visit.does("rm motions/dance.yaml")
+    visit.until("refused")
+    visit.does(f"cp {ROOT}/motions/dance.yaml motions/")
+    visit.until("those that run")
+    visit.does(f"sed -i 's/- {{play: dance}}/- {{play: photo}}/' {TOUR}")
+    visit.until("waiting for")
+    visit.does(f"{sys.executable} -m lumen reload --status")
+    visit.until("in force")
+    yield
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name) / "show"
+        folder.mkdir()
+        for part in PARTS:
+            copied = ROOT / part
+            if copied.is_dir():
+                shutil.copytree(copied, folder / part)
+            else:
+                shutil.copy(copied, folder / part)
+        visit = Visit(folder)
+        try:
+            for _ in steps(visit):
+                pass
+        finally:
+            visit.ends()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,184 @@
+"""The door of an embedded bus: who may come in, and that nobody who does can hold up the exhibition."""
+
+import json
+import socket
+import stat
+import struct
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from lumen.bus import BusError, connect
+from lumen.buses.local import Address, Door, LocalBus, door
+from lumen.buses.local.frames import frame
+from lumen.buses.memory import MemoryBus
+from tests.waiting import Collector, until
+
+
+class Opened:
+    """A bus with a door."""
+
+    def __init__(self, folder: Path) -> None:
+        self.bus = connect("memory://")
+        self.door = Door(self.bus, folder)
+
+    def raw(self) -> socket.socket:
+        wire = self.door.address.connect()
+        wire.settimeout(10.0)
+        return wire
+
+
+@pytest.fixture
+def opened(tmp_path: Path) -> Iterator[Opened]:
+    one = Opened(tmp_path)
+    yield one
+    one.door.close()
+    one.bus.close()
+
+
+def ended(wire: socket.socket) -> bool:
+    """Whether the other side closes the connection."""
+    try:
+        while wire.recv(1 << 16):
+            pass
+    except ConnectionResetError:
+        pass
+    return True
+
+
+def test_only_the_owner_can_open_it(opened: Opened) -> None:
+    assert stat.S_IMODE(Path(opened.door.address.path).stat().st_mode) == 0o600
+
+
+def test_who_does_not_know_the_key_stays_out(opened: Opened) -> None:
+    address = opened.door.address
+    with pytest.raises(BusError, match="is not the exhibition"):
+        LocalBus(Address(address.path, address.port, "another key"))
+    LocalBus(address).close()
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        b"GET / HTTP/1.1\r\n\r\n",
+        struct.pack(">I", 2**31) + b"x",
+        struct.pack(">I", 5) + b"\xff\xff\xff\xff\xff",
+        struct.pack(">I", 4) + b"null",
+        struct.pack(">I", 200_000) + b"[" * 200_000,
+        frame("subscribe", 1, "lumen.#"),
+        frame("proof", None, 1),
+        frame("proof", "0" * 64, "x"),
+    ],
+)
+def test_who_speaks_no_sense_is_shown_out_and_nobody_else(opened: Opened, said: bytes) -> None:
+    with LocalGuest(opened) as guest, opened.raw() as wire:
+        wire.sendall(said)
+        wire.shutdown(socket.SHUT_WR)
+        assert ended(wire)
+        guest.still_hears()
+
+
+class LocalGuest:
+    def __init__(self, opened: Opened) -> None:
+        self.opened, self.seen = opened, Collector()
+
+    def __enter__(self) -> "LocalGuest":
+        self.bus = LocalBus(self.opened.door.address)
+        self.bus.subscribe("lumen.alive", self.seen)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.bus.close()
+
+    def still_hears(self) -> None:
+        self.opened.bus.publish("lumen.alive", 1)
+        self.seen.wait(1)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("subscribe", "one", "lumen.#"),
+        ("subscribe", 1),
+        ("subscribe", 1, "x" * 300),
+        ("publish", "lumen.a", "", "", {"no": "number"}, 1),
+        ("publish", 1, 2, 3),
+        ("dance",),
+        ("proof", "again", "x"),
+    ],
+)
+def test_nonsense_of_somebody_who_knows_the_key_costs_only_them(opened: Opened, words: tuple[object, ...]) -> None:
+    with LocalGuest(opened) as guest, LocalGuest(opened) as other:
+        other.bus._put(frame(*words))
+        guest.still_hears()
+
+
+def test_who_never_says_a_word_is_forgotten(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(door, "KNOCKING", 0.1)
+    with opened.raw() as wire:
+        assert ended(wire)
+
+
+def test_more_than_so_many_do_not_fit_in(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(door, "GUESTS", 1)
+    with LocalGuest(opened) as guest:
+        with pytest.raises(BusError):
+            LocalBus(opened.door.address)
+        guest.still_hears()
+
+
+def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(door, "BYTES", 1_000_000)
+    with LocalGuest(opened) as guest:
+        slow = LocalBus(opened.door.address)
+        held = threading.Event()
+        slow.subscribe("lumen.much", lambda _: held.wait(20.0))
+        slow._wire.shutdown(socket.SHUT_RD)
+        began = time.monotonic()
+        for _ in range(300):
+            opened.bus.publish("lumen.much", {"text": "x" * 50_000})
+        assert time.monotonic() - began < 2.0
+        guest.still_hears()
+        assert all(guest.bytes < 2_000_000 for guest in opened.door._guests.values())
+        held.set()
+        slow.close()
+
+
+def test_who_dies_is_forgotten(opened: Opened) -> None:
+    assert isinstance(opened.bus, MemoryBus)
+    before = len(opened.bus._hub.subscriptions)
+    guest = LocalBus(opened.door.address)
+    guest.subscribe("lumen.#", lambda _: None)
+    guest._wire.shutdown(socket.SHUT_RDWR)
+    until(lambda: isinstance(opened.bus, MemoryBus) and len(opened.bus._hub.subscriptions) == before)
+    guest.close()
+
+
+def test_when_the_exhibition_ends_its_guests_are_told(opened: Opened) -> None:
+    guest = LocalBus(opened.door.address)
+    opened.door.close()
+    assert guest.gone.wait(10.0)
+    with pytest.raises(BusError, match="gone"):
+        guest.publish("lumen.a", 1)
+    guest.close()
+    with pytest.raises(BusError, match="nobody opens"):
+        LocalBus(opened.door.address)
+    assert not Path(opened.door.address.path).exists()
+
+
+def test_a_project_deep_in_folders_has_a_door_too(tmp_path: Path) -> None:
+    deep = tmp_path / ("a" * 100) / ("b" * 100)
+    deep.mkdir(parents=True)
+    one = Opened(deep)
+    LocalBus(one.door.address).close()
+    one.door.close()
+    assert not Path(one.door.address.path).parent.exists()
+
+
+@pytest.mark.parametrize("data", [{}, {"path": "", "port": "x", "key": ""}, {"path": "", "port": [], "key": ""}])
+def test_what_is_no_address_is_said(data: dict[str, object]) -> None:
+    with pytest.raises(BusError, match="no address"):
+        Address.of(json.loads(json.dumps(data)))

@@ -1,0 +1,100 @@
+"""A running show of a copy of the project, with files that are saved and an operator who asks."""
+
+import time
+from collections.abc import Callable
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import lumen
+from lumen.cli.cast import Cast
+from lumen.cli.orders import COMMAND, STATUS
+from lumen.cli.records import Records
+from lumen.cli.reloading import Reloading
+from lumen.cli.show import Show
+from lumen.cli.transcript import Transcript
+from lumen.clocks.simulated import SimulatedClock
+from lumen.language.stories import Visitor
+from lumen.robots.recording import RecordingRobot
+from lumen.runtime.home import Home
+from tests.waiting import Collector
+
+DEADLINE = 30.0
+QUIET = 0.06
+
+
+class Live:
+    """Ticks as fast as it can while it waits for something."""
+
+    def __init__(self, folder: Path, mode: str = "auto", url: str = "memory://", *, apart: bool = False) -> None:
+        self.folder = folder
+        project = lumen.load(folder)
+        self.robot = RecordingRobot(project.body)
+        self.show = Show(project, Cast(self.robot, SimulatedClock(self.robot.advance, 20.0), self.robot), url)
+        self.told = StringIO()
+        transcript = Transcript(self.show.exhibition.clock.now, lambda: self.show.exhibition.project.machine, self.told)
+        self.show.exhibition.observers.append(transcript)
+        self.home = Home(folder / ".lumen")
+        assert self.home.hold()
+        self.records = Records(self.home)
+        self.reloading = Reloading(
+            self.show, transcript, mode=mode, records=self.records, quiet=QUIET, budget=0.5, apart=apart
+        )
+        self.show.exhibition.parts.append(self.reloading.tick)
+        self.show.closing[:0] = [self.reloading.close, self.home.release]
+        self.answers = Collector()
+        self.show.exhibition.bus.subscribe("lumen.test.answer", self.answers)
+        self.status = Collector()
+        self.show.exhibition.bus.subscribe(STATUS, self.status)
+        self.show.start()
+
+    def until(self, condition: Callable[[], object]) -> None:
+        deadline = time.monotonic() + DEADLINE
+        while not condition():
+            self.show.tick()
+            assert time.monotonic() < deadline, self.told.getvalue()
+
+    def until_told(self, text: str) -> None:
+        self.until(lambda: text in self.transcript)
+
+    def live(self, seconds: float) -> None:
+        """So much of its own time."""
+        end = self.show.exhibition.clock.now() + seconds
+        self.until(lambda: self.show.exhibition.clock.now() >= end)
+
+    def greet(self) -> None:
+        assert self.show.walker
+        self.show.walker.arrive(Visitor())
+        self.until(lambda: "ask_name" in self.states)
+
+    def speak(self, text: str, state: str) -> None:
+        assert self.show.walker
+        self.show.walker.speak(text)
+        self.until(lambda: state in self.states)
+
+    def edit(self, old: str, new: str, file: str = "behaviors/tour.yaml") -> None:
+        path = self.folder / file
+        text = path.read_text("utf-8")
+        assert old in text
+        path.write_text(text.replace(old, new), "utf-8")
+
+    def ask(self, command: object, **more: object) -> dict[str, Any]:
+        """The first answer to a command."""
+        before = len(self.answers.messages)
+        body = {"command": command, **more}
+        self.show.exhibition.bus.publish(COMMAND, body, reply_to="lumen.test.answer", correlation_id=str(before))
+        self.until(lambda: len(self.answers.messages) > before)
+        found: dict[str, Any] = self.answers.bodies[before]
+        return found
+
+    @property
+    def transcript(self) -> str:
+        return self.told.getvalue().replace("\n" + " " * 18, " ")
+
+    @property
+    def states(self) -> frozenset[str]:
+        return self.show.exhibition.runtime.snapshot.configuration
+
+    @property
+    def verdicts(self) -> list[str]:
+        return [body["verdict"] for body in self.status.bodies]

@@ -1,0 +1,173 @@
+"""What an operator may ask of a running exhibition, and what is answered."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumen.language.commands import Say
+from tests.live.shows import Live
+from tests.rabbitmq import RabbitMQ
+
+SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+WAVE = "                - {play: goodbye}\n"
+
+
+@pytest.fixture
+def manual(copy: Path) -> Iterator[Live]:
+    one = Live(copy, "manual")
+    yield one
+    one.show.close()
+
+
+def test_a_saved_text_is_in_force_told_and_journaled(live: Live) -> None:
+    before = live.show.exhibition.project.hash
+    live.edit(SORRY, PARDON)
+    live.until_told("the saved files are in force")
+    told = live.status.bodies[-1]
+    after = live.show.exhibition.project.hash
+    assert (told["verdict"], told["who"], told["before"], told["after"]) == ("applied", "files", before, after)
+    assert told["risk"] == "cosmetic"
+    [entry] = live.records.journal.entries()
+    assert (entry["verdict"], entry["before"], entry["after"]) == ("applied", before, after)
+    assert set(entry["took"]) == {"loading", "stories", "applying", "waiting"}
+
+
+def test_by_hand_it_is_staged_until_somebody_applies_it(manual: Live) -> None:
+    before = manual.show.exhibition.project
+    manual.edit(SORRY, PARDON)
+    manual.until_told("staged: ")
+    assert manual.show.exhibition.project is before
+    assert manual.ask("status")["staged"]
+    assert manual.ask("apply")["verdict"] == "applied"
+    assert manual.show.exhibition.project.hash != before.hash
+    assert manual.ask("apply")["verdict"] == "refused"
+
+
+def test_a_rollback_brings_back_what_ran_before_and_stays(live: Live) -> None:
+    before = live.show.exhibition.project.hash
+    assert "nothing to go back to" in live.ask("rollback")["reason"]
+    live.edit(SORRY, PARDON)
+    live.until_told("in force")
+    assert live.ask("rollback")["verdict"] == "applied"
+    assert "the files before are in force again" in live.transcript
+    assert live.show.exhibition.project.hash == before
+    live.live(5.0)
+    assert live.show.exhibition.project.hash == before
+    assert live.ask("reload")["verdict"] == "applied"
+    assert live.show.exhibition.project.hash != before
+
+
+def test_a_dry_run_says_what_would_be_and_changes_nothing(manual: Live) -> None:
+    before = manual.show.exhibition.project
+    manual.edit(SORRY, PARDON)
+    manual.until_told("staged: ")
+    answer = manual.ask("dry-run")
+    assert answer["verdict"] == "dry run"
+    assert "it would be in force at once" in answer["lines"][0]
+    assert manual.show.exhibition.project is before
+
+
+def test_reload_answers_with_the_diagnostics(live: Live) -> None:
+    live.edit("onDone: any_question", "onDone: any_questoin")
+    answer = live.ask("reload")
+    assert answer["verdict"] == "refused"
+    assert answer["diagnostics"][0]["code"] == "unknown-state"
+    assert live.ask("status")["last"]["verdict"] == "refused"
+
+
+def test_where_nothing_was_saved_it_says_so(live: Live) -> None:
+    assert live.ask("reload")["verdict"] == "unchanged"
+
+
+@pytest.mark.parametrize(
+    "body", [None, 7, "reload", [], {}, {"command": 7}, {"command": "danse"}, {"command": "reload", "now": "yes"}]
+)
+def test_nonsense_is_answered_and_ends_nothing(live: Live, body: Any) -> None:
+    bus = live.show.exhibition.bus
+    bus.publish("lumen.config.command", body, reply_to="lumen.test.answer")
+    bus.publish("lumen.config.command", body)
+    live.until(lambda: live.answers.messages)
+    assert live.answers.bodies[0]["verdict"] == "refused"
+    assert live.ask("status")["verdict"] == "status"
+
+
+def test_off_means_off(copy: Path) -> None:
+    one = Live(copy, "off")
+    one.edit(SORRY, PARDON)
+    assert "--reload off" in one.ask("reload")["reason"]
+    assert one.ask("status")["mode"] == "off"
+    one.show.close()
+
+
+def test_it_waits_for_what_the_robot_does_and_now_does_not(live: Live) -> None:
+    live.greet()
+    live.until(lambda: "goodbye" in live.states)
+    live.edit(WAVE, WAVE.replace("goodbye", "photo"))
+    live.until_told("waiting for `goodbye`")
+    answer = live.ask("reload", now=True)
+    assert answer["verdict"] == "applied"
+    assert live.verdicts[-2:] == ["waiting", "applied"]
+
+
+def test_patience_ends(live: Live) -> None:
+    live.edit("reload: {patience: 60s}", "reload: {patience: 10ms}", "lumen.yaml")
+    live.until_told("in force")
+    live.greet()
+    live.until(lambda: "goodbye" in live.states)
+    live.edit(WAVE, WAVE.replace("goodbye", "photo"))
+    live.until_told("is still under way after 0.01 s")
+    assert live.ask("apply", now=True)["verdict"] == "applied"
+
+
+def test_what_needs_a_restart_is_named(live: Live) -> None:
+    live.edit("stage: {x: [-0.4, 0.4]", "stage: {x: [-0.3, 0.4]", "lumen.yaml")
+    live.until_told("the stage changed: in force from the next start on")
+    assert live.status.bodies[-1]["restart"]
+    assert live.show.exhibition.project.stage
+    assert live.show.exhibition.project.stage.x == (-0.4, 0.4)
+
+
+def test_a_story_saved_with_the_files_is_played_and_refuses_them(live: Live) -> None:
+    before = live.show.exhibition.project
+    live.edit("steps:\n", "steps:\n  - expect: {state: dance, within: 2s}\n", "behaviors/stories/refuses.yaml")
+    live.until_told("the saved story `refuses` fails with these files")
+    assert "behaviors/stories/refuses.yaml:" in live.transcript
+    assert live.show.exhibition.project is before
+
+
+def test_a_story_that_no_longer_holds_is_told_after_the_files_are_in_force(live: Live) -> None:
+    refusal = "{guard: \"heard(event.data.result, 'no_more')\", target: offer}"
+    live.edit(refusal, refusal.replace("offer", "how_are_you"))
+    live.until_told("in force")
+    live.until_told("the story `refuses` does not hold with these files")
+
+
+def test_the_same_in_another_process(copy: Path) -> None:
+    one = Live(copy, apart=True)
+    one.edit(SORRY, PARDON)
+    one.until_told("in force")
+    one.edit("steps:\n", "steps:\n  - expect: {state: dance, within: 2s}\n", "behaviors/stories/refuses.yaml")
+    one.until_told("behaviors/stories/refuses.yaml:")
+    one.edit("onDone: any_question", "onDone: any_questoin")
+    one.until_told("did you mean `any_question`?")
+    one.show.close()
+
+
+def test_stop_is_heard_by_the_behaviour(live: Live) -> None:
+    live.greet()
+    assert live.ask("stop")["verdict"] == "stopped"
+    live.until(lambda: "interrupted" in live.states)
+    assert any(isinstance(command, Say) for _, command in live.robot.performed)
+
+
+@pytest.mark.xdist_group("rabbitmq")
+def test_the_same_on_a_broker(copy: Path, broker: RabbitMQ) -> None:
+    one = Live(copy, url=broker.url)
+    one.edit(SORRY, PARDON)
+    one.until_told("in force")
+    assert one.ask("status")["revision"] == 1
+    json.dumps(one.ask("rollback"))
+    one.show.close()

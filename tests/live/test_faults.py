@@ -1,0 +1,136 @@
+"""Faults of ours at every step of a reload leave the old bundle running; a bundle that fails is taken back."""
+
+from typing import Any
+
+import pytest
+
+from lumen.cli import judging
+from lumen.cli.show import Show
+from lumen.errors import BusError, LumenError
+from lumen.interpreters.migration import Plan, Wait
+from lumen.language.events import Event
+from lumen.runtime import runtime
+from lumen.runtime.inbox import Inbox
+from lumen.runtime.tracking import Tracking
+from tests.live.shows import Live
+
+SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+
+
+def fail(*_: Any, **__: Any) -> Any:
+    raise ZeroDivisionError("a fault of ours")
+
+
+POINTS = {
+    "load": (judging.Here, "load"),
+    "compare": (judging, "changes"),
+    "compile": (judging, "compiled"),
+    "plan": (runtime, "plan"),
+    "check": (Show, "_use"),
+    "listen": (Inbox, "listen"),
+    "follow": (Tracking, "reload"),
+}
+
+
+@pytest.mark.parametrize("point", list(POINTS))
+def test_a_fault_leaves_the_old_bundle_running(live: Live, monkeypatch: pytest.MonkeyPatch, point: str) -> None:
+    before, snapshot = live.show.exhibition.project, live.show.exhibition.runtime.snapshot
+    with monkeypatch.context() as patched:
+        where, name = POINTS[point]
+        parts = (live.show, live.show.exhibition.inbox, live.show.exhibition.tracking)
+        where = next((part for part in parts if type(part) is where), where)
+        usual, failed = getattr(where, name), []
+
+        def first(*given: Any, **named: Any) -> Any:
+            if not failed:
+                failed.append(point)
+                fail()
+            return usual(*given, **named)
+
+        patched.setattr(where, name, first)
+        live.edit(SORRY, PARDON)
+        live.until_told("refused: Lumen failed on these files")
+    assert live.show.exhibition.project is before
+    assert live.show.exhibition.runtime.snapshot.configuration == snapshot.configuration
+    live.edit("en: Never mind.", "en: No problem.")
+    live.until_told("the saved files are in force")
+    live.greet()
+
+
+def test_a_bus_that_refuses_is_told(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    before, usual = live.show.exhibition.project, live.show.exhibition.inbox.listen
+
+    def listen(project: Any) -> None:
+        if project is not before:
+            raise BusError("the broker says no")
+        usual(project)
+
+    monkeypatch.setattr(live.show.exhibition.inbox, "listen", listen)
+    live.edit(SORRY, PARDON)
+    live.until_told("refused: the bus refuses its routes: the broker says no")
+    assert live.show.exhibition.project is before
+
+
+@pytest.mark.parametrize("error", [ZeroDivisionError("a fault"), LumenError("it never comes to rest")])
+def test_a_bundle_that_fails_in_its_probation_is_taken_back_and_no_event_lost(
+    live: Live, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    live.greet()
+    before, usual = live.show.exhibition.project.hash, runtime.step
+    live.edit(SORRY, PARDON)
+    live.until_told("in force")
+    bad = live.show.exhibition.project.machine
+
+    def step(machine: Any, snapshot: Any, event: Event) -> Any:
+        if machine is bad and event.name == "heard":
+            raise error
+        return usual(machine, snapshot, event)
+
+    monkeypatch.setattr(runtime, "step", step)
+    live.speak("my name is Ada", "how_are_you")
+    assert live.show.exhibition.runtime.snapshot.context["visitor"] == "Ada"
+    assert live.show.exhibition.project.hash == before
+    assert f"the new files failed: {error}: back to the files before" in live.transcript
+    assert live.verdicts[-1] == "rolled back"
+
+
+def test_after_its_probation_a_bundle_is_on_its_own(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    live.greet()
+    live.edit(SORRY, PARDON)
+    live.until_told("in force")
+    live.live(11.0)
+    after = live.show.exhibition.project.hash
+    assert live.records.keeper
+    assert live.records.keeper.good() == after
+    monkeypatch.setattr(runtime, "step", lambda *_: (_ for _ in ()).throw(LumenError("it never comes to rest")))
+    live.show.exhibition.happen(Event("stop", {}))
+    live.live(0.1)
+    assert live.show.exhibition.project.hash == after
+
+
+def test_what_performs_may_fail_too(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = live.show.exhibition.project.hash
+    live.edit(SORRY, PARDON)
+    live.until_told("in force")
+    usual = live.show.exhibition._performer.perform
+
+    def perform(project: Any, *rest: Any) -> None:
+        if project.hash != before:
+            fail()
+        usual(project, *rest)
+
+    monkeypatch.setattr(live.show.exhibition._performer, "perform", perform)
+    live.greet()
+    assert live.show.exhibition.project.hash == before
+
+
+def test_where_there_is_no_way_back_it_begins_anew(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    live.greet()
+    live.speak("my name is Ada", "how_are_you")
+    live.edit(SORRY, PARDON)
+    live.until_told("in force")
+    monkeypatch.setattr(live.show, "plan", lambda *_, **__: Wait("no way", "how_are_you"))
+    commands = live.show.exhibition.rescue(ZeroDivisionError("a fault"))
+    assert commands
+    assert "idle" in live.states
+    assert isinstance(live.show.exhibition.plan(live.show.exhibition.project), Plan)

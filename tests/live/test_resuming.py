@@ -1,0 +1,204 @@
+"""An exhibition that ended without notice is gone on with: from where it stood, on newer files too."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.cli.main import main
+from lumen.cli.premises import LATELY, Premises
+from lumen.interpreters.statechart import freeze
+from lumen.language.commands import Track
+from lumen.loading.files import read_files
+from lumen.runtime.home import DOOR, Home, home_of
+from lumen.runtime.journal import BYTES, Journal
+from lumen.runtime.keeping import SNAPSHOT, Keeper
+from lumen.runtime.resuming import REASON, Resumption, resume
+from tests.live.shows import Live
+from tests.waiting import until
+
+SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+
+
+def crashed(live: Live) -> None:
+    """It greets Ada, is asked to dance, and is no more."""
+    assert live.records.keeper
+    live.records.store(read_files(live.folder))
+    live.greet()
+    live.speak("my name is Ada", "how_are_you")
+    live.speak("fine", "offer")
+    live.speak("dance", "dance")
+    live.live(4.0)
+    live.records.keep(live.show.exhibition)
+    live.show.close()
+
+
+def resumed(folder: Path) -> Resumption | str:
+    premises = Premises(folder)
+    found = premises.resumption(lumen.load(folder))
+    premises.close(forget=False)
+    return found
+
+
+def test_it_goes_on_where_it_was_and_what_was_under_way_has_failed(copy: Path) -> None:
+    one = Live(copy)
+    crashed(one)
+    found = resumed(copy)
+    assert isinstance(found, Resumption)
+    assert "dance" in found.snapshot.configuration
+    assert found.snapshot.context["visitor"] == "Ada"
+    assert found.tracking == ("head",)
+    assert {event.data["reason"] for event in found.answers(0.0)} == {REASON}
+    again = Live(copy)
+    again.show.exhibition.resume(found)
+    again.until_told("(failed: the engine was restarted while it ran)")
+    assert "offer" in again.states
+    assert again.show.exhibition.tracking.on == ("head",)
+    again.show.close()
+
+
+def test_newer_files_are_a_reload(copy: Path) -> None:
+    one = Live(copy)
+    crashed(one)
+    one.edit(SORRY, PARDON)
+    found = resumed(copy)
+    assert isinstance(found, Resumption)
+    assert found.snapshot.context["visitor"] == "Ada"
+
+
+def test_timers_go_on_while_nobody_is_there(copy: Path) -> None:
+    one = Live(copy)
+    one.greet()
+    project, snapshot = one.show.exhibition.project, one.show.exhibition.runtime.snapshot
+    one.show.close()
+    [timer] = [t for t in snapshot.timers if t.delay == 30.0]
+    found = resume(project, project, snapshot, 20.0, ())
+    assert isinstance(found, Resumption)
+    [later] = [t for t in found.snapshot.timers if t.delay == 30.0]
+    assert later.due == pytest.approx(timer.due - snapshot.at - 20.0)
+
+
+def test_what_is_too_old_or_damaged_is_begun_anew(copy: Path) -> None:
+    one = Live(copy)
+    crashed(one)
+    home = Home(home_of(copy))
+    data = json.loads(home.read(SNAPSHOT) or b"")
+    home.write(SNAPSHOT, json.dumps({**data, "time": time.time() - LATELY - 60.0}).encode())
+    assert "begins anew" in str(resumed(copy))
+    home.write(SNAPSHOT, json.dumps({**data, "bundle": "0" * 64}).encode())
+    assert "its files were not kept" in str(resumed(copy))
+    home.write(SNAPSHOT, json.dumps({**data, "snapshot": {"version": 1}}).encode())
+    assert "can't be gone on with" in str(resumed(copy))
+    for damaged in (b"", b"{", b"[]", b'{"version": 1}', b"\xff"):
+        home.write(SNAPSHOT, damaged)
+        assert resumed(copy) == ""
+
+
+def test_a_bundle_that_was_changed_is_not_taken(copy: Path) -> None:
+    home = Home(home_of(copy))
+    assert home.hold()
+    keeper = Keeper(home)
+    hash = keeper.store(read_files(copy))
+    assert keeper.files(hash) == read_files(copy)
+    [packed] = home.folder.glob("bundle-*.zip")
+    packed.write_bytes(packed.read_bytes()[:-200])
+    assert keeper.files(hash) is None
+    keeper.prune()
+    assert not list(home.folder.glob("bundle-*.zip"))
+    home.release()
+
+
+def test_only_what_is_new_is_written(copy: Path) -> None:
+    one = Live(copy)
+    keeper, show = one.records.keeper, one.show.exhibition
+    assert keeper
+    one.records.keep(show)
+    one.records.keep(show)
+    assert keeper.count == 1
+    kept = keeper.kept()
+    assert kept
+    assert kept.frozen == freeze(show.project.machine, show.runtime.snapshot)
+    show.tracking.switch(Track("head"))
+    one.show.close()
+
+
+def test_a_disk_that_refuses_ends_nothing(copy: Path, caplog: pytest.LogCaptureFixture) -> None:
+    one = Live(copy)
+    (one.home.folder / f"{SNAPSHOT}.new").mkdir()
+    one.greet()
+    one.records.keep(one.show.exhibition)
+    assert "can't be kept" in caplog.text
+    one.show.close()
+
+
+def test_the_journal_is_bounded_and_whole(tmp_path: Path) -> None:
+    journal = Journal(tmp_path)
+    for number in range(3_000):
+        journal.write({"number": number, "text": "x" * 1_000})
+    sizes = [file.stat().st_size for file in tmp_path.iterdir()]
+    assert len(sizes) == 2
+    assert sum(sizes) < 2.2 * BYTES
+    numbers = [entry["number"] for entry in journal.entries()]
+    assert numbers == list(range(numbers[0], 3_000))
+    with (tmp_path / "journal.jsonl").open("a") as file:
+        file.write('{"number": 3000, "te')
+    assert [entry["number"] for entry in journal.entries()] == numbers
+
+
+@contextmanager
+def running(folder: Path, *words: str) -> Iterator["subprocess.Popen[str]"]:
+    """`lumen run` with an open standard input, once it can be reached."""
+    run = [sys.executable, "-m", "lumen", "run", str(folder), "--robot", "recording", "--speed", "4", *words]
+    with subprocess.Popen(run, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            until(lambda: (home_of(folder) / DOOR).exists() and Home(home_of(folder)).held())
+            yield process
+        finally:
+            process.kill()
+
+
+@pytest.fixture
+def silent(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody types."""
+    monkeypatch.setattr(sys, "stdin", None)
+
+
+@pytest.mark.usefixtures("silent")
+def test_a_run_that_is_killed_is_gone_on_with(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with running(copy) as process:
+        until(lambda: (home_of(copy) / SNAPSHOT).exists())
+        assert main(["say", "Hello", str(copy)]) == 0
+        assert main(["reload", str(copy), "--status"]) == 0
+        assert main(["reload", str(copy)]) == 0
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+    assert "said" in capsys.readouterr().out
+    assert main(["reload", str(copy)]) == 2
+    assert "no exhibition of" in capsys.readouterr().err
+    run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "1s"]
+    assert main(run) == 0
+    assert "The last run ended without notice" in capsys.readouterr().out
+    assert main(run) == 0
+    assert "ended without notice" not in capsys.readouterr().out
+    tour = copy / "behaviors" / "tour.yaml"
+    tour.write_text(tour.read_text("utf-8") + "broken: [", "utf-8")
+    assert main(run) == 1
+    assert "lumen run --last-good" in capsys.readouterr().err
+    assert main([*run, "--last-good"]) == 0
+    assert "THE FILES HAVE ERRORS" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("silent")
+def test_a_second_run_of_a_project_leaves_the_first_alone(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with running(copy):
+        assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "1s", "--fresh"]) == 0
+        assert "Another run of this project is going on" in capsys.readouterr().out
+        assert main(["stop", str(copy)]) == 0

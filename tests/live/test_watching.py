@@ -1,0 +1,207 @@
+"""Files saved in all the ways in which they are: one verdict for each content that stays, none for what passes."""
+
+import os
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from lumen.loading.files import Unreadable, fingerprint, read_files
+from lumen.runtime.watcher import Saved, Watcher
+
+QUIET = 0.1
+TOUR, DANCE = "behaviors/tour.yaml", "motions/dance.yaml"
+
+
+def fill(folder: Path, text: str = "first") -> Path:
+    for path in ("lumen.yaml", TOUR, "behaviors/stories/visitor.yaml", DANCE):
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(f"{text} {path}", "utf-8")
+    return folder
+
+
+class Watched:
+    """A watched project, and what came of its files."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self.watcher: Watcher[Saved] = Watcher(root, read_files(root), lambda saved: saved, quiet=QUIET)
+        self.watcher.start()
+
+    def next(self) -> Saved:
+        return self.watcher.results.get(timeout=20.0)
+
+    def last(self, text: str = "the last word") -> list[Saved]:
+        """All verdicts up to that of a file written now."""
+        (self.root / "lumen.yaml").write_text(text, "utf-8")
+        found = [self.next()]
+        while found[-1].files["lumen.yaml"] != text.encode():
+            found.append(self.next())
+        return found
+
+    def pause(self, seconds: float) -> None:
+        threading.Event().wait(seconds)
+
+
+@pytest.fixture
+def watched(tmp_path: Path) -> Iterator[Watched]:
+    one = Watched(fill(tmp_path / "show"))
+    yield one
+    one.watcher.close()
+
+
+def in_place(watched: Watched) -> None:
+    (watched.root / TOUR).write_text("new", "utf-8")
+
+
+def truncated_first(watched: Watched) -> None:
+    with (watched.root / TOUR).open("w") as file:
+        for part in ("n", "e", "w"):
+            file.flush()
+            watched.pause(QUIET / 3)
+            file.write(part)
+
+
+def as_vim_does(watched: Watched) -> None:
+    file = watched.root / TOUR
+    (file.parent / "4913").touch()
+    (file.parent / "4913").unlink()
+    os.replace(file, file.with_name("tour.yaml~"))
+    watched.pause(QUIET / 2)
+    file.write_text("new", "utf-8")
+    file.with_name("tour.yaml~").unlink()
+
+
+def as_emacs_does(watched: Watched) -> None:
+    file = watched.root / TOUR
+    lock = file.with_name(".#tour.yaml")
+    lock.symlink_to("somebody@somewhere.1234")
+    file.with_name("#tour.yaml#").write_text("half", "utf-8")
+    watched.pause(2 * QUIET)
+    in_place(watched)
+    file.with_name("#tour.yaml#").unlink()
+    lock.unlink()
+
+
+def by_another_name(watched: Watched) -> None:
+    draft = watched.root / "behaviors" / "tour.yaml.tmp"
+    draft.write_text("new", "utf-8")
+    os.replace(draft, watched.root / TOUR)
+
+
+def in_a_renamed_folder(watched: Watched) -> None:
+    """Moved away, changed there, and moved back within the longer quiet period of what has vanished."""
+    folder = watched.root / "behaviors"
+    folder.rename(watched.root / "elsewhere")
+    watched.pause(1.2 * QUIET)
+    (watched.root / "elsewhere" / "tour.yaml").write_text("new", "utf-8")
+    (watched.root / "elsewhere").rename(folder)
+
+
+@pytest.mark.parametrize(
+    "save", [in_place, truncated_first, as_vim_does, as_emacs_does, by_another_name, in_a_renamed_folder]
+)
+def test_one_verdict_for_one_save(watched: Watched, save: Callable[[Watched], None]) -> None:
+    save(watched)
+    saved = watched.next()
+    assert saved.changed == (TOUR,)
+    assert saved.files[TOUR] == b"new"
+    assert len(watched.last()) == 1
+
+
+def test_files_saved_one_after_the_other_are_judged_together(watched: Watched) -> None:
+    paths = ("lumen.yaml", TOUR, "behaviors/stories/visitor.yaml", DANCE)
+    for path in paths:
+        (watched.root / path).write_text("new", "utf-8")
+        watched.pause(0.4 * QUIET)
+    assert watched.next().changed == tuple(sorted(paths))
+
+
+def test_what_is_saved_as_it_was_is_not_judged(watched: Watched) -> None:
+    before = (watched.root / TOUR).read_text("utf-8")
+    (watched.root / TOUR).write_text(before, "utf-8")
+    watched.pause(3 * QUIET)
+    assert len(watched.last()) == 1
+
+
+def test_a_file_that_is_gone_for_good_is_noticed(watched: Watched) -> None:
+    (watched.root / DANCE).unlink()
+    saved = watched.next()
+    assert saved.changed == (DANCE,)
+    assert DANCE not in saved.files
+    assert saved.quiet - saved.seen >= 2 * QUIET
+
+
+def test_a_folder_that_comes_later_is_watched(watched: Watched) -> None:
+    (watched.root / "fuzzy").mkdir()
+    (watched.root / "fuzzy" / "head.yaml").write_text("new", "utf-8")
+    assert watched.next().changed == ("fuzzy/head.yaml",)
+    (watched.root / "fuzzy" / "head.yaml").write_text("newer", "utf-8")
+    assert watched.next().files["fuzzy/head.yaml"] == b"newer"
+
+
+def test_what_can_not_be_read_is_told_and_mended(watched: Watched) -> None:
+    (watched.root / TOUR).unlink()
+    (watched.root / TOUR).mkdir()
+    assert isinstance(watched.next().files[TOUR], Unreadable)
+    (watched.root / TOUR).rmdir()
+    in_place(watched)
+    assert watched.next().files[TOUR] == b"new"
+
+
+def test_a_project_that_is_a_link_is_switched(tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        fill(tmp_path / name, name)
+    (tmp_path / "show").symlink_to(tmp_path / "one")
+    watched = Watched(tmp_path / "show")
+    (tmp_path / "next").symlink_to(tmp_path / "two")
+    os.replace(tmp_path / "next", tmp_path / "show")
+    saved = watched.next()
+    assert fingerprint(saved.files) == fingerprint(read_files(tmp_path / "two"))
+    (tmp_path / "two" / TOUR).write_text("new", "utf-8")
+    assert watched.next().files[TOUR] == b"new"
+    watched.watcher.close()
+
+
+def test_files_that_are_links_are_switched_together(tmp_path: Path) -> None:
+    """As Kubernetes mounts a ConfigMap: `..data` is a link that is replaced."""
+    root = fill(tmp_path / "show")
+    for name in ("one", "two"):
+        (root / "motions" / f"..{name}").mkdir()
+        (root / "motions" / f"..{name}" / "dance.yaml").write_text(name, "utf-8")
+    (root / "motions" / "..data").symlink_to("..one")
+    (root / DANCE).unlink()
+    (root / DANCE).symlink_to("..data/dance.yaml")
+    watched = Watched(root)
+    (root / "motions" / "..next").symlink_to("..two")
+    os.replace(root / "motions" / "..next", root / "motions" / "..data")
+    assert watched.next().files[DANCE] == b"two"
+    watched.watcher.close()
+
+
+def test_who_asks_gets_an_answer_whether_something_changed_or_not(watched: Watched) -> None:
+    watched.watcher.ask("please")
+    saved = watched.next()
+    assert (saved.asked, saved.changed) == ("please", ())
+
+
+def test_a_judge_that_fails_ends_nothing(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    root = fill(tmp_path / "show")
+
+    failed = threading.Event()
+
+    def judge(saved: Saved) -> bytes:
+        if saved.files[TOUR] == b"bad":
+            failed.set()
+            raise ValueError("a fault of ours")
+        return saved.files[TOUR]
+
+    watcher: Watcher[bytes] = Watcher(root, read_files(root), judge, quiet=QUIET)
+    watcher.start()
+    (root / TOUR).write_text("bad", "utf-8")
+    assert failed.wait(20.0)
+    (root / TOUR).write_text("good", "utf-8")
+    assert watcher.results.get(timeout=20.0) == b"good"
+    assert "a fault of ours" in caplog.text
+    watcher.close()
