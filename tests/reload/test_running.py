@@ -16,13 +16,13 @@ from lumen.language.motions import Motion
 from lumen.language.projects import Project
 from lumen.language.routes import Direction, Route
 from lumen.language.stories import Visitor
-from lumen.loading.packaged import find_project
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
 from lumen.rules import load
 from lumen.runtime.exhibition import TICK, Exhibition, Observer
 from lumen.statechart import Machine
 from tests import exhibits
+from tests.tour.names import ROOT
 
 
 class Seen(Observer):
@@ -60,8 +60,8 @@ def swap(exhibition: Exhibition, project: Project, **how: bool) -> Plan:
 
 
 def test_the_head_goes_on_smoothly_under_another_controller() -> None:
-    project = load(find_project())
-    robot = SimulatedRobot(project.body, find_project() / "models", project.hall)
+    project = load(ROOT)
+    robot = SimulatedRobot(project.body, ROOT / "models", project.hall)
     show = Show(project, Cast(robot, SimulatedClock(robot.advance), robot), sensing=True)
     show.start()
     assert show.walker
@@ -172,18 +172,11 @@ def test_a_language_that_is_gone_is_no_longer_spoken() -> None:
     assert exhibition.runtime.snapshot.language == "nl"
 
 
-@pytest.mark.parametrize(
-    "point",
-    [
-        "place",
-        "carrying.context",
-        "carrying.timers",
-        "carrying.history",
-        "Session.microstep",
-        "Continued.settle",
-        "goes_on",
-    ],
-)
+POINTS = ("situation.place", "situation.goes_on", "carrying.context", "carrying.timers", "carrying.history",
+          "moving.Session.microstep", "moving.Continued.settle")  # fmt: skip
+
+
+@pytest.mark.parametrize("point", POINTS)
 def test_a_fault_anywhere_in_a_plan_changes_nothing(point: str, monkeypatch: pytest.MonkeyPatch) -> None:
     project = exhibits.project(behaviors={"tour": DANCING})
     exhibition, seen = running(project)
@@ -193,7 +186,7 @@ def test_a_fault_anywhere_in_a_plan_changes_nothing(point: str, monkeypatch: pyt
     )
     changed = replace(project, behaviors={"tour": more})
     with monkeypatch.context() as patched:
-        patched.setattr(f"lumen.interpreters.migration.moving.{point}", fault)
+        patched.setattr(f"lumen.interpreters.migration.{point}", fault)
         with pytest.raises(ZeroDivisionError):
             exhibition.plan(changed)
     assert exhibition.project is project

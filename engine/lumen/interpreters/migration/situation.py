@@ -1,0 +1,104 @@
+"""Where a behaviour stands when its files change, and what of that speaks against going on."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from lumen.interpreters.migration import carrying
+from lumen.interpreters.migration.doing import goes_on
+from lumen.interpreters.migration.identity import Identity
+from lumen.interpreters.migration.placing import Homeless, Placement, place
+from lumen.interpreters.migration.verdicts import Refusal, Wait
+from lumen.interpreters.statechart.chart import Node
+from lumen.interpreters.statechart.program import Program, compiled
+from lumen.interpreters.statechart.values import Snapshot
+from lumen.language.machines import Machine
+
+
+class How(NamedTuple):
+    """The time of the change [s], whether to cancel rather than wait, whether back to a bundle that ran before.
+
+    `languages` are those that may be spoken, the first where the present one is gone; any where there are none.
+    """
+
+    at: float
+    now: bool = False
+    back: bool = False
+    languages: Sequence[str] = ()
+
+
+class Situation:
+    """A snapshot between two machines; `placement` is what stays of it, or for whom there is no place."""
+
+    def __init__(self, old: Machine, new: Machine, snapshot: Snapshot, how: How) -> None:
+        self.old, self.new, self.how = compiled(old), compiled(new), how
+        self.before = snapshot._replace(at=max(snapshot.at, how.at))
+        self.start = self.old.planner.configuration(snapshot.configuration)
+        self.identity = Identity(old, new, back=how.back)
+        history = carrying.history(snapshot.history, self.new.chart, self.identity)
+        self.placement = place(self.new.chart, self.start.nodes, self.identity, history)
+
+    def refusal(self, homeless: Homeless, behavior: str) -> Refusal:
+        state, gone, rivals = homeless
+        title = f"`{state.name or behavior}`"
+        if len(rivals) > 1:
+            *more, last = (f"`{node.name}`" for node in rivals)
+            names = f"{', '.join(more)} and {last}"
+            reason = f"{names} are active, and can't be together in {title} any more"
+            hint = f"give {title} an `onReload` that says where to go"
+        else:
+            reason = f"`{gone.name}` is active and gone, and no `onReload` says where to go instead"
+            hint = f"give {title} an `onReload`, or say under `renamed` what `{gone.path}` is called now"
+        return Refusal(reason, hint, gone.name, behavior, state.state.where if state.state else ())
+
+    def busy(self) -> Wait | None:
+        """The first state that is gone and still does something: it may lead elsewhere by itself."""
+        gone = [node for node in self.start.ordered if node.path and self.identity.state(node.path) is None]
+        return next((_gone(node) for node in gone if node.path in self.before.doing), None)
+
+    def waits(self, placement: Placement) -> Iterator[Wait]:
+        """What is under way and could not go on, in the order of the old file."""
+        doing = self.before.doing
+        changed = self.changed(placement)
+        for node in self.start.ordered:
+            if node.path in doing and node in placement.left:
+                yield _gone(node)
+            elif node in changed:
+                yield Wait(f"what `{node.name}` is doing has changed", node.name)
+        for id in self.ending(placement):
+            child = self.before.invoked[id]
+            if _is_busy(child.snapshot):
+                yield Wait(f"`{id}` is not invoked any more, and is still doing something", id)
+
+    def changed(self, placement: Placement) -> list[Node]:
+        """The states that stay, and whose `do` is under way and can't go on."""
+        doing = [(node, image) for node, image in placement.kept.items() if node.path in self.before.doing]
+        return [
+            node
+            for node, image in doing
+            if node.state and image.state
+            if not goes_on(node.state.do, image.state.do, self.before.doing[node.path])
+        ]
+
+    def ending(self, placement: Placement) -> list[str]:
+        """The ids of invoked behaviours that end: their state is left, or invokes another one now."""
+        kept = {node.path: image for node, image in placement.kept.items()}
+        return [
+            id
+            for id, child in self.before.invoked.items()
+            if child.state not in kept
+            or behind(self.old, child.state, id) != behind(self.new, kept[child.state].path, id)
+        ]
+
+
+def _gone(node: Node) -> Wait:
+    return Wait(f"`{node.name}` is gone, and is still doing something", node.name)
+
+
+def behind(program: Program, path: str, id: str) -> str:
+    """The behaviour that a state invokes under that id; empty for none."""
+    return next((i.behavior for i, _ in program.chart.nodes[path].invokes if i.id == id), "")
+
+
+def _is_busy(snapshot: Snapshot) -> bool:
+    """Whether any `do` is under way in a behaviour or in what it has invoked."""
+    return bool(snapshot.doing) or any(_is_busy(child.snapshot) for child in snapshot.invoked.values())
