@@ -119,7 +119,8 @@ def _joined(findings: list[Diagnostic]) -> Diagnostic:
 def nearest(word: object, candidates: Iterable[str]) -> str:
     """The candidate that was probably meant, empty where none is near."""
     lowered = {name.lower(): name for name in sorted(set(candidates))}
-    return next((lowered[m] for m in get_close_matches(str(word).lower(), lowered, n=1, cutoff=0.6)), "")
+    near = get_close_matches(str(word).lower(), lowered, n=1, cutoff=0.6)
+    return lowered[near[0]] if near else next((n for n in lowered.values() if sorted(n) == sorted(str(word))), "")
 
 
 def did_you_mean(word: object, candidates: Iterable[str], what: str = "") -> str:

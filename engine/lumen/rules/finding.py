@@ -71,5 +71,6 @@ class References:
         elif folder not in self._missing:
             self._missing.add(folder)
             hint = f"make the folder {folder}/ and put the file into it"
-            find(report, "missing-folder", path, f"there is no {what} `{name}`: {folder}/ is missing or empty", hint)
+            message = f"there is no {what} `{name}`: {folder}/ is missing or empty"
+            find(report, "missing-folder", path, message, hint, key=key)
         return False

@@ -53,6 +53,9 @@ def _read(draft: Draft, name: str) -> list[Element]:
     parser.StartElementHandler = begin
     try:
         parser.Parse(content, True)
+    except ValueError as error:  # an encoding of several bytes
+        _say(draft, file, 1, 1, 1, f"this is not XML: {error}", "save it as UTF-8")
+        return []
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
         hint = "look for a tag or a quote that is not closed, here or above"

@@ -2,10 +2,11 @@
 
 import re
 from collections.abc import Mapping
+from urllib.parse import urlsplit
 
 from lumen.language.commands import Track
 from lumen.language.diagnostics import did_you_mean, has_errors
-from lumen.language.routes import COMMAND, HEARD, JOINT, MEANINGS, Direction, Route
+from lumen.language.routes import COMMAND, HEARD, JOINT, MEANINGS, STALE, Carried, Direction, Route
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.events import descriptors, hears
@@ -24,6 +25,7 @@ def check(draft: Draft) -> None:
     settings, report = draft.settings, draft.main
     if settings is None or report is None:
         return
+    _password(settings.bus, report)
     _missing(draft, settings.routes, report)
     references = References(draft)
     events: dict[tuple[str, str], str] = {}
@@ -31,6 +33,7 @@ def check(draft: Draft) -> None:
         if not _key(report, route):
             continue
         _ways(draft, report, route)
+        _carried(report, route)
         if route.schema:
             references.look_up(report, (*route.where, "schema"), "message", route.schema)
         if route.event:
@@ -40,6 +43,31 @@ def check(draft: Draft) -> None:
                 message = f"`{other}` has the same key and becomes the same event"
                 related = [((*settings.routes[other].where, "key"), "the other one stands here")]
                 find(report, "duplicate-route", (*route.where, "key"), message, "delete one of them", related=related)
+
+
+def _password(bus: str, report: Report) -> None:
+    """A project is copied, mailed and published; what opens the broker's door is not."""
+    try:
+        secret = urlsplit(bus).username is not None
+    except ValueError:  # no address at all: who connects says so
+        secret = "@" in bus
+    if secret:
+        message = "a name and a password stand in a file that everybody reads"
+        hint = "write them into the environment variable LUMEN_BUS, or into a file that LUMEN_BUS_CREDENTIALS names"
+        find(report, "password-in-file", ("bus",), message, hint)
+
+
+def _carried(report: Report, route: Route) -> None:
+    """What the options of a route promise must go together."""
+    where = route.where
+    if route.carried in (Carried.COMMAND, Carried.STOP) and (route.ttl or 0.0) > STALE:
+        message = f"a {route.carried} may be done {route.ttl:g} s late, when nobody counts on it any more"
+        find(report, "long-ttl", (*where, "ttl"), message, f"2s to {STALE:g}s outlast a broker's hiccup")
+    if route.carried is Carried.JOURNAL:
+        for key, value in (("ttl", route.ttl), ("keep", route.keep)):
+            if value is not None:
+                message = f"nothing of a journal is lost, and `{key}` throws messages away"
+                find(report, "lossy-journal", (*where, key), message, f"delete `{key}`, or `carried: journal`", key=True)
 
 
 def _missing(draft: Draft, routes: Mapping[str, Route], report: Report) -> None:
@@ -83,7 +111,7 @@ def _ways(draft: Draft, report: Report, route: Route) -> None:
     """A route goes one way; a command that comes late is worse than one that does not come."""
     if route.direction is Direction.OUT and route.event:
         message = f"nobody tells Lumen of `{route.event}`: messages on this route go out"
-        find(report, "wrong-direction", (*route.where, "event"), message, "write `direction: in`", key=True)
+        find(report, "wrong-direction", (*route.where, "event"), message, "write `direction: in`")
     if route.direction is Direction.IN and route.name == COMMAND and route.ttl is None and "ttl" not in report.lost:
         message = "a command that waited for long is done all the same"
         find(report, "no-ttl", route.where, message, "say how long it is good for, such as `ttl: 2s`", key=True)

@@ -109,6 +109,8 @@ class _Speech:
         self.each(report, path, texts)
         said = {*texts, *_written(report, path)}
         astray = {language for language in self.languages if (*path[:-1], language) in report.pruned}
+        if any(language not in self.languages for language in said - {"", "any"}):
+            return  # that one stands for it
         missing = [language for language in self.languages if language not in said | astray]
         if missing and said.isdisjoint(("", "any")):
             message = f"this is not said in {_listed(missing)}"

@@ -11,8 +11,11 @@ from lumen.rules.finding import find
 from lumen.rules.logic import never, tree
 from lumen.rules.walk import nested
 
-LONGEST = 4
+LONGEST = 3
 """Transitions of a round of guarded `always` that is looked for."""
+
+MOST = 4
+"""Guarded `always` of a state that are followed."""
 
 Onward = Mapping[str, Sequence[tuple[Transition, str]]]
 
@@ -120,7 +123,7 @@ def _rounds(
     machine: Machine, onward: Onward, begin: str, path: str, way: tuple[Transition, ...]
 ) -> Iterator[tuple[Transition, ...]]:
     """The ways of at most LONGEST transitions back to `begin` whose guards can all be true at once."""
-    for transition, target in onward.get(path, ()):
+    for transition, target in onward.get(path, ())[:MOST]:
         longer = (*way, transition)
         if _assigns(machine.states[target].entry) or _assigns(machine.states[path].exit):
             continue

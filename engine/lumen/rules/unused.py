@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from lumen.language.commands import Play, Track
-from lumen.language.diagnostics import Path, has_errors, nearest
+from lumen.language.diagnostics import Path, Severity, has_errors, nearest
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect
 from lumen.loading.draft import Draft
@@ -93,7 +93,8 @@ def _files(draft: Draft) -> None:
     for folder, (what, names, wanted, hint) in used.items():
         for name in names if wanted.intersection(names) else ():  # where none is used, they are about to be
             if name not in wanted and (folder != "fuzzy" or draft.controllers[name].output_bindings):
-                find(draft.report(folder, name), "unused-file", (), f"nothing uses the {what} `{name}`", hint)
+                message = f"nothing uses the {what} `{name}`"
+                draft.say("unused-file", f"{folder}/{name}.yaml", message, hint, Severity.INFO)
 
 
 def _played(data: Any) -> set[str]:
@@ -112,9 +113,8 @@ def _played(data: Any) -> set[str]:
 
 def _alike_files(draft: Draft) -> None:
     for file, other in _alike(draft.files):
-        if (report := draft.reports.get(file)) is not None:
-            message = f"{file} and {other} differ by case only, and some computers take them for one file"
-            find(report, "same-but-case", (), message, "rename one of them")
+        message = f"{file} and {other} differ by case only, and some computers take them for one file"
+        draft.say("same-but-case", file, message, "rename one of them", Severity.WARNING)
     if draft.settings and draft.main:
         _say_alike(draft.main, ("routes",), draft.settings.routes)
 

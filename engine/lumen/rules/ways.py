@@ -115,6 +115,7 @@ class _Ways:
     def __init__(self, machine: Machine, report: Report, events: set[str]) -> None:
         self.machine, self.report, self.events = machine, report, events
         self.graph = _Graph(machine)
+        self.exits: dict[str, list[Transition]] = {}
         self.entered: dict[str, list[Transition]] = {}
         for state in machine.states.values():
             for transition in state.transitions:
@@ -123,27 +124,24 @@ class _Ways:
 
     def check(self) -> None:
         root = self.machine.root
-        found = reachable(self.machine)
+        found, ranks = reachable(self.machine), {path: i for i, path in enumerate(self.machine.states)}
         tracks = [root] if root.kind is Kind.COMPOUND else [self.machine.states[p] for p in root.children]
         for track in tracks:
-            leaves = [
-                path
-                for path, state in self.machine.states.items()
-                if path in found and state.kind is Kind.ATOMIC and within(path, track.path) and path != track.path
-            ]
-            self.track(track, leaves)
+            below = set(self.below(track)) & found
+            order = sorted(below, key=ranks.__getitem__)
+            self.track(track, [path for path in order if self.machine.states[path].kind is Kind.ATOMIC])
 
     def track(self, track: State, leaves: list[str]) -> None:
         home = track
         while home.kind is Kind.COMPOUND and home.initial:
             home = self.machine.states[home.initial[0]]
         others = [path for path in leaves if path != home.path]
-        dead = {path for path in others if not any(self.ways_out(path))}
-        for path in sorted(dead, key=others.index):
+        dead = dict.fromkeys(path for path in others if not any(self.ways_out(path)))
+        for path in dead:
             self.dead_end(path)
         back = spread([("in", home.path)], self.graph.before)
         if any(("in", path) in back for path in others) or home.path.rpartition(".")[2] == "idle":
-            self.lost(track, home, [p for p in others if ("in", p) not in back], dead, back)
+            self.lost(track, home, [p for p in others if ("in", p) not in back], dead)
         for path in others:
             if path not in dead:
                 self.waiting(self.machine.states[path])
@@ -154,16 +152,26 @@ class _Ways:
         while state is not None:
             yield from (t for t in state.transitions if any(target != path for target in t.targets))
             if state.kind is Kind.PARALLEL:
-                for child in state.children:
-                    yield from self.leaving(child, state.path)
+                yield from self.leaving(state)
             state = self.machine.states[state.parent] if state.parent is not None else None
 
-    def leaving(self, path: str, home: str) -> Iterator[Transition]:
-        """The transitions at or below a state that lead out of `home`."""
-        state = self.machine.states[path]
-        yield from (t for t in state.transitions if any(not within(target, home) for target in t.targets))
-        for child in state.children:
-            yield from self.leaving(child, home)
+    def leaving(self, parallel: State) -> list[Transition]:
+        """The transitions below a parallel state that lead out of it: one region leaves it for all."""
+        if parallel.path not in self.exits:
+            self.exits[parallel.path] = [
+                transition
+                for path in self.below(parallel)
+                for transition in self.machine.states[path].transitions
+                if any(not within(target, parallel.path) for target in transition.targets)
+            ]
+        return self.exits[parallel.path]
+
+    def below(self, state: State) -> Iterator[str]:
+        """The paths of all states in a state."""
+        waiting = list(state.children)
+        while waiting:
+            yield (path := waiting.pop())
+            waiting.extend(self.machine.states[path].children)
 
     def from_where(self, path: str) -> list[tuple[Path, str]]:
         """How one gets there, where there is a single way."""
@@ -176,7 +184,7 @@ class _Ways:
         message = f"nothing leads on from `{state.name}`: whoever comes here stays for ever"
         find(self.report, "dead-end", state.where, message, hint, key=True, related=self.from_where(path))
 
-    def lost(self, track: State, home: State, lost: list[str], dead: set[str], back: set[Node]) -> None:
+    def lost(self, track: State, home: State, lost: list[str], dead: Iterable[str]) -> None:
         """States from which no way leads home; of those that lead to one another only the first is told."""
         ends = [("in", path) for path in dead]
         ends += [("in", p) for p in track.children if self.machine.states[p].kind is Kind.FINAL]
