@@ -28,7 +28,7 @@ from lumen.language.controllers import DEFUZZIFIERS, HEDGES, INTEGRAL, S_NORMS, 
 
 EXAMPLES = sorted((Path(fl.__file__).parent / "examples").rglob("*.fll"))
 EDGES = {"binary": 1, "arc": 1}
-"""Of how many parameters the membership at that very point is compared: a falling arc of theirs has a hole at its end."""
+"""At how many of its parameters a membership is compared: a falling arc of theirs has a hole at its end."""
 factories = fl.settings.factory_manager
 
 

@@ -66,7 +66,7 @@ def termless(data: Mapping[str, Any], report: Report) -> None:
     """Report outputs without a term."""
     for name, spec in data["outputs"].items():
         path: Path = ("outputs", name)
-        if not spec.get("terms") and not report.broken(path):
+        if not (spec.get("terms") or report.broken(path) or report.broken(("terms",))):
             message = f"the output `{name}` has no terms"
             hint = "write `terms:` in it, or a table `terms:` for all variables"
             report("missing-key", path, message, hint=hint, key=True)

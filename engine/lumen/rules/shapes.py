@@ -79,7 +79,7 @@ def _gaps(variable: Variable, rows: list[Row], xs: list[float], report: Report) 
     whole = [max(degrees) for degrees in zip(*(degrees for _, degrees in rows), strict=True)]
     for first, last in _runs([degree < EPSILON for degree in whole]):
         low, high = xs[max(first - 1, 0)], xs[min(last + 1, len(xs) - 1)]
-        if first == last and _narrow(rows):
+        if first == last and (first in (0, len(xs) - 1) or _narrow(rows)):
             continue
         message = f"between {low:g} and {high:g} no term of `{variable.name}` is true: no rule fires"
         hint = "widen the terms beside the gap, or narrow the range"
