@@ -1,10 +1,11 @@
 """Makes every picture of the documentation from the shipped project, at honest physics.
 
-    python docs/pictures/make.py [tour] [head] [motions] [walk]
+    python docs/pictures/make.py [tour] [head] [motions] [walk] [postures]
 
 `tour` is the README's picture, mid-dance in the shipped story. `head` is the paper's Fig. 13 and 14: the top camera's
 image when the visitor's face is first seen, and once the head has turned to it; a cross marks the image's centre, a
-ring the face. `motions` is a strip of each motion. `walk` is a strip of `walk: {x: 0.2}`.
+ring the face. `motions` is a strip of each motion. `walk` is a strip of `walk: {x: 0.2}`,
+`postures` one of each way down to the floor and up again.
 """
 
 import argparse
@@ -133,7 +134,32 @@ def walk(project: Project) -> None:
     robot.close()
 
 
-PICTURES = {"tour": tour, "head": head, "motions": motions, "walk": walk}
+def postures(project: Project) -> None:
+    """A row for each passage between two postures: the robot before it, on its way, and after it."""
+    width, height, count = 200, 170, 7
+    rows = [passage for passage in project.body.passages]
+    sheet = Image.new("RGB", (width * count, height * len(rows)))
+    for row, passage in enumerate(rows):
+        robot = robot_of(project)
+        perform(robot, Posture(passage.start, 1.0))
+        robot.start("c", Posture(passage.end, 1.0))
+        for column in range(count):
+            shot = picture(robot, "close", width, height)
+            ImageDraw.Draw(shot).text((6, 4), f"{passage.start} to {passage.end}" if not column else "", fill="black")
+            sheet.paste(shot, (width * column, height * row))
+            robot.advance((passage.duration + 0.4) / (count - 1))
+        robot.close()
+    sheet.save(HERE / "postures.png", optimize=True)
+
+
+def perform(robot: SimulatedRobot, command: Posture) -> None:
+    """A command to its end."""
+    robot.start("p", command)
+    while not any(event.name == "done.command.p" for event in robot.poll()):
+        robot.advance(0.1)
+
+
+PICTURES = {"tour": tour, "head": head, "motions": motions, "walk": walk, "postures": postures}
 
 
 def main() -> None:

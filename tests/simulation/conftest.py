@@ -5,12 +5,11 @@ from pathlib import Path
 
 import pytest
 
+import lumen
 from lumen.interpreters.projection import centring
 from lumen.language.commands import Look
 from lumen.language.events import Event
 from lumen.language.robots import Body
-from lumen.loading.bodies import build_body
-from lumen.loading.source import Report, parse
 from lumen.ports import RobotCommand
 from lumen.robots.simulation import SimulatedRobot
 
@@ -19,11 +18,7 @@ MODELS = Path(__file__).parents[2] / "models"
 
 @pytest.fixture(scope="session")
 def body() -> Body:
-    document, _ = parse("models/nao.yaml", (MODELS / "nao.yaml").read_bytes())
-    assert document
-    built = build_body(document.data, Report(document), name="nao")
-    assert built
-    return built
+    return lumen.load(MODELS.parent).body
 
 
 @pytest.fixture

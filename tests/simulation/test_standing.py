@@ -87,6 +87,7 @@ def test_a_fall_is_noticed_and_ends_everything(robot: SimulatedRobot, do: Do) ->
     assert events["error.command.p"] == {"reason": "the robot fell"}
     assert robot.fallen
     assert robot.motors.stiffness.max() <= 0.1
-    assert do(Posture("Stand")).startswith("error: the robot has fallen")
-    assert do(Wake()).startswith("error: the robot has fallen")
+    assert do(Look(0.1, 0.0)).startswith("error: the robot has fallen")
     assert do(Rest()) == "done"
+    assert do(Wake()) == "done"
+    assert robot.world.tilt < 0.05

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf
 
+from lumen.language.motions import Motion
+
 
 @dataclass(frozen=True, slots=True)
 class Joint:
@@ -52,7 +54,8 @@ class Body:
 
     `joints` keeps the robot's own order of names. `parts` maps head, arms, legs to joint names. `postures` maps a
     posture to angles [rad] of every joint. `shared` maps a joint to the one whose motor moves it too; `hands` are the
-    joints that open (0..1) rather than turn.
+    joints that open (0..1) rather than turn. `passages` are the motions from one posture (`start`) to another (`end`)
+    where a straight way would fall.
     """
 
     name: str
@@ -66,3 +69,4 @@ class Body:
     shared: Mapping[str, str] = field(default_factory=dict)
     hands: tuple[str, ...] = ()
     sonar: Ultrasound | None = None
+    passages: tuple[Motion, ...] = ()

@@ -14,17 +14,22 @@ from lumen.loading.units import ANGLES
 from lumen.rules.finding import find, value_at
 
 
+PASSAGES = "models/passages"
+"""The motions from posture to posture."""
+
+
 def check(draft: Draft) -> None:
     """Report where a joint would be too fast, or beyond its limits between two keys or beside another joint."""
     if draft.body is None:
         return
     given = tuple(draft.contents("motions", "models", MAIN_FILE))
-    for name, motion in draft.motions.items():
-        report = draft.report("motions", name)
+    motions = [("motions", motion) for motion in draft.motions.values()]
+    for folder, motion in [*motions, *((PASSAGES, passage) for passage in draft.body.passages)]:
+        report = draft.report(folder, motion.name)
         if report.diagnostics:
             continue
         unit = value_at(report, ("units", "angle")) or "rad"
-        fast, far = again(("excess", name), given, partial(_excesses, motion, draft.body))
+        fast, far = again(("excess", folder, motion.name), given, partial(_excesses, motion, draft.body))
         for excess in fast:
             _too_fast(report, excess, unit, draft.body)
         for excess in far:

@@ -23,6 +23,11 @@ class Instruments:
         self.heading = 0.0
 
     @property
+    def up(self) -> tuple[float, float, float]:
+        """Where up is, in the torso's axes (forward, left, up), as the inertial unit tells."""
+        return self._world.up
+
+    @property
     def angles(self) -> Angles:
         """Where the encoders say the joints are."""
         measured = self._world.angles

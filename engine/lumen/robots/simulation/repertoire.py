@@ -1,39 +1,57 @@
 """What the simulated NAO can do: each command's parts of the body, and how it begins."""
 
+from collections.abc import Callable
 from math import pi
 from typing import assert_never
 
 from lumen.errors import RobotError
+from lumen.interpreters.postures import RESTFUL, UPRIGHT
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.diagnostics import did_you_mean
 from lumen.ports import Aim, Perform, RobotCommand
 from lumen.robots.executor import Activity
 from lumen.robots.parts import part_of, parts
+from lumen.robots.simulation.instruments import Instruments
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors
+from lumen.robots.simulation.passage import Stance, Way, lying
 from lumen.robots.simulation.performance import Performance, Speech
-from lumen.robots.simulation.transition import Transition, duration
+from lumen.robots.simulation.transition import Transition
 from lumen.robots.simulation.walking import Walker
 from lumen.robots.simulation.world import World
-
-POSTURES = ("Stand", "StandInit", "StandZero", "Crouch")
-"""Those that a straight way connects; the others need more than that."""
 
 SOFT = 0.1
 """Stiffness of a robot that has fallen."""
 
 _LOOK_SPEED = 1.5
-_REST_TIME = 2.0
+_REST_SPEED, _WAKE_SPEED = 0.3, 0.4
 _UPRIGHT = pi / 9
 
 
 class Repertoire:
-    """Begins activities; knows whether the motors are on and whether the robot has fallen."""
+    """Begins activities; knows whether the motors are on, in which posture the robot is and whether it has fallen."""
 
-    def __init__(self, world: World, motors: Motors, lights: Lights, walker: Walker) -> None:
+    def __init__(
+        self,
+        world: World,
+        motors: Motors,
+        lights: Lights,
+        walker: Walker,
+        instruments: Instruments,
+        posture: str,
+    ) -> None:
         self._world, self._motors, self._lights, self._walker = world, motors, lights, walker
+        self._instruments = instruments
         self._postures = world.body.postures
         self._part = part_of(world.body)
+        self._stance = Stance(posture)
+        self._way: Way | None = None
         self.awake, self.fallen = True, False
+
+    @property
+    def upright(self) -> bool:
+        """Whether the robot is on both feet, and means to stay there."""
+        return self._stance.upright and not (self._way and self._way.passing)
 
     def parts(self, command: RobotCommand) -> frozenset[str]:
         """Which parts of the body a command owns."""
@@ -45,7 +63,7 @@ class Repertoire:
 
     def begin(self, command: RobotCommand, now: float) -> Activity:
         """The command under way. Raises RobotError where the robot can't."""
-        if not isinstance(command, Say | Rest | Wake):
+        if not isinstance(command, Say | Rest | Wake | Posture):
             self._ready()
         match command:
             case Say(text):
@@ -61,6 +79,8 @@ class Repertoire:
             case Wake():
                 return self._wake(now)
             case Walk():
+                if not self.upright:
+                    raise RobotError(f"the robot is in {self._stance.posture}: send it to Stand first")
                 return self._walker.begin(command, now)
             case Stop() | Aim():
                 raise RobotError(f"{type(command).__name__} does not last")
@@ -69,33 +89,58 @@ class Repertoire:
 
     def fall(self) -> None:
         """Give way: the fall is over sooner than a motor could help."""
-        self.fallen = True
+        self.fallen, self._way = True, None
         self._motors.stiffen(SOFT)
         self._lights.reset()
 
     def _ready(self) -> None:
         if self.fallen:
-            raise RobotError("the robot has fallen: put it on its feet and wake it")
+            raise RobotError("the robot has fallen: `wake` it first")
         if not self.awake:
             raise RobotError("the motors are off: `wake` first")
 
     def _perform(self, command: Perform, now: float) -> Activity:
         motion, owned = command.motion, self.parts(command)
-        if motion.start and motion.start not in POSTURES:
-            raise RobotError(f"`{motion.name}` begins in {motion.start}, {self._unreachable()}")
         start = self._postures.get(motion.start, {})
         home = {name: angle for name, angle in start.items() if self._part[name] in owned}
+        here = self._stance.posture
+        if motion.start and motion.start != here and not (self.upright and motion.start in UPRIGHT):
+            raise RobotError(f"`{motion.name}` begins in {motion.start}; the robot is in {here}: send it there first")
         return Performance(self._motors, self._lights, motion, home, now)
 
     def _posture(self, name: str, speed: float, now: float) -> Activity:
         if not 0 < speed <= 1:
             raise RobotError(f"a speed lies above 0 and up to 1, not at {speed}")
-        if name not in POSTURES or name not in self._postures:
-            raise RobotError(f"`{name}` is a posture {self._unreachable()}")
-        return Transition(self._motors, self._postures[name], now, duration(speed))
+        if name not in self._postures:
+            raise RobotError(f"no posture `{name}`: {did_you_mean(name, self._postures, 'it knows')}")
+        if not self.awake and not self.fallen:
+            raise RobotError("the motors are off: `wake` first")
+        return self._go((name,), now, speed)
 
-    def _unreachable(self) -> str:
-        return f"that the robot can't get into yet: it knows {', '.join(POSTURES)}"
+    def _go(self, goals: tuple[str, ...], now: float, speed: float, after: Callable[[], None] | None = None) -> Way:
+        """The way to one of these postures; a robot that has fallen, or was limp, begins with where it lies or sits."""
+        limp, down = self.fallen or not self.awake, lying(self._instruments)
+        if limp and down:
+            self._stance = Stance(down)
+        elif self.fallen:
+            if self._world.tilt > _UPRIGHT:
+                raise RobotError("the robot has fallen, but does not lie: put it on its feet first")
+            self._stance = Stance(UPRIGHT[0])
+        if limp:
+            self._motors.stiffen(1.0)
+            self.awake, self.fallen = True, False
+        self._way = Way(
+            self._motors,
+            self._world.body,
+            self._instruments,
+            self._stance,
+            goals,
+            now,
+            speed=speed,
+            settle=limp and not self._stance.upright,
+            after=after,
+        )
+        return self._way
 
     def _look(self, yaw: float, pitch: float, now: float) -> Activity:
         self._motors.check({"HeadYaw": yaw, "HeadPitch": pitch})
@@ -108,14 +153,10 @@ class Repertoire:
         if self.fallen or not self.awake:
             self._sleep()
             return Transition(self._motors, {}, now, 0.01)
-        return Transition(self._motors, self._postures["Crouch"], now, _REST_TIME, self._sleep)
+        return self._go(RESTFUL, now, _REST_SPEED, self._sleep)
 
     def _wake(self, now: float) -> Activity:
-        if self.fallen and self._world.tilt > _UPRIGHT:
-            raise RobotError("the robot has fallen: put it on its feet first")
-        self.awake, self.fallen = True, False
-        self._motors.stiffen(1.0)
-        return Transition(self._motors, self._postures["Stand"], now, duration(0.4))
+        return self._go(("Stand",), now, _WAKE_SPEED)
 
     def _sleep(self) -> None:
         self.awake = False

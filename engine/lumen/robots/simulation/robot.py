@@ -80,7 +80,7 @@ class SimulatedRobot:
             self._free,
             lambda: self.condition.hot,
         )
-        self._repertoire = Repertoire(self.world, self.motors, self.lights, walker)
+        self._repertoire = Repertoire(self.world, self.motors, self.lights, walker, self._instruments, posture)
         self._executor = Executor(self._begin, self._repertoire.parts)
         self._figure = Figure(self.world.model, self.world.data)
         self._camera = TopCamera(self.world, body.camera)
@@ -173,7 +173,8 @@ class SimulatedRobot:
         self._steering.advance(PERIOD, self._free)
         self._instruments.feel()
         if self.awake:
-            self.motors.drive(self._balance.trim(self._instruments.gyro), PERIOD)
+            gyro = self._instruments.gyro if self._repertoire.upright else (0.0, 0.0)
+            self.motors.drive(self._balance.trim(gyro), PERIOD)
         self.world.step()
         self._ticks += 1
         self._watch(self.time)
@@ -185,8 +186,9 @@ class SimulatedRobot:
     def _watch(self, now: float) -> None:
         """Notice a fall; every now and then, battery and heat."""
         tilt = self.world.tilt
-        self.greatest_tilt = max(self.greatest_tilt, degrees(tilt))
-        if tilt > FALLEN and not self.fallen:
+        upright = self._repertoire.upright
+        self.greatest_tilt = max(self.greatest_tilt, degrees(tilt)) if upright else self.greatest_tilt
+        if tilt > FALLEN and upright and not self.fallen:
             self._repertoire.fall()
             self._executor.fail("the robot fell")
             self._events.append(Event("fallen", {}, now))

@@ -73,6 +73,12 @@ class World:
         return roll, pitch, yaw
 
     @property
+    def up(self) -> tuple[float, float, float]:
+        """Where up is in the torso's axes: forward, left, up."""
+        forward, left, up = self._torso_axes[6:9].tolist()
+        return forward, left, up
+
+    @property
     def tilt(self) -> float:
         """How far the torso leans from upright [rad]."""
         return acos(min(1.0, max(-1.0, float(self._torso_axes[8]))))

@@ -1,0 +1,47 @@
+"""Which postures lie on the way from one to another."""
+
+from collections.abc import Iterator
+
+from lumen.language.motions import Motion
+from lumen.language.robots import Body
+
+UPRIGHT = ("Stand", "StandInit", "StandZero", "Crouch")
+"""Those on both feet: a straight way connects them."""
+
+RESTFUL = ("Crouch", "SitRelax", "LyingBack", "LyingBelly")
+"""Those that a robot keeps with its motors off; in Sit its torso leans back, and sinks once nothing holds it."""
+
+STRAIGHT = 1.0
+"""What a straight way counts [s], beside the duration of a passage."""
+
+
+def lies(posture: str) -> bool:
+    """Whether that is a posture on the floor, on back or belly."""
+    return posture.startswith("Lying")
+
+
+def passage(body: Body, start: str, end: str) -> Motion | None:
+    """The motion from one posture to its neighbour; None for a straight way."""
+    return next((p for p in body.passages if (p.start, p.end) == (start, end)), None)
+
+
+def route(body: Body, start: str, *goals: str) -> list[str] | None:
+    """The postures from `start` (not itself) to the nearest goal, quickest way; None where there is none."""
+    found: dict[str, list[str]] = {}
+    ways: dict[str, tuple[float, list[str]]] = {start: (0.0, [])}
+    while ways:
+        here = min(ways, key=lambda name: ways[name][0])
+        cost, path = ways.pop(here)
+        if here in goals:
+            return path
+        found[here] = path
+        for name, more in _neighbours(body, here):
+            if name not in found and cost + more < ways.get(name, (float("inf"), []))[0]:
+                ways[name] = cost + more, [*path, name]
+    return None
+
+
+def _neighbours(body: Body, posture: str) -> Iterator[tuple[str, float]]:
+    if posture in UPRIGHT:
+        yield from ((name, STRAIGHT) for name in UPRIGHT if name in body.postures and name != posture)
+    yield from ((p.end, p.duration) for p in body.passages if p.start == posture)
