@@ -1,6 +1,7 @@
 """What differs between two versions of a behaviour: its states, and what it knows."""
 
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from lumen.interpreters.changes.actions import block_changes
@@ -40,20 +41,25 @@ class _Comparison:
 
     def presence(self) -> Iterator[Change]:
         """States that are gone, new, or called otherwise; of those within another only the outermost."""
-        gone = [path for path, image in self.images.items() if image is None]
-        fresh = [path for path in self.new.states if path not in self.images.values()]
-        for path in gone:
-            if self.old.states[path].parent not in gone:
-                yield self.change("state", path, f"{self.title(self.old.states[path])} removed{_within(path, gone)}")
-        for path in fresh:
-            if self.new.states[path].parent not in fresh:
-                yield self.change("state", path, f"{self.title(self.new.states[path])} added{_within(path, fresh)}")
+        known = set(self.images.values())
+        gone = {path: None for path, image in self.images.items() if image is None}
+        fresh = {path: None for path in self.new.states if path not in known}
+        yield from self.outermost(self.old, gone, "removed")
+        yield from self.outermost(self.new, fresh, "added")
         for path, image in self.images.items():
             parent = self.old.states[path].parent
             moved = image is not None and parent is not None and image != _below(self.images[parent], path)
             if moved and image is not None:
                 sentence = f"{self.title(self.old.states[path])} is `{self.new.states[image].path}` now"
                 yield self.change("state", path, sentence)
+
+    def outermost(self, machine: Machine, paths: Collection[str], how: str) -> Iterator[Change]:
+        """A sentence for each of these states that lies in no other of them."""
+        within = Counter(around for path in paths for around in _around(path) if around in paths)
+        for path in paths:
+            if machine.states[path].parent not in paths:
+                more = f", with {within[path]} within" if within[path] else ""
+                yield self.change("state", path, f"{self.title(machine.states[path])} {how}{more}")
 
     def state(self, old: State, new: State) -> Iterator[Change]:
         title = self.title(new)
@@ -141,9 +147,10 @@ def _below(parent: str | None, path: str) -> str:
     return f"{parent}.{path.rpartition('.')[2]}" if parent else path.rpartition(".")[2]
 
 
-def _within(path: str, paths: list[str]) -> str:
-    within = sum(other.startswith(f"{path}.") for other in paths)
-    return f", with {within} within" if within else ""
+def _around(path: str) -> Iterator[str]:
+    """The paths of the states around it."""
+    while path := path.rpartition(".")[0]:
+        yield path
 
 
 def _example(value: Any) -> str:

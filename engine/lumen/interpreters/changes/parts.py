@@ -44,6 +44,7 @@ _ROUTE: Mapping[str, Callable[[Any], str]] = {
     "every": seconds,
     "ttl": seconds,
     "keep": lambda value: "none" if value is None else str(value),
+    "carried": _shown,
     "must_arrive": lambda value: "yes" if value else "no",
     "latency": seconds,
 }
