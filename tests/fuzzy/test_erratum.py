@@ -1,11 +1,15 @@
 """The example with the paper's tables as printed: a whole project, wrong in the ways its README says."""
 
+from pathlib import Path
+
 import pytest
 
 import lumen
 from lumen.fuzzy import Controller
 from lumen.interpreters.tracking import Tracker
 from lumen.language.diagnostics import has_errors
+from lumen.loading.files import read_files
+from lumen.rules import check_files
 from tests.fuzzy.nao import HEAD
 
 PROJECT = "examples/erratum"
@@ -18,6 +22,32 @@ def printed() -> Controller:
 
 def test_it_is_a_whole_project() -> None:
     assert not has_errors(lumen.check(PROJECT)), [str(d) for d in lumen.check(PROJECT)]
+
+
+def test_lint_tells_what_is_wrong_with_it() -> None:
+    found = [(d.code, d.place.line, d.message) for d in lumen.check(PROJECT)]
+    assert [code for code, _, _ in found] == [
+        "term-order", "not-at-rest", "not-monotone", "term-order", "not-at-rest", "not-monotone", "wrong-sign",
+        "term-order",
+    ]  # fmt: skip
+    assert [message for code, _, message in found if code in ("not-at-rest", "not-monotone")] == [
+        "at rest, with `FaceXLoc` at 160, `AngleX` is 5.97 and not 0",
+        "`AngleX` rises until `FaceXLoc` is 160, and then turns back",
+        "at rest, with `FaceYLoc` at 120, `AngleY` is -2.07 and not 0",
+        "`AngleY` falls until `FaceYLoc` is 120, and then turns back",
+    ]
+
+
+@pytest.mark.parametrize("gain", [1, -1])
+def test_with_the_numbers_put_right_only_the_sign_is_left(gain: int) -> None:
+    files = read_files(Path(PROJECT))
+    text = files["fuzzy/head.yaml"].decode()
+    for right, wrong in (("240, 70", "120, 40"), ("15, 10", "0, 10"), ("7, 6", "0, 6")):
+        text = text.replace(f"Positive: {{gaussian: [{wrong}]", f"Positive: {{gaussian: [{right}]")
+        text = text.replace(f"Zero: {{gaussian: [{right}]", f"Zero: {{gaussian: [{wrong}]")
+    text = text.replace("joint: HeadPitch, gain: 1", f"joint: HeadPitch, gain: {gain}")
+    found = check_files(Path(PROJECT), {**files, "fuzzy/head.yaml": text.encode()})[1]
+    assert [d.code for d in found] == ["wrong-sign"] * (1 if gain > 0 else 2)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,44 @@
+"""What docs/fuzzy.md and docs/erratum.md say is what the code says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.fuzzy import Controller
+from lumen.interpreters.inference.formulas import FUNCTIONS
+from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, HEDGES, S_NORMS, T_NORMS, TERMS
+
+FUZZY = Path("docs/fuzzy.md").read_text()
+ERRATUM = Path("docs/erratum.md").read_text()
+
+
+def test_every_word_of_the_language_is_there() -> None:
+    for word in (*TERMS, *HEDGES, *T_NORMS, *S_NORMS, *ACTIVATIONS, *DEFUZZIFIERS):
+        assert f"`{word}`" in FUZZY or f"{{method: {word}}}" in FUZZY, word
+    assert set(FUNCTIONS) <= set(re.findall(r"\w+", FUZZY))
+
+
+def test_the_example_is_the_shipped_controller() -> None:
+    (example,) = re.findall(r"```yaml\n(.*?)```", FUZZY, re.DOTALL)
+    assert example in Path("fuzzy/head.yaml").read_text()
+
+
+@pytest.mark.parametrize(("output", "name"), [("AngleX", "FaceXLoc"), ("AngleY", "FaceYLoc")])
+def test_the_erratum_s_numbers(output: str, name: str) -> None:
+    table = ERRATUM.partition(f"| {output} [deg] at {name}")[2]
+    rows = [[cell.strip(" *") for cell in line.split("|")[1:-1]] for line in table.splitlines()[:4]]
+    xs = [float(cell.split()[0]) for cell in rows[0][-5:]]
+    for row, file in ((rows[2], "examples/erratum/fuzzy/head.yaml"), (rows[3], "fuzzy/head.yaml")):
+        controller = Controller.load(file)
+        rest = {n: float(v.neutral or 0.0) for n, v in controller.inputs.items()}
+        said = [controller.evaluate({**rest, name: x})[output] for x in xs]
+        assert said == pytest.approx([float(cell) for cell in row[-5:]], abs=6e-4)
+
+
+def test_the_erratum_names_what_lint_finds() -> None:
+    named = set(re.findall(r"controllers\.md#([\w-]+)", ERRATUM))
+    found = [d.code for d in lumen.check("examples/erratum")]
+    assert named == set(found)
+    assert (len(found), "Eight warnings, of four kinds" in ERRATUM) == (8, True)
