@@ -2,7 +2,7 @@
 
     python docs/pictures/reload.py
 
-What the exhibition prints stands as it is; what is done beside it stands between the lines, behind a `$`.
+What the exhibition prints stands as it is, up to its end; what is done beside it stands between the lines, after a `$`.
 """
 
 import shutil
@@ -11,7 +11,6 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -28,7 +27,7 @@ class Visit:
         run = [sys.executable, "-m", "lumen", "run", str(folder), "--robot", "recording", "--speed", "1"]
         self._process = subprocess.Popen(run, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self._told: list[str] = []
-        self._seen = 0
+        self._seen, self._ending = 0, False
         self._reader = threading.Thread(target=self._read)
         self._reader.start()
 
@@ -36,7 +35,8 @@ class Visit:
         assert self._process.stdout
         for line in self._process.stdout:
             self._told.append(line)
-            print(line, end="", flush=True)
+            if not self._ending:
+                print(line, end="", flush=True)
 
     def until(self, words: str) -> None:
         """Wait until the exhibition has printed this since the last time."""
@@ -55,22 +55,24 @@ class Visit:
     def does(self, command: str) -> None:
         """In another terminal."""
         print(f"$ {command}", flush=True)
-        subprocess.run(command, shell=True, cwd=self.folder, check=False)
+        lumen = f"{sys.executable} -m lumen"
+        subprocess.run(command.replace("lumen", lumen, 1), shell=True, cwd=self.folder, check=False)
 
     def ends(self) -> None:
+        self._ending = True
         self._process.terminate()
         self._reader.join()
 
 
-def steps(visit: Visit) -> Iterator[None]:
+def steps(visit: Visit) -> None:
     visit.until("ask_name")
     visit.types("my name is Ani")
     visit.until("how_are_you")
     visit.types("fine")
-    visit.until("What can I do for you?")
+    visit.until("offer  (")
     visit.types("dance")
     visit.until("plays dance")
-    visit.does(f"sed -i 's/en: Do you have any questions.*/en: Is there anything you would like to know?/' {TOUR}")
+    visit.does(f"sed -i 's/Do you have a question for me?/Is there anything you wonder about?/' {TOUR}")
     visit.until("in force")
     visit.does("sed -i 's/any_question/more_questions/g' behaviors/*.yaml behaviors/stories/*.yaml")
     visit.until("in force")
@@ -78,15 +80,14 @@ def steps(visit: Visit) -> Iterator[None]:
     visit.until("refused")
     visit.does(f"sed -i 's/more_qestions/more_questions/' {TOUR}")
     visit.until("those that run")
-    visit.does("rm motions/dance.yaml")
+    visit.does("mv motions/dance.yaml ..")
     visit.until("refused")
-    visit.does(f"cp {ROOT}/motions/dance.yaml motions/")
+    visit.does("mv ../dance.yaml motions/")
     visit.until("those that run")
     visit.does(f"sed -i 's/- {{play: dance}}/- {{play: photo}}/' {TOUR}")
     visit.until("waiting for")
-    visit.does(f"{sys.executable} -m lumen reload --status")
+    visit.does("lumen reload --status")
     visit.until("in force")
-    yield
 
 
 def main() -> None:
@@ -101,8 +102,7 @@ def main() -> None:
                 shutil.copy(copied, folder / part)
         visit = Visit(folder)
         try:
-            for _ in steps(visit):
-                pass
+            steps(visit)
         finally:
             visit.ends()
 

@@ -69,7 +69,7 @@ class Bulletin:
             case "refused":
                 yield f"refused: {self._why()}the exhibition goes on as it was"
             case "waiting":
-                yield f"waiting for `{self.waiting_for}`: {self.reason}"
+                yield f"waiting for `{self.waiting_for}`: {self.reason} (`lumen reload --now` does not wait)"
             case "staged":
                 yield f"staged: {self._what()}; `lumen reload --apply` puts it in force"
             case "unchanged":
