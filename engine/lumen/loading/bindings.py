@@ -53,7 +53,8 @@ class Bindings:
             return True
         hint = did_you_mean(name, self.data[side], f"the {side} are")
         message = f"there is no {side[:-1]} `{name}`"
-        self.report("unknown-variable", ("bind", side, name), message, hint=hint, key=True)
+        cause = f"{self.report.document.file} unknown-variable {name}"
+        self.report("unknown-variable", ("bind", side, name), message, hint=hint, key=True, cause=cause)
         return False
 
     def all_bound(self, side: str, bound: Mapping[str, Any], severity: Severity, lack: str, example: str) -> None:

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 import yaml
 
 from lumen.language.diagnostics import Diagnostic, Path, Place, Related, Severity
-from lumen.loading.slips import slip_near
 
 MAX_DEPTH = 100
 MAX_NODES = 200_000
@@ -306,6 +305,8 @@ def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         column = source.index("\t") + 1
         place = Place(file, mark.line + 1, column, mark.line + 1, column + 1)
         return Diagnostic("tab", "a tab stands in the indentation", place, "YAML is indented with spaces: use two")
+    from lumen.loading.slips import slip_near  # only where something slipped
+
     if slip := slip_near(lines, mark.line):
         row, column, length, message, hint = slip
         return Diagnostic("yaml-syntax", message, Place(file, row, column, row, column + length), hint)

@@ -43,7 +43,8 @@ class _Table:
         if not side:
             names = [name for variables in self.sides.values() for name in variables]
             hint = did_you_mean(name, names, "the variables are")
-            self.report("unknown-variable", path, f"there is no variable `{name}`", hint=hint, key=True)
+            message, cause = f"there is no variable `{name}`", f"{self.report.document.file} unknown-variable {name}"
+            self.report("unknown-variable", path, message, hint=hint, key=True, cause=cause)
             return
         if term in self.sides[side][name]["terms"]:
             message = f"`{name}` has a term `{term}` already: a term has one shape"

@@ -11,7 +11,8 @@ def report_word(
 ) -> None:
     """Report something of `text[offset : offset + length]`, where `text` is the scalar at `path`."""
     before = len(report.diagnostics)
-    report(code, path, message, hint=hint)
+    word = text[offset : offset + length]
+    report(code, path, message, hint=hint, cause=f"{report.document.file} {code} {word}" if "unknown" in code else "")
     if len(report.diagnostics) > before:
         place = place_of(report.document, path, text, offset, length)
         report.diagnostics[-1] = replace(report.diagnostics[-1], place=place)

@@ -46,7 +46,8 @@ class _Script:
                     self.sensor((*scene.where, "touch" if pressed else "release"), sensor)
                 case Happen(name, data):
                     self.event(first(self.report, (*scene.where, "event", "name"), (*scene.where, "event")), name)
-                    self.fits((*scene.where, "event", "data"), {} if data is None else data, self.events.get(name))
+                    if (*scene.where, "event", "data") not in self.report.pruned:
+                        self.fits((*scene.where, "event", "data"), {} if data is None else data, self.events.get(name))
                 case Send(route, body):
                     self.message((*scene.where, "message"), route, body)
                 case Expect() as expected:
