@@ -11,9 +11,13 @@ from lumen.cli.main import main
 from lumen.cli.versions import version
 from lumen.errors import UsageError
 from lumen.interpreters.changes import Risk, changes, live, risk, summary
+from lumen.interpreters.statechart import initial, step
+from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.project import read_files
-from lumen.rules import check_files
+from lumen.rules import check_files, load
+from lumen.runtime.home import Home, home_of
+from lumen.runtime.keeping import Keeper
 from tests.tour.names import ROOT
 
 FILES = read_files(ROOT)
@@ -185,6 +189,21 @@ def test_lint_finds_what_a_reload_would_refuse_or_move(repository: Path, capsys:
     assert f"{TOUR}:2:46: info[reload-moves] a reload would lead from `talk.ask`, which is gone, to `talk.dance`" in out
     assert out.count("reload-moves") == 1
     assert main(["lint", "--against", "nothing"]) == 2
+
+
+def test_what_runs_is_compared_with_what_is_saved(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    project, home = load(repository), Home(home_of(repository))
+    assert home.hold()
+    keeper = Keeper(home)
+    keeper.store(read_files(repository))
+    first = initial(project.machine).snapshot
+    keeper.keep(project, step(project.machine, first, Event("touched", {"sensor": "x"})).snapshot, ())
+    tour = repository / TOUR
+    tour.write_text(tour.read_text().replace("ask: {on: {released: dance}}, ", ""))
+    assert main(["diff", "live"]) == 1
+    assert "now: refused talk.ask: `talk.ask` is active and gone" in capsys.readouterr().out
+    home.release()
+    assert main(["diff", "live"]) == 2
 
 
 @pytest.mark.parametrize(
