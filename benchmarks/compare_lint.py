@@ -124,7 +124,7 @@ def esphome(mistake: Mistake, folder: Path, tool: Path) -> str | None:
     old, new = mistake.theirs
     assert old in ESPHOME, mistake.what
     (folder / "stand.yaml").write_text(ESPHOME.replace(old, new, 1))
-    done = run([tool, "-q", "config", folder / "stand.yaml"], folder)
+    done = run([tool, "config", folder / "stand.yaml"], folder)
     lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
     said = [line for line in lines if re.match(r"ERROR|[A-Z\[][^:]* .*[.\]\"?]$|in \"|found |expected ", line)]
     return "" if done.returncode == 0 else " ".join(said or lines)
