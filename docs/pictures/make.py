@@ -137,7 +137,7 @@ def walk(project: Project) -> None:
 def postures(project: Project) -> None:
     """A row for each passage between two postures: the robot before it, on its way, and after it."""
     width, height, count = 200, 170, 7
-    rows = [passage for passage in project.body.passages]
+    rows = list(project.body.passages)
     sheet = Image.new("RGB", (width * count, height * len(rows)))
     for row, passage in enumerate(rows):
         robot = robot_of(project)

@@ -1,16 +1,18 @@
 """Senses and the world around: visitor, face, sonar, touch, battery, heat."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from lumen.errors import UsageError
-from lumen.language.commands import Look, Say, Wake
+from lumen.language.commands import Look, Say, Wake, Walk
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Battery, Joints, Sense, Sonar, Tactile
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.condition import Condition
-from tests.simulation.conftest import Do, answer, look_at_face, until_answered
+from tests.simulation.conftest import MODELS, Do, answer, look_at_face, until_answered
 
 
 @pytest.mark.parametrize("visitor", [Visitor(), Visitor(1.5, 0.5), Visitor(1.2, -0.4, 1.1)])
@@ -135,3 +137,16 @@ def test_an_empty_battery_lets_the_robot_rest_until_it_is_plugged_in(robot: Simu
     robot.plug(True)
     robot.advance(1.0)
     assert do(Wake()) == "done"
+
+
+def test_what_a_foot_runs_into_presses_its_bumper_and_ends_the_walk(body: Body, tmp_path: Path) -> None:
+    (tmp_path / "hall").symlink_to(MODELS / "hall")
+    ledge = '<geom class="solid" type="box" size="0.02 0.4 0.02" pos="0.22 0 0.52" material="wood"/>'
+    hall = (MODELS / "hall.xml").read_text("utf-8").replace('<body name="desk"', f'{ledge}<body name="desk"')
+    (tmp_path / "ledge.xml").write_text(hall, "utf-8")
+    robot = SimulatedRobot(body, MODELS, str(tmp_path / "ledge.xml"))
+    robot.start("w", Walk(0.3))
+    events = until_answered(robot, "w")
+    assert {event.data["sensor"] for event in events if event.name == "touched"} & {"LeftBumper", "RightBumper"}
+    assert "bumper is pressed" in answer(events, "w")
+    assert robot.greatest_tilt < 30

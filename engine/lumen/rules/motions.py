@@ -13,7 +13,6 @@ from lumen.loading.source import Report
 from lumen.loading.units import ANGLES
 from lumen.rules.finding import find, value_at
 
-
 PASSAGES = "models/passages"
 """The motions from posture to posture."""
 

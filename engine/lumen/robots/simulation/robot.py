@@ -16,6 +16,7 @@ from lumen.ports import Aim, Battery, Joints, Reading, RobotCommand, Sense, Sona
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.simulation.anatomy import Anatomy
 from lumen.robots.simulation.balance import Balance
+from lumen.robots.simulation.bumpers import Bumpers
 from lumen.robots.simulation.camera import TopCamera
 from lumen.robots.simulation.condition import Condition
 from lumen.robots.simulation.figure import Figure
@@ -69,6 +70,8 @@ class SimulatedRobot:
         self._steering = Steering(self.motors)
         self._instruments = Instruments(self.world, variation.noise if variation else 0.0, seed)
         self._pressed = dict.fromkeys(body.tactile, False)
+        self._held: set[str] = set()
+        self._bumpers = Bumpers(self.world.model, self.world.data)
         self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
         walker = Walker(
             self.motors,
@@ -126,6 +129,9 @@ class SimulatedRobot:
         events, self._events = self._events, []
         return events
 
+    def begun(self) -> Sequence[str]:
+        return self._executor.begun()
+
     def read(self, sense: Sense) -> Reading | None:
         now = self.time
         match sense:
@@ -155,9 +161,16 @@ class SimulatedRobot:
         """Press or release a tactile sensor. Raises UsageError for one that the robot does not have."""
         if sensor not in self._pressed:
             raise UsageError(f"no sensor `{sensor}`: {did_you_mean(sensor, self._pressed, 'there are')}")
-        if self._pressed[sensor] != pressed:
-            self._pressed[sensor] = pressed
-            self._events.append(Event("touched" if pressed else "released", {"sensor": sensor}, self.time))
+        (self._held.add if pressed else self._held.discard)(sensor)
+        self._feel_touch()
+
+    def _feel_touch(self) -> None:
+        """Notice which tactile sensors are pressed: by a hand, or by what a foot ran into."""
+        now = self._held | self._bumpers.pressed()
+        for sensor, before in self._pressed.items():
+            if before != (sensor in now):
+                self._pressed[sensor] = not before
+                self._events.append(Event("released" if before else "touched", {"sensor": sensor}, self.time))
 
     def plug(self, plugged: bool) -> None:
         self.condition.plugged = plugged
@@ -186,6 +199,7 @@ class SimulatedRobot:
     def _watch(self, now: float) -> None:
         """Notice a fall; every now and then, battery and heat."""
         tilt = self.world.tilt
+        self._feel_touch()
         upright = self._repertoire.upright
         self.greatest_tilt = max(self.greatest_tilt, degrees(tilt)) if upright else self.greatest_tilt
         if tilt > FALLEN and upright and not self.fallen:
