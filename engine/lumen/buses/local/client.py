@@ -6,7 +6,7 @@ import socket
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from itertools import count
 from typing import Any
@@ -14,9 +14,11 @@ from typing import Any
 from lumen.buses.bodies import check_key, encode
 from lumen.buses.local.addresses import PATIENCE, Address
 from lumen.buses.local.frames import BadFrameError, frame, framed, nonce, proof, proves, unframed
-from lumen.buses.outbox import Outbox, Parcel
+from lumen.buses.local.leaving import Leaving
 from lumen.errors import BusError
-from lumen.ports import Handler, Message
+from lumen.language.routes import Route
+from lumen.language.routes import Route
+from lumen.ports import Handler, Message, Refused
 
 CLOSING = 5.0
 WAITING = 20_000
@@ -36,7 +38,7 @@ class LocalBus:
     def __init__(self, address: Address) -> None:
         self.gone = threading.Event()
         self._wire, self._read = _enter(address)
-        self._outbox, self._closed = Outbox(), False
+        self._leaving, self._closed = Leaving(), False
         self._handlers: dict[int, Handler] = {}
         self._answers: dict[int, tuple[threading.Event, list[str]]] = {}
         self._numbers, self._marked = count(), threading.Event()
@@ -48,6 +50,12 @@ class LocalBus:
         ]
         for thread in self._threads:
             thread.start()
+
+    def carry(self, routes: Mapping[str, Route]) -> None:
+        """Nothing changes: whose bus it is says how messages are carried."""
+
+    def prepare(self, routes: Mapping[str, Route]) -> None:
+        """There is nothing to make ready."""
 
     def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
         if self._closed:
@@ -82,6 +90,12 @@ class LocalBus:
         if message.reply_to:
             self.publish(message.reply_to, body, correlation_id=message.correlation_id)
 
+    def carry(self, routes: Mapping[str, Route]) -> None:
+        """How messages are carried is for the exhibition behind the door to say."""
+
+    def prepare(self, routes: Mapping[str, Route]) -> None:
+        """Nothing has to be made ready here."""
+
     def close(self) -> None:
         """Deliver what was published, to our own subscribers too, within 5 s, and end."""
         if self._closed:
@@ -92,7 +106,7 @@ class LocalBus:
             self._put(frame("mark"))
             self._marked.wait(CLOSING)
         self._closed = True
-        self._outbox.emptied(max(0.0, deadline - time.monotonic()))
+        self._leaving.emptied(max(0.0, deadline - time.monotonic()))
         self._end()
         for thread in self._threads:
             if thread is not threading.current_thread():
@@ -106,18 +120,17 @@ class LocalBus:
         for answered, _ in list(self._answers.values()):
             answered.set()
         self._marked.set()
-        self._outbox.wake()
         with self._arriving:
             self._arriving.notify_all()
 
     def _put(self, data: bytes) -> None:
-        self._outbox.put(Parcel("", "", data, ""))
+        self._leaving.put(data)
 
     def _send(self) -> None:
         try:
             while not self.gone.is_set():
-                for parcel in self._outbox.take(100, 0.5):
-                    self._wire.sendall(parcel.body)
+                for data in self._leaving.take(0.5):
+                    self._wire.sendall(data)
         except OSError:
             self._end()
 
@@ -162,6 +175,9 @@ class LocalBus:
                 continue
             try:
                 handler(message)
+            except Refused as error:
+                with suppress(BusError):
+                    self.reply(message, f"message refused: {error}")
             except Exception:
                 _log.exception("a subscriber failed on `%s`", message.key)
 

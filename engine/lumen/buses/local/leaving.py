@@ -1,0 +1,38 @@
+"""What waits to leave by the door: bounded, the oldest gives way."""
+
+import threading
+from collections import deque
+
+BYTES = 64 * 1024 * 1024
+
+
+class Leaving:
+    """Any thread puts, one thread takes."""
+
+    def __init__(self) -> None:
+        self._frames: deque[bytes] = deque()
+        self._bytes = 0
+        self._changed = threading.Condition()
+
+    def put(self, frame: bytes) -> None:
+        with self._changed:
+            self._frames.append(frame)
+            self._bytes += len(frame)
+            while self._bytes > BYTES:
+                self._bytes -= len(self._frames.popleft())
+            self._changed.notify_all()
+
+    def take(self, timeout: float) -> list[bytes]:
+        """All that waits; nothing if there is nothing within `timeout` [s]."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._frames, timeout)
+            taken = list(self._frames)
+            self._frames.clear()
+            self._bytes = 0
+            self._changed.notify_all()
+            return taken
+
+    def emptied(self, timeout: float) -> bool:
+        """Wait until everything has been taken; whether it has, within `timeout` [s]."""
+        with self._changed:
+            return self._changed.wait_for(lambda: not self._frames, timeout)
