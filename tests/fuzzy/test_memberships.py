@@ -1,6 +1,6 @@
 """Each kind of term: its shape at known points, the same for numbers and arrays, never outside 0 to 1."""
 
-from math import exp, inf, sqrt
+from math import exp, inf, isnan, sqrt
 
 import numpy as np
 import pytest
@@ -42,6 +42,8 @@ CASES = [
     ("binary", (5, -inf), {5: 1, 6: 0}),
     ("discrete", (0, 0, 5, 1, 10, 0.5), {-1: 0, 2.5: 0.5, 5: 1, 7.5: 0.75, 99: 0.5}),
     ("discrete", (0, 0, 5, 0, 5, 1, 9, 1), {4: 0, 5: 1, 6: 1}),
+    ("discrete", (0, 0, 0, 1, 9, 1), {-1: 0, 0: 1, 6: 1}),
+    ("discrete", (4, 0.5), {0: 0.5, 4: 0.5, 6: 0.5}),
 ]
 
 
@@ -77,3 +79,9 @@ def test_a_monotonic_shape_read_backwards(kind: str, part: float, height: float)
     x = value(NUMBERS, term)(part * height, ())
     assert membership(NUMBERS, term)(x) == pytest.approx(part * height, abs=1e-9)
     assert value(arrays(), term)(np.array([part * height]), ()) == pytest.approx([x])
+
+
+def test_a_flat_sigmoid_has_no_value_read_backwards() -> None:
+    flat = Term("t", "sigmoid", (3.0, 0.0))
+    assert isnan(value(NUMBERS, flat)(0.4, ()))
+    assert np.isnan(value(arrays(), flat)(np.array([0.4]), ())).all()

@@ -93,3 +93,18 @@ def test_of_equal_rules_the_first_are_taken() -> None:
     chosen = METHODS["highest"](NUMBERS, Activation("highest", rules=1), [0.5, 0.5])
     assert chosen[0] == 0.5
     assert isnan(chosen[1])
+
+
+@given(st.floats(0, 4), st.floats(0, 4))
+@pytest.mark.parametrize("name", [*T_NORMS, *S_NORMS])
+def test_no_norm_fails_on_what_a_sum_without_bound_hands_on(name: str, a: float, b: float) -> None:
+    for x, y in ((a, b), (0.0, 2.0), (2.0, 2.0), (1.0, 1.0)):
+        with np.errstate(all="ignore"):
+            many = norm(arrays(), name)(np.array([x]), np.array([y]))
+        assert many == pytest.approx([norm(NUMBERS, name)(x, y)], rel=1e-9, nan_ok=True)
+
+
+@given(st.floats(0, 4), st.lists(st.sampled_from(controllers.HEDGES), min_size=1, max_size=4))
+def test_no_row_of_hedges_fails(x: float, hedges: list[str]) -> None:
+    many = hedged(arrays(), tuple(hedges), np.array([x]))
+    assert np.broadcast_to(many, (1,)) == pytest.approx([hedged(NUMBERS, tuple(hedges), x)])

@@ -35,7 +35,7 @@ class Arithmetic:
 
 
 def _interpolate(x: float, xs: tuple[float, ...], ys: tuple[float, ...]) -> float:
-    if x <= xs[0]:
+    if x < xs[0]:
         return ys[0]
     for x0, x1, y0, y1 in zip(xs, xs[1:], ys, ys[1:], strict=False):
         if x < x1:

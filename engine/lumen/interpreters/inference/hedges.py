@@ -16,10 +16,10 @@ def _seldom(m: Arithmetic, x: Number) -> Number:
 
 HEDGES: Mapping[str, Callable[[Arithmetic, Number], Number]] = {
     "any": lambda m, x: 1.0,
-    "not": lambda m, x: 1.0 - x,
+    "not": lambda m, x: m.maximum(1.0 - x, 0.0),
     "extremely": _extremely,
     "seldom": _seldom,
-    "somewhat": lambda m, x: m.sqrt(x),
+    "somewhat": lambda m, x: m.sqrt(m.maximum(x, 0.0)),
     "very": lambda m, x: x * x,
 }
 

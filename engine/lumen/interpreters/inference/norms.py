@@ -1,4 +1,7 @@
-"""T-norms and S-norms: how `and`, `or`, implication and aggregation combine two degrees."""
+"""T-norms and S-norms: how `and`, `or`, implication and aggregation combine two degrees.
+
+A sum without bound may hand more than 1 on to another norm: then too no denominator is zero.
+"""
 
 from collections.abc import Callable, Mapping
 
@@ -11,6 +14,10 @@ _TINY = 1e-300  # what keeps a denominator from being zero where the other side 
 
 def _drastic_product(m: Arithmetic, a: Number, b: Number) -> Number:
     return m.where(m.maximum(a, b) == 1.0, m.minimum(a, b), 0.0)
+
+
+def _einstein_product(m: Arithmetic, a: Number, b: Number) -> Number:
+    return a * b / m.maximum(2.0 - (a + b - a * b), _TINY)
 
 
 def _hamacher_product(m: Arithmetic, a: Number, b: Number) -> Number:
@@ -39,7 +46,7 @@ NORMS: Mapping[str, Norm] = {
     "algebraic-product": lambda m, a, b: a * b,
     "bounded-difference": lambda m, a, b: m.maximum(a + b - 1.0, 0.0),
     "drastic-product": _drastic_product,
-    "einstein-product": lambda m, a, b: a * b / (2.0 - (a + b - a * b)),
+    "einstein-product": _einstein_product,
     "hamacher-product": _hamacher_product,
     "nilpotent-minimum": _nilpotent_minimum,
     "maximum": lambda m, a, b: m.maximum(a, b),

@@ -119,7 +119,7 @@ class Program:
                 return self._proposition(node)
             case Negation(operand):
                 inner = self._antecedent(operand, operators)
-                return self._add(lambda tape: 1.0 - tape[inner])
+                return self._add(lambda tape: hedged(self._m, ("not",), tape[inner]))
             case Conjunction(left, right):
                 combine = norm(self._m, operators.conjunction)
             case Disjunction(left, right):

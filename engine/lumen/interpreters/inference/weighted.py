@@ -27,9 +27,11 @@ def _concave(m: Arithmetic, h: float, i: float, e: float) -> Callable[[Number], 
 
 
 def _sigmoid(m: Arithmetic, h: float, i: float, s: float) -> Callable[[Number], Number]:
+    steep = 1.0 / s if s else nan
+
     def value(w: Number) -> Number:
         rest = h / m.maximum(w, _TINY) - 1.0
-        return m.where(rest > 0.0, i - m.log(m.maximum(rest, _TINY)) / s, nan)
+        return m.where(rest > 0.0, i - m.log(m.maximum(rest, _TINY)) * steep, nan)
 
     return value
 
