@@ -6,7 +6,7 @@ import socket
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from itertools import count
 from typing import Any
@@ -16,9 +16,7 @@ from lumen.buses.local.addresses import PATIENCE, Address
 from lumen.buses.local.frames import BadFrameError, frame, framed, nonce, proof, proves, unframed
 from lumen.buses.local.leaving import Leaving
 from lumen.errors import BusError
-from lumen.language.routes import Route
-from lumen.language.routes import Route
-from lumen.ports import Handler, Message, Refused
+from lumen.ports import Handler, Message
 
 CLOSING = 5.0
 WAITING = 20_000
@@ -50,12 +48,6 @@ class LocalBus:
         ]
         for thread in self._threads:
             thread.start()
-
-    def carry(self, routes: Mapping[str, Route]) -> None:
-        """Nothing changes: whose bus it is says how messages are carried."""
-
-    def prepare(self, routes: Mapping[str, Route]) -> None:
-        """There is nothing to make ready."""
 
     def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
         if self._closed:
@@ -89,12 +81,6 @@ class LocalBus:
     def reply(self, message: Message, body: Any) -> None:
         if message.reply_to:
             self.publish(message.reply_to, body, correlation_id=message.correlation_id)
-
-    def carry(self, routes: Mapping[str, Route]) -> None:
-        """How messages are carried is for the exhibition behind the door to say."""
-
-    def prepare(self, routes: Mapping[str, Route]) -> None:
-        """Nothing has to be made ready here."""
 
     def close(self) -> None:
         """Deliver what was published, to our own subscribers too, within 5 s, and end."""
@@ -175,9 +161,6 @@ class LocalBus:
                 continue
             try:
                 handler(message)
-            except Refused as error:
-                with suppress(BusError):
-                    self.reply(message, f"message refused: {error}")
             except Exception:
                 _log.exception("a subscriber failed on `%s`", message.key)
 
