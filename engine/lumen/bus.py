@@ -1,15 +1,15 @@
 """Messages by topic, for authors of modules: `connect`, `subscribe`, `publish`, `close`."""
 
 from lumen.buses.memory import MemoryBus
-from lumen.buses.validated import Refused, log_refusal, validated
+from lumen.buses.validated import OnRefused, log_refusal, validated
 from lumen.errors import BusError
 from lumen.language.projects import Project
-from lumen.ports import Bus, Message
+from lumen.ports import Bus, Message, Refused
 
-__all__ = ["Bus", "BusError", "Message", "connect"]
+__all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
 
 
-def connect(url: str, project: Project | None = None, *, on_refused: Refused = log_refusal) -> Bus:
+def connect(url: str, project: Project | None = None, *, on_refused: OnRefused = log_refusal) -> Bus:
     """The bus at `url`.
 
     `memory://` is a new one inside this process, `memory://NAME` the one that everybody in this process shares under

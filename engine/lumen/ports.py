@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.events import Event
 from lumen.language.motions import Motion
+from lumen.language.routes import Route
 from lumen.language.stories import Visitor
 
 
@@ -107,6 +108,10 @@ class Robot(Protocol):
 
     def poll(self) -> Sequence[Event]: ...
 
+    def begun(self) -> Sequence[str]:
+        """The ids of the commands that began since this was last asked; the others that were started wait."""
+        ...
+
     def read(self, sense: Sense) -> Reading | None:
         """The newest reading of a sense, None where the robot lacks it."""
         ...
@@ -158,8 +163,27 @@ class Message(NamedTuple):
 Handler = Callable[[Message], None]
 
 
+class Refused(Exception):  # noqa: N818  not an error of whoever hands the message over
+    """Raised by a handler for a message that it can't use; the text says why.
+
+    The sender is told where it wants an answer, and a broker puts the message aside, with the reason, to be looked at.
+    """
+
+
 class Bus(Protocol):
     """Messages by topic: `*` in a pattern stands for one word of the key, `#` for any number."""
+
+    def carry(self, routes: Mapping[str, Route]) -> None:
+        """Carry what goes and comes under these keys as their routes say, from now on; other keys as telemetry."""
+        ...
+
+    def prepare(self, routes: Mapping[str, Route]) -> None:
+        """Make ready for `carry` and for subscribing to the routes that come in, so that neither has to wait then.
+
+        This may wait for the network: it is for a thread that nobody waits for. Raises BusError where the broker
+        refuses one of the routes.
+        """
+        ...
 
     def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
         """Hand every matching message to `handler`, one at a time, in the order published; returns the undoing.

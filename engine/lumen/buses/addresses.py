@@ -1,11 +1,14 @@
 """Where a broker is, and in one line why it can't be used."""
 
 import logging
+import os
+import re
 import socket
 import ssl
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import SplitResult, parse_qsl, urlencode, urlsplit
 
 import pika
 from pika import exceptions
@@ -14,6 +17,10 @@ from lumen.errors import BusError
 
 HEARTBEAT = 10
 PATIENCE = 5.0
+CREDENTIALS = "LUMEN_BUS_CREDENTIALS"
+"""The environment variable that names a file with `NAME:PASSWORD`."""
+OLDEST = (3, 10)
+"""The RabbitMQ since which quorum queues know a time to live."""
 
 logging.getLogger("pika").setLevel(logging.CRITICAL)  # it logs a traceback for every failure that we report ourselves
 
@@ -26,6 +33,7 @@ class Address:
             parts = urlsplit(url)
             if not parts.hostname:
                 raise ValueError("there is no host in it")
+            authority, url = _authority(parts)
             self.parameters = pika.URLParameters(url)
         except (ValueError, TypeError, KeyError) as error:
             raise BusError(
@@ -38,6 +46,10 @@ class Address:
         options.blocked_connection_timeout = 3 * HEARTBEAT
         options.heartbeat = options.heartbeat if "heartbeat=" in parts.query else HEARTBEAT
         options.client_properties = {"connection_name": "lumen"}
+        if options.ssl_options:
+            options.ssl_options = pika.SSLOptions(_trusting(authority), parts.hostname)
+        if not parts.username and (file := os.environ.get(CREDENTIALS)):
+            options.credentials = _credentials(file)
         self.user = options.credentials.username
         self.vhost = options.virtual_host
         self.place = f"{options.host}:{options.port}"
@@ -45,8 +57,19 @@ class Address:
     def __str__(self) -> str:
         return self.place
 
+    def check_version(self, server: Mapping[str, Any]) -> None:
+        """Raise BusError where the broker is a RabbitMQ that lacks what we need."""
+        version = server.get("version", b"")
+        text = version.decode(errors="replace") if isinstance(version, bytes) else str(version)
+        numbers = tuple(int(n) for n in re.findall(r"\d+", text)[:2])
+        if "RabbitMQ" in str(server.get("product")) and numbers < OLDEST:
+            least = ".".join(map(str, OLDEST))
+            raise BusError(f"the broker at {self} is RabbitMQ {text}, and too old: install {least} or newer")
+
     def explain(self, error: BaseException) -> BusError:
         """What to do about a connection that could not be opened."""
+        if isinstance(error, BusError):
+            return error
         causes = list(_causes(error))
         return BusError(next(filter(None, map(self._reason, causes)), f"the broker at {self} can't be used: {error!r}"))
 
@@ -58,7 +81,10 @@ class Address:
         if isinstance(cause, socket.gaierror):
             return f"the host `{self.parameters.host}` is unknown: check the address of the broker"
         if isinstance(cause, ssl.SSLCertVerificationError):
-            return f"the certificate of the broker at {self} can't be trusted: {cause.verify_message}"
+            what = cause.verify_message.rstrip(".")
+            if "self-signed" in what or "issuer" in what:
+                what += "; name who signed it, as in amqps://HOST/?ca=FILE"
+            return f"the certificate of the broker at {self} can't be trusted: {what}"
         if isinstance(cause, ssl.SSLError):
             return f"the broker at {self} does not speak TLS: use amqp://, or the port for TLS (5671)"
         if isinstance(cause, exceptions.ProbableAuthenticationError | exceptions.AuthenticationError):
@@ -70,6 +96,34 @@ class Address:
         if isinstance(cause, TimeoutError) or "Timeout" in type(cause).__name__:
             return f"the broker at {self} does not answer: check the host, the port and the network"
         return ""
+
+
+def _authority(parts: SplitResult) -> tuple[str, str]:
+    """The file of whoever signs certificates, from `?ca=FILE`, and the URL without it."""
+    query = dict(parse_qsl(parts.query))
+    authority = query.pop("ca", "")
+    return authority, parts._replace(query=urlencode(query)).geturl()
+
+
+def _trusting(authority: str) -> ssl.SSLContext:
+    """What checks certificates and the host's name in them; nothing turns that off."""
+    try:
+        return ssl.create_default_context(cafile=authority or None)
+    except (OSError, ssl.SSLError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise BusError(f"`{authority}` holds no certificates of who signs the broker's: {reason}") from None
+
+
+def _credentials(file: str) -> Any:
+    try:
+        name, separator, password = Path(file).read_text("utf-8").strip().partition(":")
+    except (OSError, UnicodeDecodeError) as error:
+        raise BusError(f"the file `{file}` that {CREDENTIALS} names can't be read: {error}") from None
+    if not separator or not name or "\n" in password:
+        raise BusError(f"the file `{file}` that {CREDENTIALS} names holds no line `NAME:PASSWORD`")
+    if os.name == "posix" and Path(file).stat().st_mode & 0o077:
+        logging.getLogger(__name__).warning("others can read the password in `%s`: type `chmod 600 %s`", file, file)
+    return pika.PlainCredentials(name, password)
 
 
 def _causes(error: BaseException) -> Iterator[BaseException]:

@@ -2,72 +2,182 @@
 
 One connection receives and one sends; a third thread runs the handlers. So heartbeats are answered while a handler
 works, and `publish` never waits for the network. What is lost with a connection comes back with it: subscriptions are
-made again, and what waits to be sent waits on.
+made again, and what waits to be sent waits on. Where a route carries stops, these have all three of their own.
 """
 
 import logging
 import time
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from itertools import count
 from typing import Any
 
 from lumen.buses.addresses import Address
-from lumen.buses.bodies import JSON, TEXT, check_key, encode
-from lumen.buses.consuming import EXCHANGE, Consuming
+from lumen.buses.bodies import JSON, MAX_BYTES, TEXT, check_key, encode
+from lumen.buses.consuming import Consuming, Delivery
 from lumen.buses.dispatching import MARK, Dispatching
+from lumen.buses.links import Outage
 from lumen.buses.outbox import Parcel
 from lumen.buses.publishing import Publishing
+from lumen.buses.queues import DEAD, EXCHANGE, NEWEST, journal_of
 from lumen.errors import BusError
+from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Handler, Message
 
 CLOSING = 5.0
 PREFIXES = ("avatar", "lumen")
+ANSWERED = 30.0
+"""How long an answer waits for a broker that is away [s]."""
 
 _log = logging.getLogger(__name__)
+
+
+class Way:
+    """A connection for what goes, one for what comes, and a thread for the handlers."""
+
+    def __init__(self, address: Address, outage: Outage, name: str = "") -> None:
+        self.publishing = Publishing(address, f"{name}out", outage)
+        self.consuming = Consuming(address, f"{name}in", outage, lambda delivery: self.dispatching.receive(delivery))
+        self.dispatching = Dispatching(self.consuming.handled, self._refused)
+
+    def open(self) -> None:
+        """Raises BusError, saying what to do, where the broker can't be used."""
+        self.consuming.open()
+        self.publishing.open()
+
+    def begin(self) -> None:
+        """Open as soon as may be; waits for nothing."""
+        self.consuming.begin_alone()
+        self.publishing.begin_alone()
+
+    def answer(self, reply_to: str, correlation_id: str, body: Any) -> None:
+        """To a key of ours, or to a queue: a text as it is, as modules of 2015 expect it; everything else as JSON."""
+        ours = reply_to.split(".")[0] in PREFIXES and not reply_to.startswith("amq.")
+        text = isinstance(body, str) and not ours
+        deadline = time.monotonic() + ANSWERED
+        self.publishing.outbox.put(
+            Parcel(
+                EXCHANGE if ours else "",
+                reply_to,
+                body.encode(errors="replace") if text else encode(body),
+                TEXT if text else JSON,
+                correlation_id=correlation_id,
+                deadline=deadline,
+            )
+        )
+
+    def close(self, deadline: float) -> None:
+        """Send what waits, and hear what of our own was sent."""
+        if not self.dispatching.inside:
+            self._flush(deadline)
+
+    def end(self, deadline: float) -> bool:
+        """Whether all threads have ended until then [s, monotonic]."""
+        parts = (self.publishing, self.consuming, self.dispatching)
+        ended = [part.end(deadline - time.monotonic()) for part in parts]
+        return all(ended)
+
+    def _refused(self, delivery: Delivery, reason: str) -> None:
+        """Put aside what nobody could use, and tell who wants an answer."""
+        properties = delivery.properties
+        if self.publishing.aside:
+            headers = {"reason": reason[:1000], "key": delivery.key}
+            body = delivery.body[:MAX_BYTES]
+            self.publishing.outbox.put(
+                Parcel(DEAD, delivery.key, body, properties.content_type or JSON, headers=headers, keep=NEWEST)
+            )
+        if properties.reply_to:
+            self.answer(properties.reply_to, properties.correlation_id or "", f"message refused: {reason}")
+
+    def _flush(self, deadline: float) -> None:
+        """Send a mark after everything else into each of our queues: when it has come, everything else has.
+
+        Queues that others may read too have none: what is in them is not lost.
+        """
+        outbox = self.publishing.outbox
+        if self.publishing.connection is None and not outbox:
+            return
+        queues = {s.queue for s in self.consuming.subscriptions() if s.queue and not s.must_arrive}
+        marks = {f"{uuid.uuid4()} {queue}": queue for queue in queues}
+        marked = self.dispatching.expect(set(marks))
+        for mark, queue in marks.items():
+            outbox.put(Parcel("", queue, mark.encode(), TEXT, type=MARK))
+        marked.wait(max(0.0, deadline - time.monotonic()))
+        outbox.emptied(max(0.0, deadline - time.monotonic()))
 
 
 class AmqpBus:
     """A handle on the exchange `amq.topic` of the broker at `url` (`amqp://` or `amqps://`).
 
-    Raises BusError, saying what to do, where the broker can't be used. A message without a `ttl` waits in the outbox
-    for a broker that is away; one with a `ttl` is thrown away when it is over, here or on the broker.
+    Raises BusError, saying what to do, where the broker can't be used. How a message travels is said by the route of
+    its key (`carry`). One without a route waits in the outbox for a broker that is away, and is sent once; with a `ttl`
+    it is thrown away when that is over, here or on the broker.
     """
 
     def __init__(self, url: str) -> None:
-        address = Address(url)
+        self._address = Address(url)
+        self._outage = Outage(self._address)
         self._closed = False
-        self._publishing = Publishing(address)
-        self._consuming = Consuming(address, lambda delivery: self._dispatching.receive(delivery))
-        self._dispatching = Dispatching(self._consuming.handled)
+        self._routes: Mapping[str, Route] = {}
+        self._name, self._numbers = uuid.uuid4().hex[:12], count(1)
+        self._stop: Way | None = None
+        self._way = Way(self._address, self._outage)
         try:
-            self._consuming.open()
-            self._publishing.open()
+            self._way.open()
         except BusError:
             self._end(time.monotonic() + CLOSING)
             raise
+
+    def carry(self, routes: Mapping[str, Route]) -> None:
+        self._routes = dict(routes)
+        if self._stop is None and any(route.carried is Carried.STOP for route in routes.values()):
+            self._stop = Way(self._address, self._outage, "stop-")
+            self._stop.begin()
+        out = [k for k, r in routes.items() if r.carried is Carried.JOURNAL and r.direction is Direction.OUT]
+        self._way.publishing.journals = {key: journal_of(key) for key in out}
+        for way in self._ways():
+            way.publishing.known = tuple(routes)
+            way.consuming.carry(routes)
+
+    def prepare(self, routes: Mapping[str, Route]) -> None:
+        coming = {k: r for k, r in routes.items() if r.direction is Direction.IN and r.carried is not Carried.STOP}
+        self._way.consuming.prepare(coming)
 
     def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
         if self._closed:
             raise BusError("the bus is closed: nobody can subscribe any more")
         check_key(pattern)
-        subscription = self._consuming.add(pattern, handler)
-        return lambda: self._consuming.remove(subscription)
+        route = self._routes.get(pattern)
+        consuming = self._way_of(route).consuming
+        subscription = consuming.add(pattern, handler, route)
+        return lambda: consuming.remove(subscription)
 
     def publish(
         self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
     ) -> None:
-        self._send(EXCHANGE, key, encode(body), JSON, reply_to, correlation_id, ttl)
+        if self._closed:
+            raise BusError("the bus is closed: nothing can be published any more")
+        for name in (key, reply_to, correlation_id):
+            check_key(name)
+        route, data = self._routes.get(key), encode(body)
+        keep, id = 0, ""
+        if route is not None:
+            ttl = route.lifetime if ttl is None else ttl
+            keep = 0 if route.must_arrive else route.keep or NEWEST
+            id = f"{self._name}-{next(self._numbers)}" if route.must_arrive else ""
+        deadline = None if ttl is None else time.monotonic() + ttl
+        self._way_of(route).publishing.outbox.put(
+            Parcel(EXCHANGE, key, data, JSON, reply_to, correlation_id, deadline, keep=keep, id=id)
+        )
 
     def reply(self, message: Message, body: Any) -> None:
         """A text goes to a queue as it is, as modules of 2015 expect `command finished`; everything else as JSON."""
         if not message.reply_to:
             return
-        if message.reply_to.split(".")[0] in PREFIXES:
-            self.publish(message.reply_to, body, correlation_id=message.correlation_id)
-        elif isinstance(body, str):
-            self._send("", message.reply_to, body.encode(), TEXT, "", message.correlation_id)
-        else:
-            self._send("", message.reply_to, encode(body), JSON, "", message.correlation_id)
+        if self._closed:
+            raise BusError("the bus is closed: nothing can be published any more")
+        check_key(message.reply_to)
+        self._way.answer(message.reply_to, message.correlation_id, body)
 
     def close(self) -> None:
         """Deliver what was published, to our own subscribers too, within 5 s, and end."""
@@ -75,45 +185,20 @@ class AmqpBus:
             return
         self._closed = True
         deadline = time.monotonic() + CLOSING
-        if not self._dispatching.inside:
-            self._flush(deadline)
+        for way in self._ways():
+            way.close(deadline)
         self._end(deadline)
 
-    def _send(
-        self,
-        exchange: str,
-        key: str,
-        body: bytes,
-        content_type: str,
-        reply_to: str = "",
-        correlation_id: str = "",
-        ttl: float | None = None,
-    ) -> None:
-        if self._closed:
-            raise BusError("the bus is closed: nothing can be published any more")
-        for name in (key, reply_to, correlation_id):
-            check_key(name)
-        deadline = None if ttl is None else time.monotonic() + ttl
-        self._publishing.outbox.put(Parcel(exchange, key, body, content_type, reply_to, correlation_id, deadline))
+    def _ways(self) -> list[Way]:
+        return [self._way, *([self._stop] if self._stop else [])]
 
-    def _flush(self, deadline: float) -> None:
-        """Send a mark after everything else into each of our queues: when it has come, everything else has."""
-        outbox = self._publishing.outbox
-        if self._publishing.connection is None and not outbox:
-            return
-        queues = {s.queue for s in self._consuming.subscriptions() if s.queue}
-        marks = {f"{uuid.uuid4()} {queue}": queue for queue in queues}
-        marked = self._dispatching.expect(set(marks))
-        for mark, queue in marks.items():
-            outbox.put(Parcel("", queue, mark.encode(), TEXT, type=MARK))
-        marked.wait(max(0.0, deadline - time.monotonic()))
-        outbox.emptied(max(0.0, deadline - time.monotonic()))
+    def _way_of(self, route: Route | None) -> Way:
+        return self._stop if self._stop and route and route.carried is Carried.STOP else self._way
 
     def _end(self, deadline: float) -> None:
         self._closed = True
-        ended = [part.end(deadline - time.monotonic()) for part in (self._publishing, self._consuming)]
-        ended.append(self._dispatching.end(deadline - time.monotonic()))
-        if left := len(self._publishing.outbox):
+        ended = [way.end(deadline) for way in self._ways()]
+        if left := sum(len(way.publishing.outbox) for way in self._ways()):
             _log.warning("the bus was closed with %d messages unsent", left)
         elif not all(ended):
             _log.warning("the bus was closed while it still works, after %g s", CLOSING)

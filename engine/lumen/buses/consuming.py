@@ -2,7 +2,8 @@
 
 import logging
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -11,34 +12,50 @@ from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
 
 from lumen.buses.addresses import Address
 from lumen.buses.bodies import MAX_BYTES
-from lumen.buses.links import Link
+from lumen.buses.links import Link, Outage
+from lumen.buses.queues import EXCHANGE, Queue, queue_of
 from lumen.errors import BusError
+from lumen.language.routes import Route
 from lumen.ports import Handler
 
-EXCHANGE = "amq.topic"
 PREFETCH = 64
-WAITING = 20_000
 PATIENCE = 5.0
+OTHERWISE = 406
+"""The broker's code for a queue that exists and was made otherwise."""
 
 _log = logging.getLogger(__name__)
 
 
 @dataclass(eq=False)
 class Subscription:
-    """A pattern, its handler, and its queue on the broker; `bound` is set once the broker has answered."""
+    """A pattern, its handler, and its queue on the broker; `bound` is set once the broker has answered.
+
+    Until there is a handler (`prepared`) the queue only gathers. `received` and `handled` count the deliveries.
+    """
 
     pattern: str
-    handler: Handler
+    handler: Handler | None
+    route: Route | None = None
+    number: int = 0
     active: bool = True
     queue: str = ""
     tag: str = ""
     refusal: str = ""
     epoch: int = 0
+    received: int = 0
+    handled: int = 0
     bound: threading.Event = field(default_factory=threading.Event)
+
+    @property
+    def must_arrive(self) -> bool:
+        return self.route is not None and self.route.must_arrive
 
 
 class Delivery(NamedTuple):
-    """A message as it came, for the thread that runs handlers; `number` and `epoch` say what to acknowledge."""
+    """A message as it came at `at` [s, monotonic], `again` where the broker may have sent it before.
+
+    `number` and `epoch` say what to acknowledge.
+    """
 
     subscription: Subscription
     key: str
@@ -46,19 +63,22 @@ class Delivery(NamedTuple):
     properties: Any
     number: int
     epoch: int
+    again: bool = False
+    at: float = 0.0
 
 
 class Consuming(Link):
     """Hands every delivery to `receive`, which must not block.
 
-    The broker sends `PREFETCH` messages ahead of each subscription and keeps at most `WAITING` more, the newest: that
-    bounds the memory on both sides. `handled` acknowledges.
+    The broker sends `PREFETCH` messages ahead of each subscription and keeps a bounded number more: that bounds the
+    memory on both sides. `handled` acknowledges.
     """
 
-    def __init__(self, address: Address, receive: Callable[[Delivery], None]) -> None:
-        super().__init__(address, "in")
+    def __init__(self, address: Address, name: str, outage: Outage, receive: Callable[[Delivery], None]) -> None:
+        super().__init__(address, name, outage)
         self._receive = receive
         self._subscriptions: list[Subscription] = []
+        self._prepared: dict[str, Subscription] = {}
         self._changing = threading.Lock()
         self._epoch = 0
         self._acknowledged = 0
@@ -68,7 +88,7 @@ class Consuming(Link):
         self._acknowledged = 0
         self.channel.add_on_cancel_callback(self._cancelled)
         self.channel.basic_qos(prefetch_count=PREFETCH)
-        for subscription in self.subscriptions():
+        for subscription in [*self.subscriptions(), *self._prepared.values()]:
             self._bind(subscription)
 
     def serve(self) -> bool:
@@ -79,34 +99,87 @@ class Consuming(Link):
         with self._changing:
             return list(self._subscriptions)
 
-    def add(self, pattern: str, handler: Handler) -> Subscription:
+    def add(self, pattern: str, handler: Handler, route: Route | None = None) -> Subscription:
         """Subscribe; returns when the binding is in force, at once where the broker is away (it is made on its return).
 
-        Raises BusError where the broker refuses it.
+        What was prepared is in force already. Raises BusError where the broker refuses it.
         """
-        subscription = Subscription(pattern, handler)
-        with self._changing:
-            self._subscriptions.append(subscription)
-        if not self._later(lambda: self._bind(subscription)):
-            _log.warning("`%s` is subscribed to as soon as the broker at %s is back", pattern, self.address)
-        elif not subscription.bound.wait(PATIENCE):
-            _log.warning("the broker at %s does not confirm the subscription to `%s`", self.address, pattern)
-        if subscription.refusal:
-            raise BusError(f"the broker at {self.address} refuses to let us read `{pattern}`: {subscription.refusal}")
+        if subscription := self._claimed(pattern, handler):
+            return subscription
+        subscription = self._subscribed(pattern, handler, route)
+        self._await(subscription)
         return subscription
 
+    def prepare(self, routes: Mapping[str, Route]) -> None:
+        """Have queues for these keys bound, which gather until somebody subscribes; those prepared before are let go.
+
+        Raises BusError where the broker refuses one.
+        """
+        with self._changing:
+            taken = {s.pattern for s in self._subscriptions}
+            old, self._prepared = self._prepared, {}
+            for key in routes.keys() - taken:
+                self._prepared[key] = old.pop(key) if key in old else Subscription(key, None, routes[key])
+            waiting = list(self._prepared.values())
+        for subscription in old.values():
+            subscription.active = False
+            self._later(lambda s=subscription: self._drop(s))  # type: ignore[misc]
+        for subscription in waiting:
+            if not subscription.bound.is_set():
+                self._later(lambda s=subscription: self._bind(s))  # type: ignore[misc]
+                self._await(subscription)
+
+    def carry(self, routes: Mapping[str, Route]) -> None:
+        """Go on under these routes; where one of them needs another queue, that is bound before the old one is left."""
+        for subscription in self.subscriptions():
+            old, new = subscription.route, routes.get(subscription.pattern)
+            subscription.route = new
+            if queue_of("", old).name != queue_of("", new).name:
+                self._later(lambda s=subscription, r=old: self._move(s, r))  # type: ignore[misc]
+
     def remove(self, subscription: Subscription) -> None:
-        """No message reaches the handler from now on; its queue goes away with its consumer."""
+        """No message reaches the handler from now on; its queue goes away."""
         with self._changing:
             if not subscription.active:
                 return
             subscription.active = False
             self._subscriptions.remove(subscription)
-        self._later(lambda: self._cancel(subscription))
+        self._later(lambda: self._drop(subscription))
+
+    def _claimed(self, pattern: str, handler: Handler) -> Subscription | None:
+        with self._changing:
+            subscription = self._prepared.pop(pattern, None)
+            if subscription is None or not subscription.bound.is_set() or subscription.refusal:
+                return None
+            subscription.handler = handler
+            self._subscriptions.append(subscription)
+        self._later(lambda: self._consume(subscription))
+        return subscription
+
+    def _subscribed(self, pattern: str, handler: Handler, route: Route | None) -> Subscription:
+        with self._changing:
+            numbers = {s.number for s in self._subscriptions if s.pattern == pattern}
+            number = next(n for n in range(len(numbers) + 1) if n not in numbers)
+            subscription = Subscription(pattern, handler, route, number)
+            self._subscriptions.append(subscription)
+        if not self._later(lambda: self._bind(subscription)):
+            subscription.bound.set()
+            _log.warning("`%s` is subscribed to as soon as the broker at %s is back", pattern, self.address)
+        return subscription
+
+    def _await(self, subscription: Subscription) -> None:
+        if not subscription.bound.wait(PATIENCE):
+            _log.warning(
+                "the broker at %s does not confirm the subscription to `%s`", self.address, subscription.pattern
+            )
+        if subscription.refusal:
+            what = f"refuses to let us read `{subscription.pattern}`"
+            raise BusError(f"the broker at {self.address} {what}: {subscription.refusal}")
 
     def handled(self, delivery: Delivery) -> None:
         """This and all before it are done: the broker may send on."""
-        if delivery.epoch == self._epoch and delivery.number - self._acknowledged >= PREFETCH // 2:
+        enough = 1 if delivery.subscription.must_arrive else PREFETCH // 2
+        if delivery.epoch == self._epoch and delivery.number - self._acknowledged >= enough:
             self._acknowledged = delivery.number
             self._later(lambda: self._acknowledge(delivery))
 
@@ -130,27 +203,87 @@ class Consuming(Link):
     def _bind(self, subscription: Subscription) -> None:
         if not subscription.active or self.channel is None or subscription.epoch == self._epoch:
             return
-        arguments = {"x-max-length": WAITING, "x-overflow": "drop-head"}
         try:
-            declared = self.channel.queue_declare("", exclusive=True, auto_delete=True, arguments=arguments)
-            subscription.queue = declared.method.queue
-            self.channel.queue_bind(subscription.queue, EXCHANGE, subscription.pattern)
-            subscription.tag = self.channel.basic_consume(subscription.queue, self._callback(subscription))
+            queue = queue_of(subscription.pattern, subscription.route, subscription.number)
+            subscription.queue, refusal = self._make(queue)
+            if refusal:
+                self._refused(subscription, refusal)
+                return
             subscription.epoch = self._epoch
-        except ChannelClosedByBroker as error:
-            subscription.refusal = error.reply_text
-            self.remove(subscription)
-            raise
+            if subscription.handler:
+                self._consume(subscription)
         finally:
             subscription.bound.set()
+
+    def _refused(self, subscription: Subscription, refusal: str) -> None:
+        subscription.refusal, subscription.active = refusal, False
+        with self._changing:
+            if subscription in self._subscriptions:
+                self._subscriptions.remove(subscription)
+            self._prepared.pop(subscription.pattern, None)
+
+    def _make(self, queue: Queue) -> tuple[str, str]:
+        """Declare and bind a queue on a channel of its own; its name, and why the broker refuses."""
+        for attempt in (self._declare, self._renew, self._adopt) if queue.name else (self._declare,):
+            channel = self.connection.channel()
+            try:
+                name = attempt(channel, queue)
+                channel.close()
+                return name, ""
+            except ChannelClosedByBroker as error:
+                refusal = str(error.reply_text)
+                if error.reply_code != OTHERWISE:
+                    break
+        return "", refusal
+
+    def _declare(self, channel: Any, queue: Queue) -> str:
+        mine = not queue.name
+        arguments = queue.arguments
+        made = channel.queue_declare(
+            queue.name, durable=not mine, exclusive=mine, auto_delete=mine, arguments=arguments
+        )
+        channel.queue_bind(made.method.queue, EXCHANGE, queue.key)
+        return str(made.method.queue)
+
+    def _renew(self, channel: Any, queue: Queue) -> str:
+        """There is one of that name that was made otherwise: where it holds nothing, another takes its place."""
+        channel.queue_delete(queue.name, if_unused=True, if_empty=True)
+        return self._declare(channel, queue)
+
+    def _adopt(self, channel: Any, queue: Queue) -> str:
+        """Use the one that there is: nothing in it is lost, and it is made anew when it is empty."""
+        channel.queue_bind(queue.name, EXCHANGE, queue.key)
+        return queue.name
+
+    def _consume(self, subscription: Subscription) -> None:
+        if self.channel is not None and subscription.active and subscription.epoch == self._epoch:
+            subscription.tag = self.channel.basic_consume(subscription.queue, self._callback(subscription))
+
+    def _move(self, subscription: Subscription, old: Route | None) -> None:
+        if self.channel is None or not subscription.active:
+            return
+        left = Subscription(subscription.pattern, None, old, queue=subscription.queue, tag=subscription.tag)
+        subscription.epoch = 0
+        self._bind(subscription)
+        self._drop(left)
+
+    def _drop(self, subscription: Subscription) -> None:
+        """Stop reading a queue; one that outlives us is bound to nothing any more, and deleted if it is empty."""
+        if self.channel is None or not subscription.queue:
+            return
+        if subscription.tag:
+            self.channel.basic_cancel(subscription.tag)
+        with suppress(ChannelClosedByBroker):
+            channel = self.connection.channel()
+            if subscription.must_arrive:
+                channel.queue_unbind(subscription.queue, EXCHANGE, subscription.pattern)
+            if subscription.must_arrive or not subscription.tag:
+                channel.queue_delete(subscription.queue, if_unused=True, if_empty=subscription.must_arrive)
+            channel.close()
 
     def _cancelled(self, frame: Any) -> None:
         """The broker took a queue from us (somebody deleted it): start anew."""
         raise ConsumerCancelled(frame.method.consumer_tag)
-
-    def _cancel(self, subscription: Subscription) -> None:
-        if subscription.tag and self.channel is not None:
-            self.channel.basic_cancel(subscription.tag)
 
     def _acknowledge(self, delivery: Delivery) -> None:
         if delivery.epoch == self._epoch and self.channel is not None:
@@ -160,8 +293,8 @@ class Consuming(Link):
     def _callback(self, subscription: Subscription) -> Callable[..., None]:
         def arrived(_: Any, method: Any, properties: Any, body: bytes) -> None:
             kept = body if len(body) <= MAX_BYTES else body[: MAX_BYTES + 1]
-            self._receive(
-                Delivery(subscription, method.routing_key, kept, properties, method.delivery_tag, self._epoch)
-            )
+            key, number, again = method.routing_key, method.delivery_tag, method.redelivered
+            subscription.received += 1
+            self._receive(Delivery(subscription, key, kept, properties, number, self._epoch, again, time.monotonic()))
 
         return arrived

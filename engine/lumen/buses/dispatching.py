@@ -1,15 +1,19 @@
 """The thread that runs handlers, one at a time, so that a slow one keeps nobody's heart from beating."""
 
+import hashlib
 import logging
 import queue
 import threading
+import time
 from collections.abc import Callable
 
 from lumen.buses.bodies import JSON, decode
-from lumen.buses.consuming import Delivery
-from lumen.ports import Message
+from lumen.buses.consuming import Delivery, Subscription
+from lumen.buses.pace import Pace
+from lumen.ports import Message, Refused
 
 MARK = "lumen.mark"
+REMEMBERED = 10_000
 
 _log = logging.getLogger(__name__)
 
@@ -17,15 +21,19 @@ _log = logging.getLogger(__name__)
 class Dispatching:
     """Decodes deliveries and hands them to their handlers in the order received.
 
-    `handled` is told of each delivery that is over. A delivery of type `MARK` only says that everything published
-    before it has arrived.
+    `handled` is told of each delivery that is over, `refused` of one that nobody could use, with the reason. Of
+    telemetry only the newest are handed on, as many as the route keeps, while they are young enough; what must arrive
+    and comes twice is handed on once. A delivery of type `MARK` only says that everything published before it has
+    arrived.
     """
 
-    def __init__(self, handled: Callable[[Delivery], None]) -> None:
-        self._handled = handled
+    def __init__(self, handled: Callable[[Delivery], None], refused: Callable[[Delivery, str], None]) -> None:
+        self._handled, self._refused = handled, refused
         self._waiting: queue.SimpleQueue[Delivery | None] = queue.SimpleQueue()
         self._marks: set[str] = set()
         self._marked = threading.Event()
+        self._done: dict[tuple[int, str], None] = {}
+        self._pace = Pace()
         self._thread = threading.Thread(target=self._run, name="lumen-bus-handlers", daemon=True)
         self._thread.start()
 
@@ -54,10 +62,12 @@ class Dispatching:
 
     def _run(self) -> None:
         while (delivery := self._waiting.get()) is not None:
+            subscription = delivery.subscription
+            subscription.handled += 1
             if delivery.properties.type == MARK:
                 self._pass(delivery.body.decode(errors="replace"))
-            elif delivery.subscription.active:
-                self._deliver(delivery)
+            elif subscription.active and self._wanted(subscription, delivery):
+                self._deliver(subscription, delivery)
             self._handled(delivery)
 
     def _pass(self, mark: str) -> None:
@@ -66,15 +76,55 @@ class Dispatching:
             if not self._marks:
                 self._marked.set()
 
-    def _deliver(self, delivery: Delivery) -> None:
+    def _wanted(self, subscription: Subscription, delivery: Delivery) -> bool:
+        """Whether it is neither too old, nor replaced by newer ones, nor here for the second time."""
+        route = subscription.route
+        if route is None:
+            return True
+        late = route.lifetime is not None and time.monotonic() - delivery.at > route.lifetime
+        if route.must_arrive:
+            if late:
+                self._drop(delivery, f"it waited for longer than {route.lifetime:g} s")
+            return not late and self._new(subscription, delivery)
+        if late or (route.keep and subscription.received - subscription.handled >= route.keep):
+            return False
+        return self._pace.allows(delivery.key)
+
+    def _new(self, subscription: Subscription, delivery: Delivery) -> bool:
+        """Whether it was not handled before; messages of others have no id, and are known by all that they hold."""
+        id = delivery.properties.message_id
+        mark = (subscription.number, id or _digest(delivery))
+        if mark in self._done and (id or delivery.again):
+            return False
+        self._done[mark] = None
+        if len(self._done) > REMEMBERED:
+            del self._done[next(iter(self._done))]
+        return True
+
+    def _deliver(self, subscription: Subscription, delivery: Delivery) -> None:
         properties = delivery.properties
         try:
             body = decode(delivery.body, properties.content_type or JSON)
         except ValueError as error:
-            _log.warning("a message on `%s` was dropped: %s", delivery.key, error)
+            self._drop(delivery, str(error))
             return
+        message = Message(delivery.key, body, properties.reply_to or "", properties.correlation_id or "")
         try:
-            message = Message(delivery.key, body, properties.reply_to or "", properties.correlation_id or "")
-            delivery.subscription.handler(message)
-        except Exception:
-            _log.exception("a subscriber of `%s` failed on `%s`", delivery.subscription.pattern, delivery.key)
+            assert subscription.handler
+            subscription.handler(message)
+        except Refused as error:
+            self._refused(delivery, str(error))
+        except Exception as error:
+            _log.exception("a subscriber of `%s` failed on `%s`", subscription.pattern, delivery.key)
+            if subscription.must_arrive:
+                self._refused(delivery, f"who should handle it failed: {error!r}")
+
+    def _drop(self, delivery: Delivery, reason: str) -> None:
+        _log.warning("a message on `%s` was dropped: %s", delivery.key, reason)
+        self._refused(delivery, reason)
+
+
+def _digest(delivery: Delivery) -> str:
+    properties = delivery.properties
+    said = f"{delivery.key} {properties.correlation_id} {properties.reply_to} {properties.timestamp} "
+    return hashlib.sha256(said.encode(errors="replace") + delivery.body).hexdigest()

@@ -20,6 +20,36 @@ STEADY = 5.0
 _log = logging.getLogger(__name__)
 
 
+class Outage:
+    """One broker as all links of a bus see it: its going and its coming back are told once, whoever notices.
+
+    The `repr` of every failure is logged, those after the first of an outage, and repeated ones, at level INFO.
+    """
+
+    def __init__(self, address: Address) -> None:
+        self._address = address
+        self._away: set[str] = set()
+        self._said: set[str] = set()
+        self._changing = threading.Lock()
+
+    def lost(self, link: str, what: str, error: BaseException) -> None:
+        with self._changing:
+            new = not self._away or what not in self._said
+            self._away.add(link)
+            self._said.add(what)
+        _log.log(logging.WARNING if new else logging.INFO, "the broker at %s %s: %r", self._address, what, error)
+
+    def back(self, link: str) -> None:
+        with self._changing:
+            was = link in self._away
+            self._away.discard(link)
+            over = was and not self._away
+            if over:
+                self._said.clear()
+        if over:
+            _log.warning("the broker at %s is back", self._address)
+
+
 class Link:
     """Opens, serves and reopens; a subclass says what there is to do (`begin`, `serve`, `finish`).
 
@@ -27,8 +57,8 @@ class Link:
     link tries again, waiting twice as long each time, up to 10 s, and at random between half and all of that.
     """
 
-    def __init__(self, address: Address, name: str) -> None:
-        self.address = address
+    def __init__(self, address: Address, name: str, outage: Outage) -> None:
+        self.address, self.name, self._outage = address, name, outage
         self.connection: Any = None
         self.channel: Any = None
         self.ending = threading.Event()
@@ -44,6 +74,11 @@ class Link:
         except Exception as error:
             raise self.address.explain(error) from error
 
+    def begin_alone(self) -> None:
+        """Connect as soon as may be; a failure is logged, and tried again."""
+        self._opened.set_result(None)
+        self._thread.start()
+
     def join(self, timeout: float) -> bool:
         """Wait until the thread has ended; whether it has, within `timeout` [s]."""
         if self._thread.ident is not None:
@@ -57,6 +92,18 @@ class Link:
         """Do what there is to do, at most for a second; false when all is done and the link may end."""
         raise NotImplementedError
 
+    def connect(self) -> Any:
+        """A new connection, open; raises what pika raises."""
+        return pika.BlockingConnection(self.address.parameters)
+
+    def open_channel(self) -> Any:
+        return self.connection.channel()
+
+    def disconnect(self, connection: Any) -> None:
+        """End the connection in good order, where it still lives."""
+        with suppress(AMQPError, OSError):
+            connection.close()
+
     def process(self, seconds: float) -> None:
         """Let the connection live: heartbeats, deliveries, and whatever the broker has against us, as its exception.
 
@@ -69,41 +116,40 @@ class Link:
     def _run(self) -> None:
         while not self.ending.is_set():
             try:
-                self.connection = pika.BlockingConnection(self.address.parameters)
+                self.connection = self.connect()
             except Exception as error:
                 if not self._opened.done():
                     self._opened.set_exception(error)
                     return
-                self._pause(error)
+                self._outage.lost(self.name, "can't be reached", error)
+                self._pause()
             else:
                 self._live()
 
     def _live(self) -> None:
         since = time.monotonic()
         try:
-            self.channel = self.connection.channel()
+            self.channel = self.open_channel()
             self.begin()
-            self._report_open()
+            self._outage.back(self.name)
+            if not self._opened.done():
+                self._opened.set_result(None)
             while self.serve():
                 pass
-            self.channel.close()
+            self.finish()
         except (AMQPError, OSError) as error:
             self._lost(error, since)
         except Exception as error:
-            _log.exception("the bus met something unexpected")
-            if not self._opened.done():
-                self._opened.set_exception(error)
+            if self._opened.done():
+                _log.exception("the bus met something unexpected")
             self._lost(error, since)
         finally:
             connection, self.connection, self.channel = self.connection, None, None
-            with suppress(AMQPError, OSError):
-                connection.close()
+            self.disconnect(connection)
 
-    def _report_open(self) -> None:
-        if self._opened.done():
-            _log.warning("the broker at %s is back", self.address)
-        else:
-            self._opened.set_result(None)
+    def finish(self) -> None:
+        """All is done: close the channel."""
+        self.channel.close()
 
     def _lost(self, error: Exception, since: float) -> None:
         if not self._opened.done():
@@ -114,11 +160,9 @@ class Link:
             self._delay = FIRST_DELAY
         if not self.ending.is_set():
             what = "refuses" if isinstance(error, ChannelClosedByBroker) else "is lost"
-            _log.warning("the broker at %s %s: %r", self.address, what, error)
-            self._pause(None)
+            self._outage.lost(self.name, what, error)
+            self._pause()
 
-    def _pause(self, error: Exception | None) -> None:
-        if error:
-            _log.warning("the broker at %s can't be reached: %r", self.address, error)
+    def _pause(self) -> None:
         self.ending.wait(self._delay * random.uniform(0.5, 1.0))
         self._delay = min(2 * self._delay, LONGEST_DELAY)

@@ -11,14 +11,15 @@ things are now, and a `rest` is not refused because of a flood before it.
 import logging
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 from weakref import WeakValueDictionary
 
 from lumen.buses.bodies import check_key, copied
 from lumen.errors import BusError
 from lumen.interpreters.routing import matches
-from lumen.ports import Handler, Message
+from lumen.language.routes import Route
+from lumen.ports import Handler, Message, Refused
 
 CLOSING = 5.0
 REMEMBERED = 4_096
@@ -78,6 +79,12 @@ class _Hub:
                 else:
                     self.queue.append(item)
 
+    def refuse(self, message: Message, reason: str) -> None:
+        """Tell who wants an answer that nobody could use the message."""
+        if message.reply_to and (listeners := self.find(message.reply_to)):
+            text = f"message refused: {reason}"
+            self.queue.append((listeners, Message(message.reply_to, text, "", message.correlation_id)))
+
     def deliver(self) -> None:
         """Empty the queue, unless somebody is at it already.
 
@@ -90,7 +97,8 @@ class _Hub:
                 while queue:
                     item = queue.popleft()
                     if type(item) is tuple:
-                        _hand_over(*item)
+                        for message, reason in _hand_over(*item):
+                            self.refuse(message, reason)
                     else:
                         item()  # type: ignore[operator]
                 if self.dropped:
@@ -101,16 +109,21 @@ class _Hub:
                 delivering.release()
 
 
-def _hand_over(subscriptions: tuple[_Subscription, ...], message: Message) -> None:
+def _hand_over(subscriptions: tuple[_Subscription, ...], message: Message) -> list[tuple[Message, str]]:
+    """Call the handlers; which of them refuse, and why."""
     last = len(subscriptions) - 1
+    refused: list[tuple[Message, str]] = []
     for i, subscription in enumerate(subscriptions):
         if not subscription.active:
             continue
         try:
             own = message if i == last else message._replace(body=copied(message.body))
             subscription.handler(own)
+        except Refused as error:
+            refused.append((message, str(error)))
         except Exception:
             _log.exception("a subscriber of `%s` failed on `%s`", subscription.pattern, message.key)
+    return refused
 
 
 _shared: WeakValueDictionary[str, _Hub] = WeakValueDictionary()
@@ -127,6 +140,12 @@ class MemoryBus:
         self._hub = _shared.setdefault(name, _Hub()) if name else _Hub()
         self._mine: dict[_Subscription, None] = {}
         self._closed = False
+
+    def carry(self, routes: Mapping[str, Route]) -> None:
+        """Nothing changes: here every message arrives, and at once."""
+
+    def prepare(self, routes: Mapping[str, Route]) -> None:
+        """There is nothing to wait for."""
 
     def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
         if self._closed:

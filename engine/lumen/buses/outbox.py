@@ -3,14 +3,23 @@
 import threading
 import time
 from collections import deque
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
+
+from lumen.errors import BusError
 
 CAPACITY = 50_000
 BYTES = 64 * 1024 * 1024
+MUST = 10_000
+"""Messages that must arrive and wait: beyond it, who sends another is told."""
 
 
 class Parcel(NamedTuple):
-    """A message on its way out; after `deadline` [s, monotonic] nobody wants it any more."""
+    """A message on its way out; after `deadline` [s, monotonic] nobody wants it any more.
+
+    Of those with the same key at most `keep` wait, the newest (0: all). One with an `id` must arrive: it is sent until
+    the broker has it, and who receives it twice knows it by its id. `headers` travel with it.
+    """
 
     exchange: str
     key: str
@@ -20,6 +29,9 @@ class Parcel(NamedTuple):
     correlation_id: str = ""
     deadline: float | None = None
     type: str = ""
+    keep: int = 0
+    id: str = ""
+    headers: dict[str, str] | None = None
 
     @property
     def expiration(self) -> str | None:
@@ -28,54 +40,127 @@ class Parcel(NamedTuple):
 
 
 class Outbox:
-    """Any thread puts, one thread takes; when full, the oldest gives way and is counted in `dropped`."""
+    """Any thread puts, one thread takes, first what must arrive.
 
-    def __init__(self) -> None:
-        self.dropped = 0
-        self._parcels: deque[Parcel] = deque()
-        self._bytes = 0
+    When it is full the oldest gives way and is counted in `dropped`; what must arrive never does: `put` raises BusError
+    instead. `late` are those whose deadline passed before they could be sent. `awaken` is called where somebody may be
+    asleep who wants to know that there is something again.
+    """
+
+    def __init__(self, awaken: Callable[[], None] = lambda: None) -> None:
+        self.dropped = self.late = 0
+        self._awaken = awaken
+        self._must: deque[Parcel] = deque()
+        self._may: deque[Parcel | str] = deque()
+        self._newest: dict[str, deque[Parcel]] = {}
+        self._bytes = {True: 0, False: 0}
         self._changed = threading.Condition()
+        self._asleep = False
 
     def put(self, parcel: Parcel) -> None:
         with self._changed:
-            self._parcels.append(parcel)
-            self._bytes += len(parcel.body)
-            while len(self._parcels) > CAPACITY or self._bytes > BYTES:
+            if parcel.id:
+                self._check_room(parcel)
+                self._must.append(parcel)
+            elif parcel.keep:
+                self._replace(parcel)
+            else:
+                self._may.append(parcel)
+            self._weigh(parcel, +1)
+            while len(self._may) > CAPACITY or self._bytes[False] > BYTES:
                 self._pop()
                 self.dropped += 1
+            asleep, self._asleep = self._asleep, False
             self._changed.notify_all()
+        if asleep:
+            self._awaken()
 
     def take(self, most: int, timeout: float) -> list[Parcel]:
         """The next parcels still wanted, at most so many; none if there is nothing within `timeout` [s]."""
         with self._changed:
-            if not self._parcels:
+            if timeout and not self:
                 self._changed.wait(timeout)
             now = time.monotonic()
-            taken = [self._pop() for _ in range(min(most, len(self._parcels)))]
-            if not self._parcels:
+            taken: list[Parcel] = []
+            while self and len(taken) < most:
+                parcel = self._pop()
+                if parcel.deadline is None or parcel.deadline > now:
+                    taken.append(parcel)
+                else:
+                    self.late += 1
+            if not self:
                 self._changed.notify_all()
-            return [p for p in taken if p.deadline is None or p.deadline > now]
+            return taken
 
-    def put_back(self, parcels: list[Parcel]) -> None:
-        """These could not be sent: they are the next again."""
+    def put_back(self, parcels: Iterable[Parcel]) -> None:
+        """These could not be sent: they are the next again. What newer ones have replaced meanwhile is forgotten."""
         with self._changed:
-            self._parcels.extendleft(reversed(parcels))
-            self._bytes += sum(len(p.body) for p in parcels)
+            for parcel in reversed(list(parcels)):
+                if parcel.id:
+                    self._must.appendleft(parcel)
+                elif parcel.keep and len(self._newest.get(parcel.key, ())) >= parcel.keep:
+                    continue
+                elif parcel.keep:
+                    self._newest.setdefault(parcel.key, deque()).appendleft(parcel)
+                    self._may.appendleft(parcel.key)
+                else:
+                    self._may.appendleft(parcel)
+                self._weigh(parcel, +1)
+
+    def sleep(self) -> bool:
+        """Whether there is nothing: then `awaken` is called at the next `put`."""
+        with self._changed:
+            self._asleep = not self
+            return self._asleep
 
     def emptied(self, timeout: float) -> bool:
         """Wait until everything has been taken; whether it has, within `timeout` [s]."""
         with self._changed:
-            return self._changed.wait_for(lambda: not self._parcels, timeout)
+            return self._changed.wait_for(lambda: not self, timeout)
 
     def wake(self) -> None:
         """Let who waits in `take` look around."""
         with self._changed:
             self._changed.notify_all()
+        self._awaken()
 
     def __len__(self) -> int:
-        return len(self._parcels)
+        return len(self._must) + len(self._may)
+
+    def _replace(self, parcel: Parcel) -> None:
+        """The newest of a key take the places of the oldest."""
+        waiting = self._newest.setdefault(parcel.key, deque())
+        waiting.append(parcel)
+        self._may.append(parcel.key)
+        while len(waiting) > parcel.keep:
+            self._weigh(waiting.popleft(), -1)
+            self._may.remove(parcel.key)
+
+    def _check_room(self, parcel: Parcel) -> None:
+        if len(self._must) < MUST and self._bytes[True] + len(parcel.body) <= BYTES:
+            return
+        now = time.monotonic()
+        late = [p for p in self._must if p.deadline is not None and p.deadline <= now]
+        if not late:
+            raise BusError(f"the broker takes nothing, and {len(self._must):,} messages that must arrive wait already")
+        self.late += len(late)
+        self._must = deque(p for p in self._must if p.deadline is None or p.deadline > now)
+        self._bytes[True] = sum(len(p.body) for p in self._must)
+
+    def _weigh(self, parcel: Parcel, sign: int) -> None:
+        self._bytes[bool(parcel.id)] += sign * len(parcel.body)
 
     def _pop(self) -> Parcel:
-        parcel = self._parcels.popleft()
-        self._bytes -= len(parcel.body)
+        parcel = self._must.popleft() if self._must else self._next()
+        self._weigh(parcel, -1)
+        return parcel
+
+    def _next(self) -> Parcel:
+        item = self._may.popleft()
+        if not isinstance(item, str):
+            return item
+        waiting = self._newest[item]
+        parcel = waiting.popleft()
+        if not waiting:
+            del self._newest[item]
         return parcel

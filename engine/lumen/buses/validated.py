@@ -1,17 +1,18 @@
 """Bodies checked at the boundary, against the message schemas of a project's routes."""
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from lumen.buses.checking import Check, checks
 from lumen.errors import BusError
 from lumen.language.projects import Project
-from lumen.ports import Bus, Handler, Message
+from lumen.language.routes import Route
+from lumen.ports import Bus, Handler, Message, Refused
 
 PREFIXES = ("avatar", "lumen")
 
-Refused = Callable[[str, str], None]
+OnRefused = Callable[[str, str], None]
 """Told of a message that was not handed on: its key, and the reason."""
 
 _log = logging.getLogger(__name__)
@@ -26,11 +27,12 @@ class ValidatedBus:
     """A bus on which only bodies pass that fit their route.
 
     A body of our own that does not is our own fault: `publish` raises BusError. One that comes in is not handed to the
-    subscriber but to `on_refused`. Keys without a route pass unchecked, keys that begin with neither `avatar` nor
-    `lumen` don't pass. `use` takes on another bundle of the project while messages flow.
+    subscriber: `on_refused` is told, the bus puts it aside and answers the sender. Keys without a route pass unchecked,
+    keys that begin with neither `avatar` nor `lumen` don't pass. `use` takes on another bundle of the project while
+    messages flow.
     """
 
-    def __init__(self, bus: Bus, project: Project, on_refused: Refused = log_refusal) -> None:
+    def __init__(self, bus: Bus, project: Project, on_refused: OnRefused = log_refusal) -> None:
         self._bus, self._on_refused = bus, on_refused
         self._checks: dict[str, Check] = {}
         self.use(project)
@@ -38,13 +40,20 @@ class ValidatedBus:
     def use(self, project: Project) -> None:
         """Check against the routes and schemas of this project from now on."""
         self._checks = checks(project)
+        self._bus.carry(by_key(project))
+
+    def carry(self, routes: Mapping[str, Route]) -> None:
+        self._bus.carry(routes)
+
+    def prepare(self, routes: Mapping[str, Route]) -> None:
+        self._bus.prepare(routes)
 
     def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
         def checked(message: Message) -> None:
             if reason := self._wrong(message.key, message.body):
                 self._on_refused(message.key, reason)
-            else:
-                handler(message)
+                raise Refused(reason)
+            handler(message)
 
         return self._bus.subscribe(pattern, checked)
 
@@ -68,6 +77,12 @@ class ValidatedBus:
         return "" if key.split(".", 1)[0] in PREFIXES else "its key begins with neither `avatar` nor `lumen`"
 
 
-def validated(bus: Bus, project: Project, on_refused: Refused = log_refusal) -> ValidatedBus:
+def by_key(project: Project) -> dict[str, Route]:
+    """The project's routes under their keys; of several with the same key, the one that promises most."""
+    routes = sorted(project.routes.values(), key=lambda route: route.must_arrive)
+    return {route.key_for(project.robot): route for route in routes}
+
+
+def validated(bus: Bus, project: Project, on_refused: OnRefused = log_refusal) -> ValidatedBus:
     """The bus, with everything on it checked against the project's message schemas."""
     return ValidatedBus(bus, project, on_refused)

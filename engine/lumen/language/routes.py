@@ -7,7 +7,7 @@ from enum import StrEnum
 from lumen.language.diagnostics import Path
 
 IMAGE, JOINT, SONAR, TACTILE, BATTERY = "image", "joint", "sonar", "tactile", "battery"
-FACE, HEARD, COMMAND = "face", "heard", "command"
+FACE, HEARD, COMMAND, STOP = "face", "heard", "command", "stop"
 
 MEANINGS: Mapping[str, str] = {
     IMAGE: "what the robot's camera sees",
@@ -18,6 +18,7 @@ MEANINGS: Mapping[str, str] = {
     FACE: "where a visitor's face stands in the camera's image; simulated visitors are seen on it",
     HEARD: "what a visitor said; what is typed, and what a story's visitor says, comes on it",
     COMMAND: "what other modules ask of the robot",
+    STOP: "that the robot has to rest or to stop, on a way of its own",
 }
 """The routes whose names mean something to Lumen itself, and what each is for; all others are the exhibition's own."""
 
@@ -29,13 +30,33 @@ class Direction(StrEnum):
     OUT = "out"
 
 
+class Carried(StrEnum):
+    """As what a message travels, which decides what becomes of it when the way is slow, full or cut.
+
+    `telemetry` says how things are: the newest wins. A `command` is done soon or not at all. A `stop` is a command that
+    waits behind nothing. Of a `journal` nothing is lost.
+    """
+
+    TELEMETRY = "telemetry"
+    COMMAND = "command"
+    STOP = "stop"
+    JOURNAL = "journal"
+
+
+SOON = 5.0
+"""How long a command may wait [s] where its route does not say."""
+STALE = 10.0
+"""How long no command should wait [s]: the people around the robot have moved by then."""
+
+
 @dataclass(frozen=True, slots=True)
 class Route:
     """A row of the route table in `lumen.yaml`.
 
     `key` may hold `{robot}`. `schema` names a file of `schemas/messages/`. `event` is the event that a message
     becomes for the behaviour. `every` [s] is the period of a sense, `ttl` [s] the time to live, `keep` how many
-    messages wait at most, `latency` [s] how old a body without a `time` is taken to be.
+    messages wait at most, `latency` [s] how old a body without a `time` is taken to be. `must_arrive`: who sends it
+    keeps it until the broker has it, who takes it gives it back unless it was handled.
     """
 
     name: str
@@ -46,6 +67,7 @@ class Route:
     every: float | None = None
     ttl: float | None = None
     keep: int | None = None
+    carried: Carried = Carried.TELEMETRY
     must_arrive: bool = False
     latency: float = 0.15
     where: Path = field(default=(), compare=False)
@@ -53,3 +75,8 @@ class Route:
     def key_for(self, robot: str) -> str:
         """The routing key with the robot's name in it."""
         return self.key.replace("{robot}", robot)
+
+    @property
+    def lifetime(self) -> float | None:
+        """How long a message may wait [s], None for as long as it takes."""
+        return SOON if self.ttl is None and self.carried in (Carried.COMMAND, Carried.STOP) else self.ttl

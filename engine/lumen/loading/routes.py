@@ -4,13 +4,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Path
-from lumen.language.routes import Direction, Route
+from lumen.language.routes import COMMAND, STOP, Carried, Direction, Route
 from lumen.loading.source import Report
 from lumen.loading.units import seconds
 
 DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
 LATENCY = 0.15
 """How old a body without a `time` is taken to be [s], where its route does not say."""
+
+_USUAL = {COMMAND: Carried.COMMAND, STOP: Carried.STOP}
+"""How the routes are carried whose names say it."""
 
 
 def build_routes(data: Mapping[str, Any], report: Report, where: Path = ("routes",)) -> dict[str, Route]:
@@ -21,14 +24,7 @@ def build_routes(data: Mapping[str, Any], report: Report, where: Path = ("routes
 def build_route(name: str, data: Mapping[str, Any], report: Report, where: Path) -> Route:
     """One row; a duration that can't be read is reported and left out."""
     latency = duration(data, "latency", report, where)
-    if data.get("must_arrive"):
-        report(
-            "unsupported",
-            (*where, "must_arrive"),
-            f"nothing makes sure yet that the messages of `{name}` arrive",
-            hint="delete `must_arrive`, and let who sends them wait for an answer",
-            key=True,
-        )
+    carried = Carried(data.get("carried", _USUAL.get(name, Carried.TELEMETRY)))
     return Route(
         name=name,
         key=data["key"],
@@ -38,7 +34,8 @@ def build_route(name: str, data: Mapping[str, Any], report: Report, where: Path)
         every=duration(data, "every", report, where, positive=True),
         ttl=duration(data, "ttl", report, where, positive=True),
         keep=int(data["keep"]) if "keep" in data else None,
-        must_arrive=data.get("must_arrive", False),
+        carried=carried,
+        must_arrive=data.get("must_arrive", carried is not Carried.TELEMETRY),
         latency=LATENCY if latency is None else latency,
         where=where,
     )

@@ -6,7 +6,7 @@ import socket
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from itertools import count
 from typing import Any
@@ -16,7 +16,8 @@ from lumen.buses.local.addresses import PATIENCE, Address
 from lumen.buses.local.frames import BadFrameError, frame, framed, nonce, proof, proves, unframed
 from lumen.buses.local.leaving import Leaving
 from lumen.errors import BusError
-from lumen.ports import Handler, Message
+from lumen.language.routes import Route
+from lumen.ports import Handler, Message, Refused
 
 CLOSING = 5.0
 WAITING = 20_000
@@ -48,6 +49,12 @@ class LocalBus:
         ]
         for thread in self._threads:
             thread.start()
+
+    def carry(self, routes: Mapping[str, Route]) -> None:
+        """Nothing changes: whose bus it is says how messages are carried."""
+
+    def prepare(self, routes: Mapping[str, Route]) -> None:
+        """There is nothing to make ready."""
 
     def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
         if self._closed:
@@ -161,6 +168,9 @@ class LocalBus:
                 continue
             try:
                 handler(message)
+            except Refused as error:
+                with suppress(BusError):
+                    self.reply(message, f"message refused: {error}")
             except Exception:
                 _log.exception("a subscriber failed on `%s`", message.key)
 
