@@ -8,12 +8,15 @@ from typing import Protocol
 import pytest
 
 import lumen
+from lumen.bus import connect
+from lumen.buses.validated import validated
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Hall, Joints, Perform, Robot, Sense, Sonar, Tactile
 from lumen.robots.recording import RecordingRobot
+from lumen.robots.remote import Host, RemoteHall, RemoteRobot
 from lumen.robots.simulation import SimulatedRobot
 from tests.tour.names import ROOT
 
@@ -32,7 +35,33 @@ def recording(project: Project) -> Body:
     return RecordingRobot(project.body)
 
 
-ROBOTS: dict[str, Callable[[Project], Body]] = {"simulation": simulated, "recording": recording}
+class Remote(RemoteRobot):
+    """The recording robot and its hall on the other side of a bus, and the seam on this side."""
+
+    def __init__(self, project: Project) -> None:
+        self._far, wire = RecordingRobot(project.body), validated(connect("memory://"), project)
+        self._host = Host(project, self._far, wire, self._far)
+        self._hall = RemoteHall(project, wire)
+        super().__init__(project, wire, lambda: self._far.time, patience=lambda: self._far.time)
+        self.advance(0.02)
+        self.place, self.face, self.touch = self._hall.place, self._hall.face, self._hall.touch
+
+    def plug(self, plugged: bool) -> None:
+        self._hall.plug(plugged)
+        self.advance(5.0)
+
+    def advance(self, dt: float) -> None:
+        self._far.advance(dt)
+        self._host.tick(self._far.time)
+        self._host.server.settle(20.0)
+
+    def close(self) -> None:
+        super().close()
+        self._hall.close()
+        self._host.close()
+
+
+ROBOTS: dict[str, Callable[[Project], Body]] = {"simulation": simulated, "recording": recording, "remote": Remote}
 
 
 @pytest.fixture(scope="module")

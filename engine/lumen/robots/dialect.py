@@ -1,24 +1,27 @@
-"""Commands as the modules of 2015 wrote them, misspellings included, as what our robots understand.
+"""Commands as the modules of 2015 wrote them, misspellings included, and ours, as what our robots understand.
 
 A body is `{"type": …, "method": …, "parameter": {…}}`; the C# modules wrote `Method`. Names of keys and methods compare
 case-insensitively. A method is known by its own name, whatever its type; what is none may be the name of a motion, and
-else one of the names that the motions of 2015 had. So a motion called `rest` does not keep the robot from resting.
+else one of the names that the motions of 2015 had. So a motion called `rest` does not keep the robot from resting. Ours
+are `stop`, `look` and `perform`, which brings its motion along.
 """
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, get_args
 
 from lumen.errors import RobotError
-from lumen.language.commands import Language, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Channel, Language, Look, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, RobotCommand
+from lumen.robots.motions import motion_from
 
 SPEED = 0.3
 POSTURE_SPEED = 0.5
 MOTIONS = {"dancing": "dance", "singing": "sing", "photopose": "photo"}
-STOPPING = ("rest", "stopmove")
+STOPPING = ("rest", "stopmove", "stop")
 LARGEST = 2.0**63
+LONGEST_ID = 200
 LANGUAGES = {"english": "en", "indonesian": "id", "bahasa": "id"}
 NOT_HERE = ("setstiffnesses", "setwalkarmsenabled", "sendremotebuffertooutput", "record")
 
@@ -39,10 +42,30 @@ def command_from(body: Any, project: Project, angles: Angles = dict) -> RobotCom
     return _Order(method.strip().lower(), order.get("parameter"), project, angles).command()
 
 
+def method_of(body: Any) -> str:
+    """The method that a body names, in small letters; empty where it names none."""
+    method = _lowered(body, "a command").get("method") if isinstance(body, Mapping) else None
+    return _shown(method.strip().lower()) if isinstance(method, str) else ""
+
+
+def own_id(body: Any) -> str:
+    """The id that its sender gave a command; empty where it gave none."""
+    id = body.get("id") if isinstance(body, Mapping) else None
+    return id[:LONGEST_ID] if isinstance(id, str) else ""
+
+
 def stops(body: Any) -> bool:
     """Whether a body asks the robot to rest or to stop, which nothing may hold up."""
-    method = _lowered(body, "a command").get("method") if isinstance(body, Mapping) else None
-    return isinstance(method, str) and method.strip().lower() in STOPPING
+    return method_of(body) in STOPPING
+
+
+def stops_all(body: Any) -> bool:
+    """Whether a body asks the robot to end everything."""
+    if not stops(body):
+        return False
+    parameter = _lowered(body, "a command").get("parameter")
+    what = _lowered(parameter, "it").get("what") if isinstance(parameter, Mapping) else None
+    return method_of(body) != "stop" or what in (None, "all")
 
 
 class _Order:
@@ -136,6 +159,18 @@ class _Order:
     def hand(self, opening: float) -> Aim:
         return self.aim({self.joint(self.text("handname")): opening})
 
+    def stop(self) -> Stop:
+        """`what` is one of walk, play and say, or all."""
+        what = self.text("what", "all").lower()
+        known: dict[str, Channel] = {channel: channel for channel in get_args(Channel)}
+        if what not in known:
+            raise RobotError(f"`stop` can't end `{_shown(what)}`: {did_you_mean(_shown(what), known)}")
+        return Stop(known[what])
+
+    def perform(self) -> Perform:
+        """A motion as it is, whatever this project has under its name."""
+        return Perform(motion_from(self.parameter.get("motion"), self.project.body))
+
     def posture(self) -> Posture:
         name = self.text("posturename")
         postures = {p.lower(): p for p in self.project.body.postures}
@@ -157,6 +192,9 @@ _METHODS: Mapping[str, Callable[[_Order], RobotCommand | Language]] = {
     "closehand": lambda order: order.hand(0.0),
     "say": lambda order: Say(order.text("text"), order.language("language")),
     "setlanguage": _Order.set_language,
+    "stop": _Order.stop,
+    "look": lambda order: Look(order.number("yaw", 0.0), order.number("pitch", 0.0)),
+    "perform": _Order.perform,
 }
 
 

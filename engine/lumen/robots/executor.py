@@ -5,6 +5,7 @@ everything; the others wait by rank, then in the order they came. A body supplie
 the ownership and the answers, and is the same for every robot that executes commands itself.
 """
 
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Protocol
@@ -15,6 +16,9 @@ from lumen.language.events import Event
 from lumen.ports import Perform, RobotCommand
 
 HEAD, ARMS, LEGS, VOICE, LEDS = PARTS = ("head", "arms", "legs", "voice", "leds")
+
+REMEMBERED = 1_000
+"""Of how many commands that began it is known at most, where nobody asks."""
 
 _RANK = {Stop: 0, Rest: 0, Wake: 1, Posture: 1, Walk: 1, Perform: 2, Say: 2, Look: 3}
 _CHANNELS: dict[Channel, tuple[type, ...]] = {"walk": (Walk,), "play": (Perform,), "say": (Say,)}
@@ -70,6 +74,7 @@ class Executor:
         self._begin, self._parts = begin, parts
         self._tasks: list[_Task] = []
         self._answers: list[tuple[str, _Task, dict[str, str] | None]] = []
+        self._begun: deque[str] = deque(maxlen=REMEMBERED)
 
     def start(self, id: str, command: RobotCommand) -> None:
         """Queue a command; it begins at the next `advance` for which its parts are free."""
@@ -78,6 +83,7 @@ class Executor:
             kinds = _CHANNELS.get(command.what, (object,))
             ended = [t for t in self._tasks if isinstance(t.command, kinds) and not isinstance(t.command, Stop | Rest)]
             task.activity = _Ended(ended, self._tasks)
+            self._begun.append(id)
             self._cancel(ended)
         elif isinstance(command, Rest):
             self._cancel([t for t in self._tasks if not isinstance(t.command, Stop | Rest)])
@@ -96,6 +102,12 @@ class Executor:
     def owner(self, part: str) -> str:
         """The id of the command that moves this part now, empty where it is free."""
         return next((t.id for t in self._tasks if t.activity and part in t.parts), "")
+
+    def begun(self) -> list[str]:
+        """The ids of the commands that began since this was last asked."""
+        begun = list(self._begun)
+        self._begun.clear()
+        return begun
 
     @property
     def busy(self) -> bool:
@@ -132,6 +144,7 @@ class Executor:
                     except RobotError as error:
                         self._end("error", task, {"reason": str(error)})
                         continue
+                    self._begun.append(task.id)
                 taken |= task.parts
 
     def _cancel(self, tasks: Iterable[_Task]) -> None:

@@ -23,6 +23,9 @@ class NoRobot:
         answers, self._answers = self._answers, []
         return answers
 
+    def begun(self) -> Sequence[str]:
+        return ()
+
     def read(self, sense: Sense) -> Reading | None:
         return None
 

@@ -75,6 +75,9 @@ class RecordingRobot:
         events, self._noticed = self._noticed, []
         return events
 
+    def begun(self) -> Sequence[str]:
+        return self._executor.begun()
+
     def advance(self, dt: float) -> None:
         """Let `dt` [s] pass."""
         self.time += dt

@@ -8,13 +8,16 @@ from functools import partial
 from itertools import count
 from typing import Any
 
+from lumen.errors import BusError
+from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.routes import Route
-from lumen.ports import Bus, Image, Robot, Sense
+from lumen.ports import Bus, Image, Robot, RobotCommand, Sense
 from lumen.robots.bodies import body_of, image_body
 from lumen.robots.broadcast import Broadcast, Count, Handed
 from lumen.robots.orders import Orders
+from lumen.robots.ways import NOTICED, TEXT, tell
 
 PERIOD = 0.1
 CLOSING = 5.0
@@ -55,7 +58,7 @@ class Server:
         self._broadcasts: dict[Sense, Broadcast] = {}
         self._leaving: list[Handed] = []
         self._listen(project)
-        self._orders = Orders(project, robot, bus, clock)
+        self._orders = Orders(project, robot, bus, clock, self.begins)
         self._closed = False
 
     @property
@@ -98,8 +101,20 @@ class Server:
         return True
 
     def answer(self, event: Event) -> bool:
-        """Pass on what the robot says about a command that came from the bus; whether the event was about one."""
-        return self._orders.answer(event)
+        """Pass on what the robot says: of a command, to who sent it; else, what it noticed, to everybody.
+
+        True where it was about a command that came from the bus.
+        """
+        if ".command." in event.name:
+            return self._orders.answer(event)
+        self._tell(NOTICED, {"name": event.name, "data": event.data, "time": event.at})
+        return False
+
+    def begins(self, command: RobotCommand) -> None:
+        """The robot was told to do this: what it says is on the bus as a text, too, for a voice of its own."""
+        if isinstance(command, Say) and TEXT in self._project.routes:
+            body = {"name": self._project.robot, "text": command.text, "date": self._date()}
+            self._tell(TEXT, {**body, "language": command.language})
 
     def close(self) -> None:
         """Publish what was taken and end the threads; harmless when repeated."""
@@ -111,6 +126,12 @@ class Server:
         ended = [b.close(deadline - time.monotonic()) for b in self._broadcasts.values()]
         if not all(ended):
             _log.warning("a sense still works %g s after it was told to end", CLOSING)
+
+    def _tell(self, route: str, body: dict[str, Any]) -> None:
+        try:
+            tell(self._bus, self._project, route, body)
+        except BusError as error:
+            _log.warning("what the robot tells on `%s` was not sent: %s", route, error)
 
     def _schedule(self, sense: Sense, route: Route, now: float) -> None:
         """The next time on the grid of the sense's period; where ticks are coarser than that, a period from now."""

@@ -1,0 +1,10 @@
+"""A robot that is somewhere else: whoever has the body hosts it on the bus, whoever has the brain sees a `Robot`.
+
+`Host` is the body's side, `RemoteRobot` and `RemoteHall` are the brain's and the visitor's.
+"""
+
+from lumen.robots.remote.hall import RemoteHall
+from lumen.robots.remote.host import Host
+from lumen.robots.remote.robot import RemoteRobot
+
+__all__ = ["Host", "RemoteHall", "RemoteRobot"]

@@ -1,0 +1,71 @@
+"""The hall around a robot that is somewhere else."""
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from lumen.errors import BusError, UsageError
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.language.stories import Visitor
+from lumen.ports import Bus, Message
+from lumen.robots.remote.bodies import visitor_body
+from lumen.robots.ways import HALL, SEEN, key_of, tell
+
+LASTING = 2.0
+"""For how long what is done in a hall may wait on the bus [s]."""
+
+_log = logging.getLogger(__name__)
+
+
+class RemoteHall:
+    """What a visitor does in a simulated hall, told to the process that simulates it, and how the robot sees them."""
+
+    def __init__(self, project: Project, bus: Bus) -> None:
+        self._project, self._bus = project, bus
+        self._face: tuple[float, float] | None = None
+        self._key = key_of(project, SEEN)
+        self._undo: Callable[[], None] = bus.subscribe(self._key, self._see)
+
+    def use(self, project: Project) -> None:
+        """Go by the routes of this project from now on."""
+        self._project, key = project, key_of(project, SEEN)
+        if key != self._key:
+            undo, self._key = self._undo, key
+            self._undo = self._bus.subscribe(key, self._see)
+            undo()
+
+    def place(self, visitor: Visitor | None) -> None:
+        self._do(visitor_body(visitor))
+
+    def face(self) -> tuple[float, float] | None:
+        return self._face
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        """Press or release a tactile sensor. Raises UsageError for one that the robot does not have."""
+        known = self._project.body.tactile
+        if sensor not in known:
+            raise UsageError(f"no sensor `{sensor}`: {did_you_mean(sensor, known, 'there are')}")
+        self._do({"sensor": sensor, "pressed": pressed})
+
+    def plug(self, plugged: bool) -> None:
+        self._do({"plugged": plugged})
+
+    def happen(self, event: Event) -> None:
+        """Let the robot notice something by itself, as a story has it."""
+        self._do({"event": event.name, "data": event.data})
+
+    def close(self) -> None:
+        self._undo()
+
+    def _do(self, body: dict[str, Any]) -> None:
+        try:
+            tell(self._bus, self._project, HALL, body, ttl=LASTING)
+        except BusError as error:
+            _log.warning("what the visitor does was not sent: %s", error)
+
+    def _see(self, message: Message) -> None:
+        place = message.body.get("face") if isinstance(message.body, dict) else None
+        right = isinstance(place, list) and len(place) == 2 and all(isinstance(x, int | float) for x in place)
+        self._face = (float(place[0]), float(place[1])) if right and place else None

@@ -1,0 +1,110 @@
+"""A body on the bus: the senses out, commands in, and the simulated hall around it."""
+
+import logging
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from math import isfinite
+from typing import Any
+
+from lumen.errors import BusError, LumenError
+from lumen.language.events import ROBOT_EVENTS, Event
+from lumen.language.projects import Project
+from lumen.language.stories import Visitor
+from lumen.ports import Bus, Hall, Message, Robot
+from lumen.robots.server import Server
+from lumen.robots.ways import HALL, SEEN, key_of, tell
+
+LOOK = 0.1
+"""How often it is told at most where the visitor's face is seen [s]."""
+FARTHEST, TALLEST = 100.0, 3.0
+
+_log = logging.getLogger(__name__)
+
+
+class Host:
+    """Lumen Server for a robot, and for the hall around it where it is simulated.
+
+    Whoever owns the clock calls `tick`; what the robot answered and noticed since is told to everybody, and returned.
+    """
+
+    def __init__(self, project: Project, robot: Robot, bus: Bus, hall: Hall | None = None) -> None:
+        self.server = Server(project, robot, bus)
+        self._robot, self._bus, self._hall, self._project = robot, bus, hall, project
+        self._deeds: deque[Message] = deque(maxlen=1_000)
+        self._seen: object = ()
+        self._looked = -LOOK
+        self._happened: list[Event] = []
+        self._key = key_of(project, HALL)
+        self._undo: Callable[[], None] = lambda: None
+        if hall:
+            self._undo = bus.subscribe(self._key, self._deeds.append)
+
+    def use(self, project: Project) -> None:
+        """Go by another bundle from now on."""
+        self._project, key = project, key_of(project, HALL)
+        if self._hall and key != self._key:
+            undo, self._key = self._undo, key
+            self._undo = self._bus.subscribe(key, self._deeds.append)
+            undo()
+        self.server.use(project)
+
+    def tick(self, now: float) -> list[Event]:
+        """Do what the visitor does, publish the senses that are due, begin commands, and tell what came of them."""
+        while self._deeds and self._hall:
+            try:
+                self._live(self._hall, self._deeds.popleft().body, now)
+            except LumenError as error:
+                _log.warning("what a visitor does was refused: %s", error)
+        self.server.sample(now)
+        events = [*self._robot.poll(), *self._happened]
+        self._happened = []
+        for event in events:
+            self.server.answer(event)
+        if self._hall and now >= self._looked + LOOK:
+            self._look(self._hall, now)
+        return events
+
+    def notice(self, event: Event) -> None:
+        """Tell everybody of something at the next tick, as if the robot had noticed it."""
+        self._happened.append(event)
+
+    def close(self) -> None:
+        self._undo()
+        self.server.close()
+
+    def _live(self, hall: Hall, deed: Any, now: float) -> None:
+        match deed:
+            case {"visitor": None}:
+                hall.place(None)
+            case {"visitor": dict(place)} if (visitor := _visitor(place)) is not None:
+                hall.place(visitor)
+            case {"sensor": str(sensor), "pressed": bool(pressed)}:
+                hall.touch(sensor, pressed)
+            case {"plugged": bool(plugged)}:
+                hall.plug(plugged)
+            case {"event": str(name)} if name in ROBOT_EVENTS:
+                self.notice(Event(name, deed.get("data"), now))
+            case _:
+                _log.warning("what a visitor does was refused: nobody understands %s", str(deed)[:80])
+
+    def _look(self, hall: Hall, now: float) -> None:
+        face = hall.face()
+        if face == self._seen:
+            return
+        self._seen, self._looked = face, now
+        try:
+            tell(self._bus, self._project, SEEN, {"face": list(face) if face else None, "time": now}, ttl=1.0)
+        except BusError as error:
+            _log.warning("how the robot sees the visitor was not sent: %s", error)
+
+
+def _visitor(place: Mapping[str, Any]) -> Visitor | None:
+    """Somebody in the hall, None where nobody could be as the body says."""
+    names = [field.name for field in fields(Visitor)]
+    numbers = [place.get(name) for name in names]
+    if not all(isinstance(n, int | float) and not isinstance(n, bool) and isfinite(n) for n in numbers):
+        return None
+    x, y, height = (float(number) for number in numbers if number is not None)
+    near = abs(x) <= FARTHEST and abs(y) <= FARTHEST and 0.0 < height <= TALLEST
+    return Visitor(x, y, height) if near else None

@@ -1,0 +1,212 @@
+"""A robot on the other side of the bus, as the runtime sees it."""
+
+import logging
+import time
+import uuid
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from lumen.errors import BusError
+from lumen.language.commands import Rest, Stop
+from lumen.language.events import ROBOT_EVENTS, Event
+from lumen.language.projects import Project
+from lumen.ports import Aim, Bus, Message, Perform, Reading, RobotCommand, Sense
+from lumen.robots.remote.bodies import body_of, reading_of
+from lumen.robots.reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN
+from lumen.robots.ways import AIM, COMMAND, NOTICED, REPORT, STOP, key_of, tell
+
+AGAIN = 1.0
+"""How long a command may stay unanswered before it is sent again [s]: the robot performs it once all the same."""
+GIVEN_UP = 5.0
+"""How long one may stay without any answer [s]: it failed then, and is not wanted any more."""
+SILENCE = 5.0
+"""How long after its last news the robot is asked what became of a command [s]."""
+AIM_LASTING = 0.2
+COMMAND_LASTING = 2.0
+WAITING = 10_000
+
+_ENDS = {FINISHED: "done", FAILED: "error", CANCELLED: "cancelled", UNKNOWN: "error"}
+_FORGOTTEN = "the robot has forgotten it: it was restarted"
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass
+class _Pending:
+    """A command that is not over; times in [s] on the caller's clock."""
+
+    id: str
+    command: RobotCommand | None
+    since: float
+    told: float
+    heard: bool = False
+    cancelled: bool = False
+
+
+Delegate = Callable[[str, Perform], bool]
+"""Has somebody else perform a motion under that id; whether there is somebody."""
+
+
+class RemoteRobot:
+    """The robot whose server is on this bus, as the routes of the project say.
+
+    Commands travel under ids that no other process has (`session`). One that is not heard of is sent again; one that
+    the robot never took fails after 5 s, and would not be performed if it came after all. `clock` [s] stamps events,
+    `patience` [s] is the time that answers take. `delegate` may take motions over.
+    """
+
+    def __init__(
+        self,
+        project: Project,
+        bus: Bus,
+        clock: Callable[[], float],
+        *,
+        patience: Callable[[], float] = time.monotonic,
+        delegate: Delegate = lambda id, command: False,
+    ) -> None:
+        self.session = uuid.uuid4().hex[:12]
+        self._project, self._bus, self._clock, self._patience = project, bus, clock, patience
+        self._delegate = delegate
+        self._pending: dict[str, _Pending] = {}
+        self._forsaken: deque[str] = deque(maxlen=1_000)
+        self._came: deque[Message] = deque(maxlen=WAITING)
+        self._events: list[Event] = []
+        self._begun: list[str] = []
+        self._readings: dict[Sense, tuple[Reading, float]] = {}
+        self._undo: dict[str, Callable[[], None]] = {}
+        self.use(project)
+
+    def use(self, project: Project) -> None:
+        """Go by the routes of this project from now on; what is new is listened to before what is gone is not."""
+        self._project = project
+        wanted = {key_of(project, REPORT): self._came.append, key_of(project, NOTICED): self._came.append}
+        for sense in Sense:
+            if sense in project.routes and sense is not Sense.IMAGE:
+                wanted[project.routes[sense].key_for(project.robot)] = partial(self._sense, sense)
+        for key in sorted(wanted.keys() - self._undo.keys()):
+            self._undo[key] = self._bus.subscribe(key, wanted[key])
+        for key in sorted(self._undo.keys() - wanted.keys()):
+            self._undo.pop(key)()
+
+    def start(self, id: str, command: RobotCommand) -> None:
+        if isinstance(command, Aim):
+            self._send(AIM, body_of(command), AIM_LASTING)
+            return
+        now = self._patience()
+        pending = _Pending(id, command, now, now)
+        self._pending[f"{self.session}.{id}"] = pending
+        self._order(f"{self.session}.{id}", command)
+
+    def forward(self, whole: str, command: RobotCommand) -> None:
+        """Have the robot perform somebody else's command, under the whole id that it has there."""
+        self._order(whole, command, delegable=False)
+
+    def cancel(self, id: str) -> None:
+        for whole, pending in self._pending.items():
+            if pending.id == id:
+                pending.cancelled, pending.told = True, self._patience()
+                self._ask("cancel", whole)
+
+    def recover(self, session: str, ids: Iterable[str]) -> None:
+        """Ask what became of commands that another process of that session began; they are answered as our own."""
+        now = self._patience()
+        for id in ids:
+            self._pending[f"{session}.{id}"] = _Pending(id, None, now, now)
+            self._ask("outcome", f"{session}.{id}")
+
+    def lose(self, reason: str) -> None:
+        """The robot is gone, and with it all that it was doing."""
+        for whole in list(self._pending):
+            self._end(whole, "error", reason)
+
+    def poll(self) -> Sequence[Event]:
+        while self._came:
+            self._hear(self._came.popleft())
+        self._chase()
+        events, self._events = self._events, []
+        return events
+
+    def begun(self) -> Sequence[str]:
+        begun, self._begun = self._begun, []
+        return begun
+
+    def read(self, sense: Sense) -> Reading | None:
+        """The newest reading that has come; of images none, which are for other modules."""
+        found = self._readings.get(sense)
+        return found[0] if found else None
+
+    def time(self) -> float | None:
+        """The robot's own time [s], by its newest reading and how long ago that came; None before the first."""
+        newest = max(self._readings.values(), key=lambda found: found[1], default=None)
+        return None if newest is None else newest[0].time + self._clock() - newest[1]
+
+    def close(self) -> None:
+        """Listen no more; the robot goes on with what it was told."""
+        for undo in self._undo.values():
+            undo()
+        self._undo.clear()
+
+    def _order(self, whole: str, command: RobotCommand, *, delegable: bool = True) -> None:
+        if delegable and isinstance(command, Perform) and self._delegate(whole, command):
+            return
+        way = STOP if isinstance(command, Rest | Stop) else COMMAND
+        self._send(way, {**body_of(command), "id": whole}, COMMAND_LASTING)
+
+    def _ask(self, method: str, whole: str) -> None:
+        self._send(COMMAND, {"type": "motion", "method": method, "parameter": {"id": whole}}, COMMAND_LASTING)
+
+    def _send(self, way: str, body: dict[str, Any], ttl: float) -> None:
+        try:
+            tell(self._bus, self._project, way, body, ttl=ttl)
+        except BusError as error:
+            _log.warning("the robot was not told: %s", error)
+
+    def _sense(self, sense: Sense, message: Message) -> None:
+        """On whichever thread the bus has."""
+        if reading := reading_of(sense, message.body, tuple(self._project.body.joints)):
+            self._readings[sense] = (reading, self._clock())
+
+    def _hear(self, message: Message) -> None:
+        match message.body:
+            case {"id": str(whole), "state": str(state)}:
+                self._report(whole, state, str(message.body.get("reason", "")))
+            case {"name": str(name)} if name in ROBOT_EVENTS and message.key == key_of(self._project, NOTICED):
+                self._events.append(Event(name, message.body.get("data"), self._clock()))
+
+    def _report(self, whole: str, state: str, reason: str) -> None:
+        pending = self._pending.get(whole)
+        if pending is None:
+            if whole in self._forsaken and state in (ACCEPTED, STARTED):
+                self._ask("cancel", whole)
+            return
+        pending.told = self._patience()
+        if state == STARTED:
+            self._begun.append(pending.id)
+        pending.heard = True
+        if state in _ENDS:
+            self._end(whole, _ENDS[state], reason or (_FORGOTTEN if state == UNKNOWN else ""))
+
+    def _end(self, whole: str, kind: str, reason: str = "") -> None:
+        pending = self._pending.pop(whole)
+        data = {"reason": reason} if kind == "error" else None
+        self._events.append(Event(f"{kind}.command.{pending.id}", data, self._clock()))
+
+    def _chase(self) -> None:
+        """Send again what was not heard of, ask after what was not heard of for long, and give up in the end."""
+        now = self._patience()
+        for whole, pending in list(self._pending.items()):
+            quiet = now - pending.told
+            if not pending.heard and now - pending.since > GIVEN_UP:
+                self._forsaken.append(whole)
+                self._end(whole, "error", "the robot does not answer")
+            elif quiet > (SILENCE if pending.heard and not pending.cancelled else AGAIN):
+                pending.told = now
+                if pending.cancelled:
+                    self._ask("cancel", whole)
+                elif pending.heard or pending.command is None:
+                    self._ask("outcome", whole)
+                else:
+                    self._order(whole, pending.command, delegable=False)
