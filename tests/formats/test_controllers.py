@@ -217,6 +217,8 @@ def test_no_file_breaks_a_reader(read: Read, text: str, data: st.DataObject) -> 
         ("a.fcl", b"FUZZIFY", ""),
         ("a.fcl", b"nothing", "no FUZZIFY"),
         ("a.fis", b"\x00" * 50, "no [Input1]"),
+        ("a.fcl", b"FUZZIFY a\n" + b"(*" * 100_000, ""),
+        ("a.fcl", b"FUZZIFY a TERM x := " + b"(0,1) " * 20_000 + b";", ""),
         ("a.fis", b"[Input1]\nRange=[0 1e999]\nMF1='a':'trimf',[1 2]\n[Rules]\n1e99, 1 (nan) : 1\n", ""),
         ("a.fll", b"InputVariable: a\n range: 1e309 nan\n term: b Function " + b"(" * 5000 + b"\n", ""),
     ],

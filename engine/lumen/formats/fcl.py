@@ -15,7 +15,7 @@ from lumen.language.controllers import WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.rules import Word
 
-_COMMENT = re.compile(r"\(\*.*?\*\)|//[^\n]*", re.DOTALL)
+_COMMENT = re.compile(r"\(\*|//[^\n]*")
 _OPEN = re.compile(r"(VAR_INPUT|VAR_OUTPUT|FUZZIFY|DEFUZZIFY|RULEBLOCK)\b", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _POINT = re.compile(rf"\(\s*({_NUMBER})\s*,\s*({_NUMBER})\s*\)")
@@ -59,10 +59,23 @@ def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
     text = content.decode("utf-8-sig", errors="replace")
     findings = Findings()
     reader = _Reader(file, text, findings)
-    sections = list(_sections(_COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)))
+    sections = list(_sections(_without_comments(text)))
     if not any(section.kind == "FUZZIFY" for section in sections):
         raise broken(Place(file), "not-a-controller", "this is no function block: it has no FUZZIFY")
     return reader.block(sections), findings.diagnostics
+
+
+def _without_comments(text: str) -> str:
+    """The text with blanks in place of comments, so that all else stays where it is; an unclosed one goes on."""
+    parts, at = [], 0
+    while match := _COMMENT.search(text, at):
+        end = match.end()
+        if match[0] == "(*":
+            close = text.find("*)", end)
+            end = len(text) if close < 0 else close + 2
+        parts += [text[at : match.start()], re.sub(r"[^\n]", " ", text[match.start() : end])]
+        at = end
+    return "".join([*parts, text[at:]])
 
 
 def _sections(text: str) -> Iterator[Section]:

@@ -15,6 +15,9 @@ from lumen.loading.rules import KEYWORDS, Mention, RuleSyntaxError, Word, parse_
 _UNFIT = re.compile(r"[^A-Za-z0-9_\-]+")
 _ENDLESS = ("triangle", "trapezoid", "binary", "rectangle")
 
+MOST_NUMBERS = 1_000
+"""Parameters of a term: more points than that are no shape that a person drew."""
+
 Named = dict[str, str]
 Spot = Callable[[Word], Place]
 """Where a word of a rule's text stands in the file."""
@@ -47,7 +50,7 @@ class Draft:
         stem = f"{stem}_" if stem.lower() in KEYWORDS else stem
         ours, number = stem, 1
         while ours in taken:
-            number += 1
+            number += 1 if number < 100 else len(taken)
             ours = f"{stem}_{number}"
         if ours != name:
             self.findings.changed(place, f"`{name}` is called `{ours}`", "rules can't say that name, or it is taken")
@@ -73,6 +76,8 @@ class Draft:
             return ""
         if any(isnan(value) for value in values) or (kind not in _ENDLESS and not all(map(isfinite, values))):
             return "a parameter is no number"
+        if len(values) > MOST_NUMBERS:
+            return f"it has more than {MOST_NUMBERS:,} numbers"
         wanted = TERMS[kind]
         fits = len(values) - len(wanted) in (0, 1) or kind in ("linear", "discrete")
         if kind == "discrete" and (len(values) < 2 or len(values) % 2):
