@@ -28,6 +28,13 @@ ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "battery.low": _object(percentage={"type": "integer"}),
     "motors.hot": _object(joint={"type": "string"}, temperature={"type": "number"}),
     "brain.lost": _object(seconds={"type": "number"}),
+    "robot.lost": _object(seconds={"type": "number"}),
+    "robot.back": _object(seconds={"type": "number"}),
+    "motion.lost": _object(seconds={"type": "number"}),
+    "motion.back": _object(seconds={"type": "number"}),
     "stop": _object(),
 }
-"""Events that every robot raises by itself, with the JSON Schema of their data; no behaviour has to declare them."""
+"""Events that every robot raises by itself, with the JSON Schema of their data; no behaviour has to declare them.
+
+Where parts of the exhibition run in processes of their own, `robot` and `motion` may be lost and come back.
+"""

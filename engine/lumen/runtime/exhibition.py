@@ -13,7 +13,7 @@ from lumen.runtime.inbox import Inbox
 from lumen.runtime.performer import Performer
 from lumen.runtime.resuming import Resumption
 from lumen.runtime.runtime import Rescue, Runtime
-from lumen.runtime.tracking import Tracking
+from lumen.runtime.tracking import Following, Tracking
 
 TICK = 0.02
 BRAIN_LOST = 5.0
@@ -40,17 +40,20 @@ class Exhibition:
 
     At each tick: the clock waits, the `parts` live, what happened becomes events, the behaviour steps, its commands are
     performed; `observers` are told. Where ticks stop for 5 s of the clock the behaviour is told (`brain.lost`). Where a
-    tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
+    tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle. `tracking` lets controllers
+    follow what is seen; without one that is done here.
     """
 
-    def __init__(self, project: Project, robot: Robot, bus: Bus, clock: Clock) -> None:
+    def __init__(
+        self, project: Project, robot: Robot, bus: Bus, clock: Clock, tracking: Following | None = None
+    ) -> None:
         self.robot, self.bus, self.clock = robot, bus, clock
         self.parts: list[Part] = []
         self.observers: list[Observer] = []
         self.rescue: Rescue = lambda _: None
         self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
         self.inbox = Inbox(bus)
-        self.tracking = Tracking(project, robot, bus)
+        self.tracking: Following = tracking or Tracking(project, robot, bus)
         self._performer = Performer(robot, bus, self.tracking.switch)
         self._events: list[Event] = []
         self._last = clock.now()

@@ -1,8 +1,8 @@
 """Plays a story: does what it says, waits for what it expects, and tells where it failed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple, assert_never
+from typing import Any, NamedTuple, Protocol, assert_never
 
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.inside import active, entered
@@ -11,8 +11,8 @@ from lumen.language.diagnostics import Path
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Expect, Happen, Leave, Pause, Send, Speak, Story, Touch
-from lumen.ports import Hall
-from lumen.runtime.exhibition import Exhibition, Observer
+from lumen.ports import Bus, Hall
+from lumen.runtime.exhibition import Observer
 from lumen.runtime.sending import send
 from lumen.runtime.visitor import Walker
 
@@ -92,6 +92,18 @@ class Witness:
         self.said, self.played, self.published = [], [], []
 
 
+class Scenery(Protocol):
+    """Where a story plays: an exhibition, in this process or in others."""
+
+    @property
+    def bus(self) -> Bus: ...
+
+    @property
+    def project(self) -> Project: ...
+
+    def happen(self, event: Event) -> None: ...
+
+
 class StoryPlayer(Observer):
     """One story on an exhibition, which it watches; call `tick` with its time.
 
@@ -103,7 +115,7 @@ class StoryPlayer(Observer):
     def __init__(
         self,
         story: Story,
-        exhibition: Exhibition,
+        exhibition: Scenery,
         hall: Hall,
         walker: Walker,
         tell: Callable[[Deed], None] = lambda _: None,
@@ -126,9 +138,12 @@ class StoryPlayer(Observer):
         return self.failed is not None or self.scene >= len(self.story.scenes)
 
     def stepped(self, step: Step) -> None:
-        self._witness.states = active(step.snapshot)
-        self._witness.context = dict(step.snapshot.context)
-        if bad := self._witness.states.union(entered(step)).intersection(self.story.never):
+        self.see(active(step.snapshot), entered(step), step.snapshot.context)
+
+    def see(self, states: frozenset[str], entered: Iterable[str], context: Mapping[str, Any]) -> None:
+        """These states are active now, after those were entered, and that is what the behaviour remembers."""
+        self._witness.states, self._witness.context = states, dict(context)
+        if bad := states.union(entered).intersection(self.story.never):
             self.fail(Lack(f"never state {_names(bad)}", "it was entered"))
 
     def performing(self, command: Command, now: float) -> None:

@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Protocol
 
 from lumen.interpreters.tracking import Tracker
 from lumen.language.commands import Track
@@ -11,6 +11,19 @@ from lumen.ports import Aim, Bus, Message, Robot
 
 POSES = "joint"
 BACKLOG = 1000
+
+
+class Following(Protocol):
+    """Whatever lets controllers follow what is seen: here, or in the motion module's process."""
+
+    @property
+    def on(self) -> tuple[str, ...]: ...
+
+    def reload(self, project: Project) -> None: ...
+
+    def switch(self, track: Track) -> None: ...
+
+    def tick(self, now: float) -> None: ...
 
 
 class Tracking:

@@ -1,0 +1,92 @@
+"""A behaviour that runs in another process, seen from here by what it says on the bus."""
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+from lumen.language.commands import (
+    Command,
+    Language,
+    Look,
+    Play,
+    Posture,
+    Publish,
+    Rest,
+    Say,
+    Start,
+    Stop,
+    Track,
+    Wake,
+    Walk,
+)
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.ports import Bus, Message
+from lumen.runtime.trace import KEY, ROUTE
+
+WAITING = 10_000
+
+_VERBS: Mapping[str, type] = {
+    kind.__name__.lower(): kind for kind in (Say, Play, Posture, Walk, Look, Track, Stop, Rest, Wake, Language)
+}
+
+
+class Watching(Protocol):
+    """Somebody who is told of what is seen."""
+
+    def see(self, states: frozenset[str], entered: tuple[str, ...], context: Mapping[str, Any]) -> None: ...
+
+    def performing(self, command: Command, now: float) -> None: ...
+
+    def answered(self, event: Event) -> None: ...
+
+
+class Onlooker:
+    """Hears what a behaviour does (`Trace`) and tells `watchers` of it, at each `tick`.
+
+    It is the scenery of a story: `happen` lets something happen to the robot.
+    """
+
+    def __init__(self, project: Project, bus: Bus, happen: Callable[[Event], None]) -> None:
+        self.project, self.bus, self.happen = project, bus, happen
+        self.watchers: list[Watching] = []
+        self._came: deque[Message] = deque(maxlen=WAITING)
+        row = project.routes.get(ROUTE)
+        self._undo = bus.subscribe(row.key_for(project.robot) if row else KEY, self._came.append)
+
+    def tick(self, now: float) -> None:
+        """Tell of all that has come."""
+        while self._came:
+            body = self._came.popleft().body
+            if isinstance(body, dict) and body.get("robot") == self.project.robot:
+                for watcher in self.watchers:
+                    _tell(watcher, body, now)
+
+    def close(self) -> None:
+        self._undo()
+
+
+def _tell(watcher: Watching, body: dict[str, Any], now: float) -> None:
+    match body:
+        case {"states": list(states), "context": dict(context)}:
+            watcher.see(frozenset(map(str, states)), tuple(map(str, body.get("entered", ()))), context)
+        case {"command": dict(said)} if (command := _command(said)) is not None:
+            watcher.performing(command, now)
+        case {"answer": {"id": str(id), "kind": str(kind)} as answer}:
+            reason = {"reason": str(answer["reason"])} if "reason" in answer else None
+            watcher.answered(Event(f"{kind}.command.{id}", reason, now))
+        case {"noticed": str(name)}:
+            watcher.answered(Event(name, None, now))
+
+
+def _command(said: dict[str, Any]) -> Command | None:
+    """The command that somebody tells of, None where nobody knows it."""
+    fields = dict(said)
+    verb, id = str(fields.pop("verb", "")), str(fields.pop("id", ""))
+    if verb == "publish":
+        return Publish(str(fields.get("route", "")), fields.get("body"))
+    kind = _VERBS.get(verb)
+    try:
+        return Start(id, kind(**fields)) if kind else None
+    except TypeError:
+        return None

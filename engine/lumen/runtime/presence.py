@@ -1,0 +1,170 @@
+"""Who else belongs to this exhibition: every process says that it is there, and hears who falls silent."""
+
+import logging
+import os
+import platform
+import time
+import uuid
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from lumen.errors import BusError
+from lumen.language.events import Event
+from lumen.ports import Bus, Message
+
+KEY, ROUTE = "lumen.presence", "presence"
+ROBOT, BRAIN, MOTION, VISITOR = PARTS = ("robot", "brain", "motion", "visitor")
+PERIOD = 0.5
+"""How often a process says that it is there [s]."""
+LOST = 2.5
+"""How long one has to be silent to be lost [s]."""
+LASTING = 2.0
+MOST = 100
+"""How many processes are known at most: nobody fills the memory."""
+
+ASKS, HERE, LEAVES = "asks", "here", "leaves"
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass
+class Peer:
+    """Another process: when it was first and last heard of [s, monotonic], and what it said of itself."""
+
+    session: str
+    parts: tuple[str, ...]
+    since: float
+    heard: float
+    state: str
+    said: Mapping[str, Any]
+
+
+class Presence:
+    """This process among those of one robot's exhibition.
+
+    `tick` says that it is there and returns what has changed: `robot.lost`, `robot.back`, `motion.lost` and
+    `motion.back`, each with `seconds`. Until `settle` it asks who is there, and everybody answers at once. `more` is
+    what else it says of itself.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        robot: str,
+        parts: Iterable[str],
+        *,
+        key: str = KEY,
+        session: str = "",
+        clock: Callable[[], float] = time.monotonic,
+        more: Callable[[], Mapping[str, Any]] = dict,
+    ) -> None:
+        self.robot, self.parts, self.session = robot, tuple(parts), session or uuid.uuid4().hex[:12]
+        self.came: list[Peer] = []
+        self._bus, self._key, self._clock, self._more = bus, key, clock, more
+        self._state = ASKS
+        self._next = 0.0
+        self._messages: deque[Message] = deque(maxlen=1_000)
+        self._peers: dict[str, Peer] = {}
+        self._lost: dict[str, float] = {}
+        self._known: set[str] = set()
+        self._undo = bus.subscribe(key, self._messages.append)
+
+    @property
+    def settled(self) -> bool:
+        return self._state == HERE
+
+    def settle(self) -> None:
+        """From now on this process is one of them."""
+        self._state, self._next = HERE, 0.0
+
+    def find(self, part: str) -> Peer | None:
+        """The process that is this part and was heard of lately; the one that has been there longest."""
+        now = self._clock()
+        found = (p for p in self._peers.values() if part in p.parts and now - p.heard <= LOST and p.state != LEAVES)
+        return min(found, key=lambda p: p.since, default=None)
+
+    def peers(self) -> list[Peer]:
+        """All others that were heard of lately."""
+        return [peer for peer in self._peers.values() if self._clock() - peer.heard <= LOST]
+
+    def rival(self, part: str) -> Peer | None:
+        """Another process that is the same part, and was there before, or asks at the same time and is the first."""
+        for peer in self.peers():
+            earlier = peer.state == HERE or (peer.state == ASKS and peer.session < self.session)
+            if part in peer.parts and earlier:
+                return peer
+        return None
+
+    def tick(self) -> list[Event]:
+        """Say that we are there, hear who else is; what has changed, without times. `came` are those newly heard of."""
+        now, self.came = self._clock(), []
+        while self._messages:
+            self._hear(self._messages.popleft().body, now)
+        if now >= self._next:
+            self._next = now + PERIOD
+            self._say(self._state)
+        return self._changes(now)
+
+    def close(self) -> None:
+        """Say that we leave; harmless when repeated."""
+        if self._state != LEAVES:
+            self._state = LEAVES
+            self._undo()
+            self._say(LEAVES)
+
+    def _say(self, state: str) -> None:
+        body = {
+            "robot": self.robot,
+            "parts": list(self.parts),
+            "session": self.session,
+            "state": state,
+            "host": platform.node(),
+            "process": os.getpid(),
+            **self._more(),
+        }
+        try:
+            self._bus.publish(self._key, body, ttl=LASTING)
+        except BusError as error:
+            _log.debug("nobody was told that we are here: %s", error)
+
+    def _hear(self, body: Any, now: float) -> None:
+        match body:
+            case {"robot": self.robot, "parts": list(parts), "session": str(session), "state": str(state)}:
+                pass
+            case _:
+                return
+        if session == self.session:
+            return
+        known = self._peers.get(session)
+        if known is None:
+            if len(self._peers) >= MOST:
+                self._peers = {s: p for s, p in self._peers.items() if now - p.heard <= LOST}
+            known = self._peers[session] = Peer(session, tuple(map(str, parts)), now, now, state, body)
+            self.came.append(known)
+        if state == ASKS:
+            self._next = 0.0
+        known.parts, known.heard, known.state, known.said = tuple(map(str, parts)), now, state, body
+
+    def _changes(self, now: float) -> list[Event]:
+        """What of the robot and the motion module has gone or come back since the last look."""
+        events = []
+        for part in (ROBOT, MOTION):
+            if part in self.parts:
+                continue
+            here = self.find(part) is not None
+            if here and part in self._lost:
+                events.append(Event(f"{part}.back", {"seconds": round(now - self._lost.pop(part), 3)}))
+            elif not here and part in self._known and part not in self._lost:
+                last = [peer.heard for peer in self._peers.values() if part in peer.parts]
+                self._lost[part] = max(last, default=now)
+                events.append(Event(f"{part}.lost", {"seconds": round(now - self._lost[part], 3)}))
+            if here:
+                self._known.add(part)
+        return events
+
+
+def told(peer: Peer) -> str:
+    """`process 4711 on stand`, for a line to somebody who looks for it."""
+    return f"process {str(peer.said.get('process', '?'))[:20]} on {str(peer.said.get('host', '?'))[:60]}"

@@ -1,0 +1,74 @@
+"""What the behaviour does, on the bus: for operators, and for visitors in a process of their own."""
+
+import logging
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+from lumen.errors import BusError
+from lumen.interpreters.statechart import Snapshot, Step
+from lumen.interpreters.statechart.inside import active, entered
+from lumen.language.commands import Command, Log, Publish, Start
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.ports import Bus
+from lumen.runtime.exhibition import Observer
+
+KEY, ROUTE = "lumen.state", "state"
+LASTING = 10.0
+
+_log = logging.getLogger(__name__)
+
+
+class Trace(Observer):
+    """Publishes each step that changed something, each command as it is given, and its answer.
+
+    `project` is asked for the bundle that runs, `now` for the time [s].
+    """
+
+    def __init__(self, bus: Bus, project: Callable[[], Project], now: Callable[[], float]) -> None:
+        self._bus, self._project, self._now = bus, project, now
+        self._context: dict[str, Any] | None = None
+
+    def stepped(self, step: Step) -> None:
+        came, gone, context = list(entered(step)), list(step.exited), dict(step.snapshot.context)
+        if not came and not gone and context == self._context:
+            return
+        self._context = context
+        event = step.event.name if step.event else ""
+        self._tell({**_standing(step.snapshot), "entered": came, "exited": gone, "event": event})
+
+    def standing(self, snapshot: Snapshot) -> None:
+        """Tell somebody who has just come where the behaviour stands."""
+        self._tell(_standing(snapshot))
+
+    def performing(self, command: Command, now: float) -> None:
+        match command:
+            case Start(id, wanted):
+                self._tell({"command": {"verb": type(wanted).__name__.lower(), "id": id, **asdict(wanted)}})
+            case Publish(route, body):
+                self._tell({"command": {"verb": "publish", "route": route, "body": body}})
+            case Log():
+                pass
+
+    def answered(self, event: Event) -> None:
+        kind, separator, id = event.name.partition(".command.")
+        reason = str(event.data.get("reason", "")) if isinstance(event.data, dict) else ""
+        if not separator:
+            self._tell({"noticed": event.name})
+        elif id[:1] in ("c", "d"):
+            answer = {"id": id, "kind": kind}
+            self._tell({"answer": {**answer, "reason": reason} if reason else answer})
+
+    def _tell(self, what: dict[str, Any]) -> None:
+        project = self._project()
+        row = project.routes.get(ROUTE)
+        key, ttl = (row.key_for(project.robot), row.ttl) if row else (KEY, LASTING)
+        try:
+            self._bus.publish(key, {"robot": project.robot, "time": round(self._now(), 3), **what}, ttl=ttl)
+        except BusError as error:
+            _log.debug("what the behaviour does was not told: %s", error)
+
+
+def _standing(snapshot: Snapshot) -> dict[str, Any]:
+    return {"states": sorted(active(snapshot)), "context": dict(snapshot.context)}
