@@ -9,8 +9,9 @@ from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock, Hall, Robot
+from lumen.runtime.tracking import Following
 
-ROBOTS = ("simulation", "recording", "none")
+ROBOTS = ("simulation", "recording", "remote", "none")
 SPEEDS = ("1", "4", "max")
 
 
@@ -18,13 +19,16 @@ SPEEDS = ("1", "4", "max")
 class Cast:
     """A robot with its clock; `hall` is the simulated world around it, None for a robot in no world of ours.
 
-    `blind` says why its camera has no images and what to do about it; empty where it has.
+    `blind` says why its camera has no images and what to do about it; empty where it has. `remote`: its server is
+    somewhere else; `tracking` is who lets controllers follow what is seen, where that is not the exhibition itself.
     """
 
     robot: Robot
     clock: Clock
     hall: Hall | None
     blind: str = ""
+    remote: bool = False
+    tracking: Following | None = None
 
 
 def cast(kind: str, project: Project, speed: str, story: Story | None = None) -> Cast:

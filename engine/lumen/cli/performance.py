@@ -143,7 +143,8 @@ class Performance:
         print(f"  {len(log.states)} states, {log.said} texts, motions: {', '.join(log.played) or 'none'}")
         if self._face is not None:
             print(f"  the visitor's face ended {self._face:.0f} px from the centre of the camera's image")
-        print("  published: " + ", ".join(map(_told, self._show.server.counts.items())))
+        if self._show.server:
+            print("  published: " + ", ".join(map(told_count, self._show.server.counts.items())))
         if video:
             print(f"  the film is {video}")
         print(f"Next: change a sentence in behaviors/{self._show.exhibition.project.behavior}.yaml while it runs,")
@@ -151,7 +152,8 @@ class Performance:
         return 1 if failure or (early and not self._interrupts) else 0
 
 
-def _told(item: tuple[str, Count]) -> str:
+def told_count(item: tuple[str, Count]) -> str:
+    """`1204 joint (3 dropped)`."""
     sense, count = item
     return f"{count.published} {sense}" + (f" ({count.dropped} dropped)" if count.dropped else "")
 

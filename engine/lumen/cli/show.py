@@ -7,10 +7,10 @@ from datetime import datetime
 from pathlib import Path
 
 from lumen.bus import connect
-from lumen.buses.validated import validated
+from lumen.buses.validated import ValidatedBus, validated
 from lumen.cli.cast import Cast
 from lumen.interpreters.migration import Plan, Verdict
-from lumen.language.commands import Command
+from lumen.language.commands import Command, Say, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Deed, Story
@@ -19,6 +19,7 @@ from lumen.robots.server import Server
 from lumen.runtime.exhibition import Exhibition, Observer, Part
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.story import StoryPlayer, staged
+from lumen.runtime.trace import Trace
 from lumen.runtime.visitor import Walker
 
 MORNING = "10:00"
@@ -30,33 +31,42 @@ class Show(Observer):
 
     With a story its visitor plays it (`player`); without one the visitor (`walker`) does what whoever holds the show
     makes them do. Both are None where the robot is in no world of ours. `tell` hears what the visitor does. Where
-    `sensing` is off, only those senses are on the bus that the behaviour hears of as events. What is in `after` lives
-    at the end of each tick, when all that it asked for has been performed.
+    `sensing` is off, only those senses are on the bus that the behaviour hears of as events, and nothing tells of the
+    behaviour. What is in `after` lives at the end of each tick, when all that it asked for has been performed; `using`
+    is told of another bundle. A robot that is `remote` has its server where it is; `bus` may be one that is open.
     """
 
     def __init__(
         self,
         project: Project,
         chosen: Cast,
-        bus_url: str = "memory://",
+        bus: str | ValidatedBus = "memory://",
         story: Story | None = None,
         tell: Callable[[Deed], None] = lambda _: None,
         *,
         sensing: bool = True,
     ) -> None:
         project = staged(project, story)
-        self.bus = validated(connect(bus_url), project)
+        self.bus = validated(connect(bus), project) if isinstance(bus, str) else bus
         self.robot, self._story = chosen.robot, story
-        self.exhibition = Exhibition(project, chosen.robot, self.bus, chosen.clock)
+        self.exhibition = Exhibition(project, chosen.robot, self.bus, chosen.clock, chosen.tracking)
         self._sensed: Callable[[Project], Project] = _all if sensing else _quiet
-        self.server = Server(self._sensed(project), chosen.robot, self.bus)
+        self.server = None if chosen.remote else Server(self._sensed(project), chosen.robot, self.bus)
+        self.trace = Trace(self.bus, lambda: self.exhibition.project, chosen.clock.now)
+        self.using: list[Callable[[Project], None]] = []
         self.walker: Walker | None = None
         self.faces: FaceDetector | None = None
         self.player: StoryPlayer | None = None
-        self.closing: list[Callable[[], None]] = [self.server.close, self.bus.close, chosen.robot.close]
+        self.closing: list[Callable[[], None]] = [chosen.robot.close]
+        if isinstance(bus, str):
+            self.closing.insert(0, self.bus.close)
         self.after: list[Part] = []
         self.exhibition.observers.append(self)
-        self.exhibition.parts.append(self._sense)
+        if sensing:
+            self.exhibition.observers.append(self.trace)
+        if self.server:
+            self.closing.insert(0, self.server.close)
+            self.exhibition.parts.append(self._sense)
         if chosen.hall:
             self.walker = Walker(project, chosen.hall, self.bus)
             self.faces = FaceDetector(project, chosen.hall, self.bus)
@@ -110,10 +120,13 @@ class Show(Observer):
     def _use(self, project: Project) -> None:
         """Let everything around the behaviour go by this bundle from now on."""
         self.bus.use(project)
-        self.server.use(self._sensed(project))
+        if self.server:
+            self.server.use(self._sensed(project))
         for part in (self.walker, self.faces):
             if part:
                 part.use(project)
+        for use in self.using:
+            use(project)
 
     def close(self) -> None:
         """End what has threads, files or windows open, whatever one of them may raise."""
@@ -121,10 +134,17 @@ class Show(Observer):
             for close in reversed(self.closing):
                 stack.callback(close)
 
+    def performing(self, command: Command, now: float) -> None:
+        match command:
+            case Start(_, Say() as said) if self.server:
+                self.server.begins(said)
+
     def answered(self, event: Event) -> None:
-        self.server.answer(event)
+        if self.server:
+            self.server.answer(event)
 
     def _sense(self, now: float) -> None:
+        assert self.server
         self.server.sample(now)
         self.server.settle()
 
