@@ -28,14 +28,19 @@ _log = logging.getLogger(__name__)
 
 
 class Premises:
-    """Takes the home of the project in `root` for this run; `home` is None where another run has it, or none can be."""
+    """Takes the home of the project in `root` for this run; `home` is None where another run has it, or none can be.
 
-    def __init__(self, root: Path) -> None:
+    A process without a brain is a guest: it leaves the home to the one that has it.
+    """
+
+    def __init__(self, root: Path, *, guest: bool = False) -> None:
         self.root, self.taken = root, False
         self.home: Home | None = None
         home = Home(home_of(root))
         try:
-            if home.hold():
+            if guest:
+                pass
+            elif home.hold():
                 self.home = home
             else:
                 self.taken = True

@@ -1,4 +1,4 @@
-"""`lumen run`: an exhibition in one process."""
+"""`lumen run`: an exhibition, in one process or in several."""
 
 import argparse
 import os
@@ -6,6 +6,7 @@ import signal
 import sys
 from pathlib import Path
 
+from lumen.cli.apart.choosing import parts_of
 from lumen.cli.cast import ROBOTS, SPEEDS, cast
 from lumen.cli.choosing import home_of, stories_of
 from lumen.cli.performance import Performance
@@ -27,6 +28,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
     add("--story", metavar="STORY", help="a scripted visitor of behaviors/stories/; without one, you type what you say")
     add("--robot", choices=ROBOTS, default="simulation", help="who performs it (default: simulation)")
+    add(
+        "--only",
+        metavar="PARTS",
+        help="one process of several: robot, brain, motion, visitor, with commas between them",
+    )
     add("--speed", choices=SPEEDS, default="1", help="simulated time, times real time (default: 1)")
     add("--bus", metavar="URL", help="memory:// or amqp://user:password@host/ (default: LUMEN_BUS, then lumen.yaml's)")
     add("--for", dest="period", metavar="60s", help="end after so much simulated time")
@@ -40,29 +46,29 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     named = () if options.story is None else (options.story,)
     root = find_project(options.project or home_of(named))
-    premises = Premises(root)
+    parts = parts_of(options.only, options.robot)
+    premises = Premises(root, guest=bool(parts) and "brain" not in parts)
     try:
-        return _run(options, root, premises)
+        return _run(options, root, premises, parts)
     finally:
         premises.close(forget=False)
 
 
-def _run(options: argparse.Namespace, root: Path, premises: Premises) -> int:
+def _run(options: argparse.Namespace, root: Path, premises: Premises, parts: tuple[str, ...]) -> int:
     project = _load(root, premises, last_good=options.last_good)
     story = _story(project, options.story)
-    if story and story.robot and options.robot != "recording":
+    if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
         raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
     if story and options.robot == "none":
         raise UsageError("a story needs a robot in a hall: leave out --robot none")
     period, language = _period(options.period), _language(project, options.language)
+    url = options.bus or os.environ.get("LUMEN_BUS") or project.bus
+    if parts:
+        from lumen.cli.apart.starting import start  # not needed for an exhibition in one process
+
+        return start(options, project, story, parts, url, premises, period, language)
     video = film_path(options.video, options.robot)
-    performance = Performance(
-        project,
-        cast(options.robot, project, options.speed, story),
-        options.bus or os.environ.get("LUMEN_BUS") or project.bus,
-        story,
-        premises,
-    )
+    performance = Performance(project, cast(options.robot, project, options.speed, story), url, story, premises)
     signal.signal(signal.SIGINT, lambda *_: performance.interrupt())
     signal.signal(signal.SIGTERM, lambda *_: performance.interrupt(2, leave=True))
     return performance.run(options.speed, period, language, video, mode=options.reload, fresh=options.fresh)

@@ -81,13 +81,20 @@ class Presence:
 
     def find(self, part: str) -> Peer | None:
         """The process that is this part and was heard of lately; the one that has been there longest."""
-        now = self._clock()
-        found = (p for p in self._peers.values() if part in p.parts and now - p.heard <= LOST and p.state != LEAVES)
+        found = (peer for peer in self._peers.values() if part in peer.parts and self.alive(peer))
         return min(found, key=lambda p: p.since, default=None)
+
+    def get(self, session: str) -> Peer | None:
+        """The process of that session, however long ago it was heard of."""
+        return self._peers.get(session)
+
+    def alive(self, peer: Peer) -> bool:
+        """Whether it was heard of lately."""
+        return self._clock() - peer.heard <= LOST and peer.state != LEAVES
 
     def peers(self) -> list[Peer]:
         """All others that were heard of lately."""
-        return [peer for peer in self._peers.values() if self._clock() - peer.heard <= LOST]
+        return [peer for peer in self._peers.values() if self.alive(peer)]
 
     def rival(self, part: str) -> Peer | None:
         """Another process that is the same part, and was there before, or asks at the same time and is the first."""

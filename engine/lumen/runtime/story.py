@@ -137,6 +137,10 @@ class StoryPlayer(Observer):
     def finished(self) -> bool:
         return self.failed is not None or self.scene >= len(self.story.scenes)
 
+    def start(self, now: float) -> None:
+        """Its first step begins at `now` [s], where that is not 0."""
+        self._since = now
+
     def stepped(self, step: Step) -> None:
         self.see(active(step.snapshot), entered(step), step.snapshot.context)
 

@@ -1,0 +1,52 @@
+"""A robot whose brain is gone does not stand there as it was left: it rests."""
+
+from collections.abc import Callable
+
+from lumen.language.commands import Rest
+from lumen.language.events import Event
+from lumen.ports import Robot
+from lumen.runtime.presence import BRAIN, HERE, LEAVES, LOST, Peer, Presence, told
+
+PATIENCE = 5.0
+"""How long a brain may be silent before its robot rests [s]."""
+
+
+class Guard:
+    """Watches over the brain that the robot follows; `follows` is its session, empty where there is none.
+
+    A brain that comes back, or another one, is told by `notice` for how long nobody was there (`brain.lost`).
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        presence: Presence,
+        notice: Callable[[Event], None],
+        tell: Callable[[str], None],
+        clock: Callable[[], float],
+    ) -> None:
+        self.follows = ""
+        self._robot, self._presence, self._notice, self._tell, self._clock = robot, presence, notice, tell, clock
+        self._last: float | None = None
+        self._resting = False
+
+    def tick(self, now: float) -> None:
+        """Look after the brain at `now` [s] on the robot's clock."""
+        followed = self._presence.get(self.follows) if self.follows else None
+        at = self._clock()
+        if followed:
+            self._last = followed.heard
+        gone = followed is None or followed.state == LEAVES or at - followed.heard > LOST
+        if gone and (brain := self._presence.find(BRAIN)) and brain.state == HERE:
+            self._follow(brain, now)
+        elif gone and self._last is not None and not self._resting and at - self._last > PATIENCE:
+            self._resting = True
+            self._tell(f"rests: its brain is gone for {PATIENCE:g} s")
+            self._robot.start("guard", Rest())
+
+    def _follow(self, brain: Peer, now: float) -> None:
+        if self.follows != brain.session or self._resting:
+            self._tell(f"follows the brain in {told(brain)}")
+        if self._resting and self._last is not None:
+            self._notice(Event("brain.lost", {"seconds": round(self._clock() - self._last, 3)}, now))
+        self.follows, self._resting = brain.session, False

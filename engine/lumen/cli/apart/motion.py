@@ -1,0 +1,96 @@
+"""The motion module's process, Lumen Motion: motions by name, and the head that follows what it sees."""
+
+from collections import deque
+from collections.abc import Callable, Sequence
+
+from lumen.buses.validated import ValidatedBus
+from lumen.cli.transcript import Transcript
+from lumen.language.commands import Track
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.ports import Clock, Message, Perform
+from lumen.robots.remote import RemoteRobot
+from lumen.runtime.delegating import motion_key
+from lumen.runtime.presence import BRAIN, MOTION, ROBOT, Presence
+from lumen.runtime.tracking import Tracking
+
+WAITING = 1_000
+
+
+class MotionPart:
+    """Sends the keyframes of the motions that the brain names to the robot, and aims its head by the controllers.
+
+    Controllers are off again when the brain is gone, or the robot is another: whoever comes back says what is wanted.
+    """
+
+    name = MOTION
+    needs: tuple[str, ...] = (ROBOT,)
+    over = failed = False
+
+    def __init__(
+        self, project: Project, bus: ValidatedBus, clock: Clock, presence: Presence, transcript: Transcript
+    ) -> None:
+        self._project, self._bus, self._presence, self._transcript = project, bus, presence, transcript
+        self._robot = RemoteRobot(project, bus, clock.now)
+        self._tracking = Tracking(project, self._robot, bus)
+        self._asked: deque[Message] = deque(maxlen=WAITING)
+        self._undo: Callable[[], None] = lambda: None
+        self._session, self._brain, self._played = "", "", 0
+
+    def begin(self, now: float) -> None:
+        self._undo = self._bus.subscribe(motion_key(self._project), self._asked.append)
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self._look()
+        while self._asked:
+            self._do(self._asked.popleft())
+        self._robot.poll()
+        if (time := self._robot.time()) is not None:
+            self._tracking.tick(time)
+
+    def use(self, project: Project) -> None:
+        before, self._project = self._project, project
+        self._robot.use(project)
+        self._tracking.reload(project)
+        if motion_key(before) != motion_key(project):
+            undo, self._undo = self._undo, self._bus.subscribe(motion_key(project), self._asked.append)
+            undo()
+
+    def interrupt(self) -> bool:
+        return False
+
+    def summary(self) -> None:
+        print(f"  {self._played} motions sent")
+
+    def close(self) -> None:
+        self._undo()
+        self._robot.close()
+
+    def _look(self) -> None:
+        robot, brain = self._presence.find(ROBOT), self._presence.find(BRAIN)
+        if robot and robot.session != self._session:
+            on = self._tracking.on if self._session else ()
+            self._session = robot.session
+            for name in on:
+                self._tracking.switch(Track(name, False))
+                self._tracking.switch(Track(name))
+        if BRAIN not in self._presence.parts and (brain is None or brain.session != self._brain):
+            self._brain = brain.session if brain else ""
+            if brain is None:
+                for name in self._tracking.on:
+                    self._tracking.switch(Track(name, False))
+
+    def _do(self, message: Message) -> None:
+        match message.body:
+            case {"id": str(id), "play": str(name)} if name in self._project.motions:
+                if message.body.get("bundle") != self._project.hash:
+                    self._transcript.line("motion", f"does not play {name}: its files are not the brain's")
+                    return
+                self._played += 1
+                self._transcript.line("motion", f"plays {name}")
+                self._robot.forward(id, Perform(self._project.motions[name]))
+            case {"track": str(name), "on": bool(on)} if name in self._project.controllers:
+                self._transcript.line("motion", f"{'follows what is seen with' if on else 'lets go of'} {name}")
+                self._tracking.switch(Track(name, on))
+            case _:
+                self._transcript.line("trouble", f"nobody here knows what {str(message.body)[:80]} asks for")

@@ -1,0 +1,82 @@
+"""The robot's process: its body, Lumen Server, and the hall around it where it is simulated."""
+
+import time
+from collections.abc import Sequence
+
+from lumen.buses.validated import ValidatedBus
+from lumen.cli.apart.guard import Guard
+from lumen.cli.cast import Cast
+from lumen.cli.performance import told_count
+from lumen.cli.transcript import Transcript
+from lumen.language.commands import Rest
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.robots.remote import Host
+from lumen.runtime.perception import FaceDetector
+from lumen.runtime.presence import ROBOT, Presence
+
+
+class RobotPart:
+    """Hosts a robot on the bus, for the brain that comes first."""
+
+    name = ROBOT
+    needs: tuple[str, ...] = ()
+    over = failed = False
+
+    def __init__(
+        self, project: Project, bus: ValidatedBus, chosen: Cast, presence: Presence, transcript: Transcript
+    ) -> None:
+        self._project, self._bus, self._chosen, self._transcript = project, bus, chosen, transcript
+        self._presence = presence
+        self._host: Host | None = None
+        self._faces: FaceDetector | None = None
+        self._guard: Guard | None = None
+        self._interrupted = False
+
+    @property
+    def follows(self) -> str:
+        """The session of the brain that it obeys."""
+        return self._guard.follows if self._guard else ""
+
+    def begin(self, now: float) -> None:
+        chosen = self._chosen
+        self._host = Host(self._project, chosen.robot, self._bus, chosen.hall)
+        self._guard = Guard(chosen.robot, self._presence, self._host.notice, self._say, time.monotonic)
+        if chosen.hall:
+            self._faces = FaceDetector(self._project, chosen.hall, self._bus)
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        assert self._host
+        assert self._guard
+        if self._faces:
+            self._faces.tick(now)
+        self._guard.tick(now)
+        for event in self._host.tick(now):
+            self._transcript.answered(event)
+
+    def use(self, project: Project) -> None:
+        self._project = project
+        if self._host:
+            self._host.use(project)
+        if self._faces:
+            self._faces.use(project)
+
+    def interrupt(self) -> bool:
+        if self._interrupted:
+            return False
+        self._interrupted = True
+        self._chosen.robot.start("operator", Rest())
+        self._say("rests: Ctrl-C; again to end")
+        return True
+
+    def summary(self) -> None:
+        if self._host:
+            print("  published: " + ", ".join(map(told_count, self._host.server.counts.items())))
+
+    def close(self) -> None:
+        if self._host:
+            self._host.close()
+        self._chosen.robot.close()
+
+    def _say(self, text: str) -> None:
+        self._transcript.line("robot", text)

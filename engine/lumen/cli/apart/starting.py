@@ -1,0 +1,117 @@
+"""`lumen run --only robot,motion`: the parts that this process is, chosen and started."""
+
+import argparse
+import signal
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from lumen.bus import connect
+from lumen.buses.validated import ValidatedBus, validated
+from lumen.cli.apart.brain import BrainPart
+from lumen.cli.apart.bundles import Bundles
+from lumen.cli.apart.motion import MotionPart
+from lumen.cli.apart.part import Part
+from lumen.cli.apart.process import Process
+from lumen.cli.apart.robot import RobotPart
+from lumen.cli.apart.visitor import VisitorPart
+from lumen.cli.cast import Cast, cast
+from lumen.cli.premises import Premises
+from lumen.cli.transcript import Transcript
+from lumen.clocks.real import RealClock
+from lumen.errors import UsageError
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.ports import Clock
+from lumen.runtime.presence import BRAIN, KEY, MOTION, ROBOT, ROUTE, VISITOR, Presence
+
+
+def start(
+    options: argparse.Namespace,
+    project: Project,
+    story: Story | None,
+    parts: Sequence[str],
+    url: str,
+    premises: Premises,
+    period: float | None,
+    language: str,
+) -> int:
+    """Run these parts of an exhibition; the exit code. Raises UsageError for options that do not go with that."""
+    _check(options, story, parts, url)
+    speed = float(options.speed)
+    chosen = cast(options.robot, project, options.speed, story) if ROBOT in parts else None
+    clock: Clock = chosen.clock if chosen else RealClock(speed=speed)
+    bus = validated(connect(url), project)
+    process, brain = _process(options, project, story, parts, (bus, url), premises, language, clock, chosen)
+    signal.signal(signal.SIGINT, lambda *_: process.interrupt())
+    signal.signal(signal.SIGTERM, lambda *_: process.interrupt(2, leave=True))
+    code = process.run(period)
+    if brain:
+        premises.close(forget=not process.leaving)
+    return code
+
+
+def _process(
+    options: argparse.Namespace,
+    project: Project,
+    story: Story | None,
+    names: Sequence[str],
+    way: tuple[ValidatedBus, str],
+    premises: Premises,
+    language: str,
+    clock: Clock,
+    chosen: Cast | None,
+) -> tuple[Process, BrainPart | None]:
+    """The process with its parts, and its brain where it is one."""
+    bus, url = way
+    parts: list[Part] = []
+    robot: RobotPart | None = None
+    brain: BrainPart | None = None
+    running = [project]
+
+    def said() -> dict[str, Any]:
+        bundle = brain.project if brain else running[0]
+        follows = robot.follows if robot else ""
+        return {"bundle": bundle.hash, "speed": float(options.speed), "follows": follows}
+
+    row = project.routes.get(ROUTE)
+    key = row.key_for(project.robot) if row else KEY
+    presence = Presence(bus, project.robot, names, key=key, clock=time.monotonic, more=said)
+    transcript = Transcript(clock.now, lambda: (brain.project if brain else running[0]).machine)
+    if chosen:
+        parts.append(robot := RobotPart(project, bus, chosen, presence, transcript))
+    if MOTION in names:
+        parts.append(MotionPart(project, bus, clock, presence, transcript))
+    if BRAIN in names:
+        mode = options.reload
+        brain = BrainPart(
+            project, bus, url, clock, presence, premises, transcript, story,
+            mode=mode, language=language, fresh=options.fresh,
+        )  # fmt: skip
+        parts.append(brain)
+    if VISITOR in names:
+        parts.append(VisitorPart(project, bus, transcript, story))
+    process = Process(project, bus, url.rpartition("@")[2], clock, presence, parts, float(options.speed))
+
+    def use(other: Project) -> None:
+        running[0] = other
+        process.use(other)
+
+    bundles = Bundles(Path(project.root), bus, use, lambda line: transcript.line("reload", line))
+    process.after.append(bundles.tick)
+    process.closing.append(bundles.close)
+    return process, brain
+
+
+def _check(options: argparse.Namespace, story: Story | None, parts: Sequence[str], url: str) -> None:
+    if url.startswith("memory:"):
+        raise UsageError("processes need a bus that they can all reach: say --bus amqp://USER:PASSWORD@HOST/")
+    if options.speed == "max":
+        raise UsageError("processes live in one time, which is real: --speed max needs everything in one of them")
+    if options.video:
+        raise UsageError("--video films an exhibition in one process: leave out --only")
+    if options.robot == "none" and ROBOT in parts:
+        raise UsageError("`--only robot` needs a robot: leave out --robot none")
+    if story and story.robot and ROBOT not in parts:
+        raise UsageError(f"`{story.name}` says with `robot:` what fails: give it to the robot's process, too")
