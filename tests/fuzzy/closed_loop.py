@@ -3,11 +3,12 @@
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import copysign, degrees, radians
+from math import copysign, inf, radians
 
 from lumen.interpreters.projection import Vector, centring, seen
 from lumen.interpreters.tracking import Tracker
 from lumen.language.controllers import Controller
+from lumen.language.robots import Camera
 from tests.fuzzy.nao import HEAD, TOP
 
 STEP = 1 / 300
@@ -27,6 +28,16 @@ class Run:
         """[s] after which the axis (0 yaw, 1 pitch) never leaves the goal again."""
         return next((pose[0] for pose in reversed(self.poses) if abs(pose[1 + axis] - goal) > within), 0.0)
 
+    def stray(self, axis: int, since: float) -> float:
+        """How far apart [rad] the axis' places were from then on."""
+        late = [pose[1 + axis] for pose in self.poses if pose[0] >= since]
+        return max(late) - min(late)
+
+    def farthest(self, camera: Camera = TOP) -> float:
+        """How far from the middle of the image the face was at most, as a part of half the image; inf where lost."""
+        across, down = camera.width / 2, camera.height / 2
+        return max(max(abs(p[0] / across - 1), abs(p[1] / down - 1)) if p else inf for p in self.pixels)
+
     def overshoot(self, axis: int, goal: float) -> float:
         """How far the axis went beyond the goal, as a part of the way to it."""
         way = self.poses[0][1 + axis] - goal
@@ -42,10 +53,12 @@ def run(
     tick: float = 0.033,
     duration: float = 4.0,
     error: float = 0.0,
+    sag: Pose = (0.0, 0.0),
 ) -> Run:
     """Let the controller follow a face (its place in the torso frame [m] by time) for `duration` [s].
 
-    `error` [s] is added to the times at which images say they were taken.
+    `error` [s] is added to the times at which images say they were taken; `sag` [rad] is how far beside the angles they
+    are told the joints come to rest, as weight lets them.
     """
     tracker = Tracker(controller, HEAD)
     head, target = list(start), list(start)
@@ -65,7 +78,7 @@ def run(
                 if aim := tracker.see({"x": round(u), "y": round(v)}, captured_at + error):
                     target = [aim["HeadYaw"], aim["HeadPitch"]]
         for i, speed in enumerate(speeds):
-            head[i] += max(-speed * STEP, min(speed * STEP, target[i] - head[i]))
+            head[i] += max(-speed * STEP, min(speed * STEP, target[i] + sag[i] - head[i]))
         result.poses.append((now, head[0], head[1]))
     return result
 
@@ -74,15 +87,3 @@ def off_by(face: Vector, yaw: float, pitch: float) -> Pose:
     """The head's pose [rad] that is so far [deg] beside the one that centres the face."""
     goal = centring(face, TOP)
     return goal[0] + radians(yaw), goal[1] + radians(pitch)
-
-
-def figures(controller: Controller, face: Vector, yaw: float, pitch: float, latency: float, tick: float) -> list[str]:
-    """Overshoot, settling time and final error of one run, for a report."""
-    goal = centring(face, TOP)
-    outcome = run(controller, lambda now: face, off_by(face, yaw, pitch), latency=latency, tick=tick)
-    last = outcome.poses[-1]
-    return [
-        f"{name}: overshoot {100 * outcome.overshoot(i, goal[i]):.1f} %, settled {outcome.settled(i, goal[i]):.2f} s, "
-        f"rests {degrees(last[1 + i] - goal[i]):+.2f} deg"
-        for i, name in enumerate(("yaw", "pitch"))
-    ]

@@ -61,8 +61,8 @@ def test_a_message_from_the_future_changes_nothing(plain: Tracker, time: float) 
     assert plain.see({"x": 80, "y": 120}, time, now=10.0) is None
     assert plain.see({"x": 80, "y": 120}, 10.0, now=10.0) is not None
     plain.pose(10.5, {"HeadYaw": 0.3, "HeadPitch": 0.0}, now=10.5)
-    assert plain.pose_at(10.5)["HeadYaw"] == 0.3
-    assert plain.see({"x": 80, "y": 120}, 10.55, now=10.5) is not None, "clocks differ a little"
+    target = plain.see({"x": 160, "y": 120}, 10.55, now=10.5)
+    assert target == pytest.approx({"HeadYaw": 0.3, "HeadPitch": 0.0}, abs=1e-9), "clocks differ a little"
 
 
 def test_an_integer_beyond_all_floats_is_no_number(plain: Tracker) -> None:
@@ -145,6 +145,28 @@ def test_a_head_at_its_limit_rests(head: Controller) -> None:
     outcome = run(head, lambda now: tall, (0.0, radians(-30)), latency=0.1, tick=0.033, duration=3.0)
     late = [pose[2] for pose in outcome.poses if pose[0] > 2.0]
     assert min(late) == max(late) == pytest.approx(radians(-38.5), abs=1e-5)
+
+
+@pytest.mark.parametrize("latency", [0.0, 0.1, 0.2])
+@pytest.mark.parametrize("tick", [0.033, 0.1])
+@pytest.mark.parametrize("sag", [-0.6, 0.6])
+def test_a_head_that_hangs_below_what_it_was_told_looks_at_the_face_all_the_same(
+    head: Controller, latency: float, tick: float, sag: float
+) -> None:
+    goal = centring(ADULT, TOP)
+    hanging = (radians(sag / 3), radians(sag))
+    outcome = run(head, lambda now: ADULT, off_by(ADULT, 15, 8), latency=latency, tick=tick, sag=hanging, duration=5.0)
+    for axis in (0, 1):
+        assert outcome.settled(axis, goal[axis]) <= 4.0
+        assert outcome.overshoot(axis, goal[axis]) <= 0.10
+
+
+def test_a_head_that_something_holds_is_not_pushed_further(plain: Tracker) -> None:
+    for i in range(10):
+        plain.pose(1.0 + 0.1 * i, {"HeadYaw": -0.3, "HeadPitch": 0.0})
+        target = plain.see({"x": 0, "y": 120}, 1.0 + 0.1 * i)
+    assert target is not None
+    assert target["HeadYaw"] == pytest.approx(-0.3 + radians(1.5 * 7.0884), abs=1e-5)
 
 
 def test_lost_it_holds_then_searches_then_looks_ahead(head: Controller) -> None:

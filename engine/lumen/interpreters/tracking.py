@@ -3,27 +3,33 @@
 Each sight moves the joints to where they stood *when the image was taken* plus the controller's output times the
 binding's gain. Adding the output to the angles last commanded instead overshoots as soon as camera and bus take time:
 the same error is then corrected again and again before its correction can be seen.
+
+A head that stands still stands a little beside where it was told to, for its weight and for friction. From there the
+turn counts from what it was told, else it would rest as far beside the face.
 """
 
-from bisect import bisect_left
-from collections import deque
 from collections.abc import Mapping
 from math import inf, isfinite, pi, sin
 from typing import Any
 
 from lumen.errors import LumenError
+from lumen.interpreters.course import Angles, Course
 from lumen.interpreters.glance import Glance
 from lumen.interpreters.limits import coupled_range
 from lumen.language.controllers import Controller
 from lumen.language.robots import Body
-
-Angles = dict[str, float]
 
 SWING = 0.5235987755982988
 """How far the first joint swings to either side in search where the file does not say: 30 deg, in [rad]."""
 
 EARLY = 0.1
 """How far in the future [s] a message may say it was made, as clocks go; farther, it goes by another clock."""
+
+STILL, LITTLE = 0.15, 0.0087
+"""A joint stands still that for `STILL` [s] neither moved nor was told to by more than `LITTLE` [rad], half a degree."""
+
+SAG = 0.035
+"""How far [rad] weight and friction hold a joint off where it was told to go; farther off, something else does."""
 
 
 class Tracker:
@@ -42,15 +48,18 @@ class Tracker:
         self._glance = Glance(controller, body)
         self._inputs: dict[str, float] = {}
         self._turn: Angles = {}
-        self._poses: deque[tuple[float, Angles]] = deque()
+        self._poses = Course(2.0 * controller.tracking.stale)
+        self._told = Course(2.0 * controller.tracking.stale)
         self._seen = -inf
         self._lost_since: float | None = None
         self._held: Angles = {}
+        self._sag: Angles = {}
 
     def succeed(self, before: "Tracker") -> None:
         """Go on where another one stood that moved the same joints: with the poses it knew, and what it saw last."""
         if set(self.joints) <= set(before.joints):
-            self._poses.extend((time, {j: angles[j] for j in self.joints}) for time, angles in before._poses)
+            for mine, theirs in ((self._poses, before._poses), (self._told, before._told)):
+                mine.known.extend((time, {j: angles[j] for j in self.joints}) for time, angles in theirs.known)
             self._seen, self._lost_since = before._seen, before._lost_since
             self._held = {joint: before._held[joint] for joint in self.joints if joint in before._held}
 
@@ -64,11 +73,7 @@ class Tracker:
         turned = {joint: angle for joint in self.joints if (angle := _number(angles.get(joint))) is not None}
         if measured is None or measured > now + EARLY or len(turned) < len(self.joints):
             return
-        if self._poses and measured <= self._poses[-1][0]:
-            return
-        self._poses.append((measured, turned))
-        while self._poses[0][0] < measured - 2.0 * self.controller.tracking.stale:
-            self._poses.popleft()
+        self._poses.add(measured, turned)
 
     def see(
         self, fields: Mapping[str, Any], captured_at: float, route: str | None = None, *, now: float = inf
@@ -82,16 +87,16 @@ class Tracker:
         captured = _number(captured_at)
         if captured is None or captured > now + EARLY or captured < self._seen or not self._poses:
             return None
-        if self._poses[-1][0] - captured > self.controller.tracking.stale or not self._take(fields, route):
+        if self._poses.last - captured > self.controller.tracking.stale or not self._take(fields, route):
             return None
-        pose = self.pose_at(captured)
+        pose = self._poses.at(captured)
         try:
             self._turn = self._glance.turn(self._inputs, pose)
         except LumenError:
             return None
-        target = self.clamped({joint: angle + self._turn[joint] for joint, angle in pose.items()})
+        target = self.clamped({joint: self._stood(joint, captured) + self._turn[joint] for joint in pose})
         self._seen, self._lost_since, self._held = captured, None, target
-        return target
+        return self._tell(target, now if isfinite(now) else self._poses.last)
 
     def idle(self, now: float) -> Angles | None:
         """Where the joints should go [rad] while nothing is seen: None to stay, then a search, then ahead."""
@@ -100,24 +105,26 @@ class Tracker:
             return None
         if self._lost_since is None:
             self._lost_since = self._seen if isfinite(self._seen) else now
-            self._held = self._held or self.pose_at(now)
+            self._held = self._held or self._poses.at(now)
         gone = now - self._lost_since - times.hold
         if gone < 0.0:
             return None
         if gone < times.search:
             swing = sin(2.0 * pi * gone / times.period)
-            return self.clamped({j: a + swing * self._sweep(j) for j, a in self._held.items()})
-        return self.clamped({joint: times.ahead.get(joint, 0.0) for joint in self.joints})
+            return self._tell(self.clamped({j: a + swing * self._sweep(j) for j, a in self._held.items()}), now)
+        return self._tell(self.clamped({joint: times.ahead.get(joint, 0.0) for joint in self.joints}), now)
 
-    def pose_at(self, time: float) -> Angles:
-        """Where the joints stood at a time, between the poses remembered; the nearest one outside them."""
-        poses = self._poses
-        i = bisect_left(poses, time, key=lambda pose: pose[0])
-        if i == 0 or i == len(poses):
-            return dict(poses[min(i, len(poses) - 1)][1])
-        (t0, before), (t1, after) = poses[i - 1], poses[i]
-        w = (time - t0) / (t1 - t0)
-        return {joint: angle + w * (after[joint] - angle) for joint, angle in before.items()}
+    def _stood(self, joint: str, time: float) -> float:
+        """Where the turn counts from [rad]: the joint's pose at that time, less what it sagged when it last stood still."""
+        pose, start = self._poses.at(time)[joint], time - STILL
+        if self._poses.steady(joint, start, time, LITTLE) and self._told.steady(joint, start, time, LITTLE):
+            sag = self._told.at(time)[joint] - pose
+            self._sag[joint] = sag if abs(sag) <= SAG else 0.0
+        return pose + self._sag.get(joint, 0.0)
+
+    def _tell(self, target: Angles, now: float) -> Angles:
+        self._told.add(now, target)
+        return target
 
     def clamped(self, angles: Mapping[str, float]) -> Angles:
         """The nearest angles within the bindings', the joints' and the coupled limits [rad]."""

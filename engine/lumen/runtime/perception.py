@@ -15,15 +15,18 @@ ROUTE = "face"
 
 
 class FaceDetector:
-    """Publishes where the visitor's face stands in the camera's image [px], ten times a second, 0.1 s late.
+    """Publishes where the visitor's face stands in the camera's image [px], every `period` [s], `latency` [s] late.
 
     The body is the original's (`x`, `y` as integers) and `time` [s], when the image was taken.
     """
 
-    def __init__(self, project: Project, hall: Hall, bus: Bus) -> None:
+    def __init__(
+        self, project: Project, hall: Hall, bus: Bus, *, period: float = PERIOD, latency: float = LATENCY
+    ) -> None:
         self._hall, self._bus = hall, bus
+        self._period, self._latency = period, latency
         self.camera = project.body.camera
-        self._next = 0.0
+        self._next, self._closed = 0.0, False
         self._developing: deque[tuple[float, dict[str, object]]] = deque()
         self.last: tuple[float, float] | None = None
         self.use(project)
@@ -32,13 +35,19 @@ class FaceDetector:
         """Publish on the route of this project from now on; on none where it has none."""
         self._project = project
 
+    def close(self) -> None:
+        """Publish nothing any more: somebody with eyes does."""
+        self._closed = True
+
     def tick(self, now: float) -> None:
         """Look, where it is time to, and publish what has been recognised by now."""
         if ROUTE not in self._project.routes:
             return
         if now >= self._next:
-            self._next += PERIOD
+            self._next = max(self._next + self._period, now)
             self._look(now)
+        if self._closed:
+            self._developing.clear()
         while self._developing and self._developing[0][0] <= now:
             if reason := send(self._bus, self._project, ROUTE, self._developing.popleft()[1]):
                 _log.warning("a face could not be published: %s", reason)
@@ -47,4 +56,4 @@ class FaceDetector:
         self.last = self._hall.face()
         if self.last:
             x, y = self.last
-            self._developing.append((now + LATENCY, {"x": round(x), "y": round(y), "time": now}))
+            self._developing.append((now + self._latency, {"x": round(x), "y": round(y), "time": now}))
