@@ -6,7 +6,8 @@ LumenError
  ├── ExpressionError   an expression can't be read, or has no value here
  ├── SnapshotError     a snapshot belongs to another machine
  ├── RobotError        the robot can't do what was asked, or is gone
- └── BusError          the broker is gone, or refuses
+ ├── BusError          the broker is gone, or refuses
+ └── ModuleError       a module (memory, eyes, ears, voice, social) can't do its work
 
 A fault in somebody's YAML is a `Diagnostic`, collected and returned; a fault in the world is one of these, and
 becomes an `Event` while an exhibition runs. A fault in Lumen itself is none of them and is allowed to crash.
@@ -60,3 +61,7 @@ class RobotError(LumenError):
 
 class BusError(LumenError):
     """The bus can't be reached, was closed, or refused a message."""
+
+
+class ModuleError(LumenError):
+    """A module lacks what it works with, or can't use what it was sent; the tour goes on without it."""

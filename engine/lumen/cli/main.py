@@ -29,6 +29,7 @@ VERBS = {
     "schema": "print the JSON Schema of a kind of file, for editors",
     "test": "play the stories, and say which of them end badly",
     "play": "show a motion on the simulated robot",
+    "memory": "list who and what the robot remembers, and forget somebody",
     "graph": "draw a behaviour (Mermaid)",
     "import": "turn a statechart or a motion of another tool into a file of ours",
     "export": "write a behaviour as SCXML, for XState, or as a diagram",

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from lumen.cli.cast import Cast
 from lumen.cli.main import STARTED
+from lumen.cli.modules.inside import join
 from lumen.cli.premises import Premises
 from lumen.cli.reloading import Reloading
 from lumen.cli.settled import settled
@@ -19,6 +20,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
 from lumen.loading.packaged import shipped_root
 from lumen.robots.broadcast import Count
+from lumen.runtime.home import home_of
 
 FAREWELL = 5.0
 """How long it goes on after whoever typed has left [s]."""
@@ -62,6 +64,8 @@ class Performance:
                 film(show, video)
             self._settle(mode)
             self._introduce(speed)
+            folder = None if self._story else home_of(self._premises.root)
+            join(show, folder, self._transcript.line, paced=speed != "max")
             self._start(language, fresh=fresh)
             settled()
             began = time.monotonic()

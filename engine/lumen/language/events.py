@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from lumen.language.modules import MODULES
+
 
 class Event(NamedTuple):
     """Something that happened, named and timed; `event.name` and `event.data` in expressions.
@@ -21,6 +23,12 @@ def _object(**fields: object) -> dict[str, object]:
     return {"type": "object", "properties": fields, "required": list(fields)}
 
 
+CUE = "cue"
+"""What a robot tells when a motion comes to words or a sound: its `motion`, `kind` (`say`, `sound`) and `value`.
+
+It is for who runs the exhibition, not for its behaviour, which hears no such event.
+"""
+
 ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "touched": _object(sensor={"type": "string"}),
     "released": _object(sensor={"type": "string"}),
@@ -33,8 +41,10 @@ ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "motion.lost": _object(seconds={"type": "number"}),
     "motion.back": _object(seconds={"type": "number"}),
     "stop": _object(),
+    **{f"{module}.{what}": _object(seconds={"type": "number"}) for module in MODULES for what in ("lost", "back")},
 }
 """Events that every robot raises by itself, with the JSON Schema of their data; no behaviour has to declare them.
 
-Where parts of the exhibition run in processes of their own, `robot` and `motion` may be lost and come back.
+Where parts of the exhibition run in processes of their own, `robot`, `motion` and the other modules may be lost and
+come back.
 """

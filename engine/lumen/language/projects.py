@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from lumen.language.controllers import Controller
 from lumen.language.diagnostics import Path, Place, Places
 from lumen.language.machines import Machine
+from lumen.language.modules import ModuleSettings
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
 from lumen.language.routes import Route
@@ -48,6 +49,7 @@ class Project:
     stage: Stage | None = None
     bus: str = "memory://"
     patience: float = PATIENCE
+    modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

@@ -86,6 +86,7 @@ def assemble(found: Draft, root: str) -> Project:
         stage=settings.stage,
         bus=settings.bus,
         patience=settings.patience,
+        modules=settings.modules,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
+from lumen.language.modules import ModuleSettings
 from lumen.language.projects import PATIENCE, Stage
 from lumen.language.routes import Route
 from lumen.loading.routes import build_routes, duration
@@ -27,6 +28,7 @@ class Settings:
     stage: Stage | None = None
     bus: str = "memory://"
     patience: float = PATIENCE
+    modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
 
 
 def build_settings(data: Any, report: Report) -> Settings:
@@ -46,7 +48,12 @@ def build_settings(data: Any, report: Report) -> Settings:
         stage=_stage(data, report),
         bus=data.get("bus", Settings.bus),
         patience=_patience(data, report),
+        modules={name: _module(row) for name, row in data.get("modules", {}).items()},
     )
+
+
+def _module(row: Mapping[str, Any]) -> ModuleSettings:
+    return ModuleSettings(row.get("here", False), {key: value for key, value in row.items() if key != "here"})
 
 
 def _patience(data: Mapping[str, Any], report: Report) -> float:

@@ -12,6 +12,7 @@ from typing import Any
 
 from lumen.errors import BusError
 from lumen.language.events import Event
+from lumen.language.modules import MODULES
 from lumen.ports import Bus, Message
 
 KEY, ROUTE = "lumen.presence", "presence"
@@ -44,9 +45,9 @@ class Peer:
 class Presence:
     """This process among those of one robot's exhibition.
 
-    `tick` says that it is there and returns what has changed: `robot.lost`, `robot.back`, `motion.lost` and
-    `motion.back`, each with `seconds`. Until `settle` it asks who is there, and everybody answers at once. `more` is
-    what else it says of itself.
+    `tick` says that it is there and returns what has changed: `robot.lost`, `robot.back`, and the same of `motion` and
+    the other modules, each with `seconds`. Until `settle` it asks who is there, and everybody answers at once. `more`
+    is what else it says of itself.
     """
 
     def __init__(
@@ -155,9 +156,9 @@ class Presence:
         known.parts, known.heard, known.state, known.said = tuple(map(str, parts)), now, state, body
 
     def _changes(self, now: float) -> list[Event]:
-        """What of the robot and the motion module has gone or come back since the last look."""
+        """What of the robot, the motion module and the others has gone or come back since the last look."""
         events = []
-        for part in (ROBOT, MOTION):
+        for part in (ROBOT, MOTION, *MODULES):
             if part in self.parts:
                 continue
             here = self.find(part) is not None

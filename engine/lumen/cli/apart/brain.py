@@ -6,6 +6,7 @@ from typing import Any
 
 from lumen.buses.validated import ValidatedBus
 from lumen.cli.cast import Cast
+from lumen.cli.modules.inside import Troubles
 from lumen.cli.premises import Premises
 from lumen.cli.reloading import Reloading
 from lumen.cli.show import Show
@@ -72,6 +73,9 @@ class BrainPart:
     def begin(self, now: float) -> None:
         show, records = self.show, self._premises.records
         show.exhibition.observers.append(self._transcript)
+        troubles = Troubles(self.project, self._bus, self._transcript.line)
+        show.exhibition.parts.append(troubles.tick)
+        show.closing.insert(0, troubles.close)
         self._premises.open(show.bus, self._url, self.project)
         reloading = Reloading(
             show, self._transcript, mode=self._mode, records=records, applied=self._premises.announce, apart=True
@@ -124,7 +128,7 @@ class BrainPart:
         before = self._before()
         if before:
             self.robot.recover(before, found.lost)
-            found = found._replace(lost=())
+            found = found._replace(lost=(), away=0.0)  # the robot itself says whether it was left alone for long
         self.show.exhibition.resume(found)
 
     def _before(self) -> str:

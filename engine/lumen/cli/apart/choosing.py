@@ -2,7 +2,10 @@
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.modules import MODULES
 from lumen.runtime.presence import PARTS, ROBOT
+
+ALL = (*PARTS, *MODULES)
 
 
 def parts_of(only: str | None, robot: str) -> tuple[str, ...]:
@@ -11,10 +14,10 @@ def parts_of(only: str | None, robot: str) -> tuple[str, ...]:
         return tuple(part for part in PARTS if part != ROBOT) if robot == "remote" else ()
     parts = tuple(dict.fromkeys(word.strip() for word in only.split(",") if word.strip()))
     for part in parts:
-        if part not in PARTS:
-            raise UsageError(f"there is no part `{part}`: {did_you_mean(part, PARTS, 'there are')}")
+        if part not in ALL:
+            raise UsageError(f"there is no part `{part}`: {did_you_mean(part, ALL, 'there are')}")
     if not parts:
-        raise UsageError(f"--only takes one or more of {', '.join(PARTS)}")
+        raise UsageError(f"--only takes one or more of {', '.join(ALL)}")
     if robot == "remote" and ROBOT in parts:
         raise UsageError("the robot can't be here and remote: leave out --robot remote, or `robot` of --only")
     return parts

@@ -10,6 +10,7 @@ from lumen.cli.main import STARTED
 from lumen.cli.performance import clock_time
 from lumen.cli.settled import settled
 from lumen.errors import UsageError
+from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.ports import Clock
 from lumen.robots.ways import COMMAND, key_of
@@ -17,9 +18,9 @@ from lumen.runtime.exhibition import TICK
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT, Presence, told
 from lumen.runtime.trace import KEY
 
-CLAIM = 1.0
+CLAIM = 0.8
 """How long a process asks whether somebody is already what it wants to be [s]."""
-ALONE = (ROBOT, BRAIN, MOTION)
+ALONE = (ROBOT, BRAIN, MOTION, *MODULES)
 """Of these there is one for each robot; visitors may be many."""
 
 
@@ -38,11 +39,22 @@ class Process:
     ) -> None:
         self._project, self._bus, self._place, self._clock = project, bus, place, clock
         self._presence, self._parts, self._speed = presence, parts, speed
+        self._now, self._asked = clock.now(), time.monotonic()
         self._begun: list[Part] = []
         self._waiting = ""
         self._interrupts, self._heeded, self._leaving = 0, 0, False
         self.after: list[Callable[[], None]] = []
         self.closing: list[Callable[[], None]] = []
+
+    @property
+    def over(self) -> bool:
+        """Whether one of its parts is at its end."""
+        return any(part.over for part in self._begun)
+
+    @property
+    def failed(self) -> bool:
+        """Whether a story has failed, or was not played to its end."""
+        return any(part.failed for part in self._begun)
 
     @property
     def leaving(self) -> bool:
@@ -56,20 +68,23 @@ class Process:
 
     def run(self, period: float | None) -> int:
         """Until a part is over, the period [s] is, or the operator ends it."""
-        now = began = last = self._clock.now()
-        asked = time.monotonic()
+        began, now = self._now, self._now
         try:
             while not self._over(now - began, period):
-                self._clock.wait(last + TICK)
-                now = last = self._clock.now()
-                self._tick(now, asked)
+                now = self.step()
         finally:
             self.close()
-        failed = any(part.failed for part in self._begun)
-        print(f"\n{'The story failed' if failed else 'Ended'}: {clock_time(now - began)}.")
+        print(f"\n{'The story failed' if self.failed else 'Ended'}: {clock_time(now - began)}.")
         for part in self._begun:
             part.summary()
-        return 1 if failed and not self._interrupts else 0
+        return 1 if self.failed and not self._interrupts else 0
+
+    def step(self) -> float:
+        """Live through a tick; its time [s]."""
+        self._clock.wait(self._now + TICK)
+        self._now = self._clock.now()
+        self._tick(self._now)
+        return self._now
 
     def use(self, project: Project) -> None:
         """Go on with the bundle that the brain has put in force."""
@@ -85,10 +100,10 @@ class Process:
             for close in [*(part.close for part in self._parts), *self.closing]:
                 stack.callback(close)
 
-    def _tick(self, now: float, asked: float) -> None:
+    def _tick(self, now: float) -> None:
         changes = self._presence.tick()
         if not self._presence.settled:
-            self._claim(asked)
+            self._claim()
         for follow in self.after:
             follow()
         for part in self._parts:
@@ -100,7 +115,7 @@ class Process:
                 self._begun.append(part)
         self._heed()
 
-    def _claim(self, asked: float) -> None:
+    def _claim(self) -> None:
         """Be what we want to be, unless another process is. Raises UsageError there."""
         for part in ALONE:
             if part in self._presence.parts and (rival := self._presence.rival(part)):
@@ -108,7 +123,7 @@ class Process:
                     f"{told(rival)} is the {part} of {self._project.robot} on this bus already:"
                     " end it first, or give this project's robot another name"
                 )
-        if time.monotonic() - asked < CLAIM:
+        if time.monotonic() - self._asked < CLAIM:
             return
         self._presence.settle()
         settled()
@@ -143,7 +158,7 @@ class Process:
     def _over(self, lived: float, period: float | None) -> bool:
         if self._interrupts > 1 or (period is not None and lived >= period):
             return True
-        return any(part.over for part in self._begun)
+        return self.over
 
     def _heed(self) -> None:
         """What the first Ctrl-C asks for; where nobody has anything to do for it, it ends."""

@@ -11,6 +11,7 @@ from lumen.bus import connect
 from lumen.buses.validated import ValidatedBus, validated
 from lumen.cli.apart.brain import BrainPart
 from lumen.cli.apart.bundles import Bundles
+from lumen.cli.apart.module import ModulePart
 from lumen.cli.apart.motion import MotionPart
 from lumen.cli.apart.part import Part
 from lumen.cli.apart.process import Process
@@ -21,9 +22,11 @@ from lumen.cli.premises import Premises
 from lumen.cli.transcript import Transcript
 from lumen.clocks.real import RealClock
 from lumen.errors import UsageError
+from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
+from lumen.runtime.home import home_of
 from lumen.runtime.presence import BRAIN, KEY, MOTION, ROBOT, ROUTE, VISITOR, Presence
 
 
@@ -43,7 +46,7 @@ def start(
     chosen = cast(options.robot, project, options.speed, story) if ROBOT in parts else None
     clock: Clock = chosen.clock if chosen else RealClock(speed=speed)
     bus = validated(connect(url), project)
-    process, brain = _process(options, project, story, parts, (bus, url), premises, language, clock, chosen)
+    process, brain = assembled(options, project, story, parts, (bus, url), premises, language, clock, chosen)
     signal.signal(signal.SIGINT, lambda *_: process.interrupt())
     signal.signal(signal.SIGTERM, lambda *_: process.interrupt(2, leave=True))
     code = process.run(period)
@@ -52,7 +55,7 @@ def start(
     return code
 
 
-def _process(
+def assembled(
     options: argparse.Namespace,
     project: Project,
     story: Story | None,
@@ -92,6 +95,8 @@ def _process(
         parts.append(brain)
     if VISITOR in names:
         parts.append(VisitorPart(project, bus, transcript, story))
+    tell = transcript.line
+    parts += [ModulePart(n, project, bus, tell, home_of(premises.root)) for n in names if n in MODULES]
     process = Process(project, bus, url.rpartition("@")[2], clock, presence, parts, float(options.speed))
 
     def use(other: Project) -> None:

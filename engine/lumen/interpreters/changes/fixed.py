@@ -11,6 +11,7 @@ FIXED: Mapping[str, str] = {
     "hall": "the hall",
     "stage": "the stage",
     "bus": "the broker's address",
+    "modules": "what is said of the modules",
 }
 """Fields of `Project` that are in force only from the next start on, and what they are called."""
 

@@ -1,0 +1,15 @@
+"""The modules beside robot, brain and motion: what an exhibition may have, and what `lumen.yaml` says of each."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+MEMORY, EYES, EARS, VOICE, SOCIAL = MODULES = ("memory", "eyes", "ears", "voice", "social")
+
+
+@dataclass(frozen=True, slots=True)
+class ModuleSettings:
+    """What `lumen.yaml` says of a module: whether `lumen run` has it inside (`here`), and its own options."""
+
+    here: bool = False
+    options: Mapping[str, Any] = field(default_factory=dict)

@@ -1,0 +1,191 @@
+"""What every module is: it hears messages on a thread of its own, and whatever fails is a line to the operator."""
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from lumen.errors import BusError, ModuleError
+from lumen.language.modules import ModuleSettings
+from lumen.language.projects import Project
+from lumen.ports import Bus, Message
+
+KEYS: Mapping[str, str] = {
+    "image": "avatar.{robot}.data.image",
+    "joint": "avatar.{robot}.data.joint",
+    "sonar": "avatar.{robot}.data.sonar",
+    "tactile": "avatar.{robot}.data.tactile",
+    "battery": "avatar.{robot}.data.battery",
+    "recording": "avatar.{robot}.data.recording",
+    "command": "avatar.{robot}.command",
+    "heard": "lumen.audio.speech.recognition",
+    "gender": "lumen.audio.gender.identification",
+    "wav_stream": "lumen.audio.wav.stream",
+    "text_stream": "lumen.audio.text.stream",
+    "text_to_speech": "lumen.audio.text.to.speech",
+    "face": "lumen.visual.face.detection",
+    "recognised": "lumen.visual.face.recognition",
+    "face_tracking": "lumen.visual.face.tracking",
+    "human": "lumen.visual.human.detection",
+    "visual_command": "lumen.visual.command",
+    "social_perception": "lumen.{robot}.social.perception",
+    "social_expression": "lumen.{robot}.social.expression",
+    "fact": "lumen.{robot}.persistence.fact",
+    "journal": "lumen.{robot}.persistence.journal",
+    "state": "lumen.state",
+    "trouble": "lumen.trouble",
+}
+"""Under which keys modules talk, where the project's routes do not say otherwise."""
+
+WAITING = 1_000
+"""How many messages wait at most for a module; beyond that the oldest go."""
+REASONS = 50
+"""How many kinds of trouble are told of at most."""
+
+Handler = Callable[[Message], None]
+_log = logging.getLogger(__name__)
+
+
+class Module:
+    """Hears the routes of `hears` one message at a time, in the order they came, on its own thread.
+
+    A handler that raises ModuleError costs that message: `tell` says why, once for each reason until it works again,
+    and the route `trouble` to the operators of other processes. Of a route that keeps one message only the newest
+    waits. Subclasses name themselves and give `hears`; they call `begin` when they are ready.
+    """
+
+    name = ""
+
+    def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None]) -> None:
+        self.project, self.bus = project, bus
+        self.handled = 0
+        self._tell = tell
+        self._waiting: deque[tuple[str, Message]] = deque(maxlen=WAITING)
+        self._changed = threading.Condition()
+        self._busy = self._ending = False
+        self._said: set[str] = set()
+        self._undo: list[Callable[[], None]] = []
+        self._thread = threading.Thread(target=self._run, name=f"lumen-{self.name}", daemon=True)
+
+    def hears(self) -> Mapping[str, Handler]:
+        """The routes that it listens on, and what it does with a message of each."""
+        raise NotImplementedError
+
+    @property
+    def settings(self) -> ModuleSettings:
+        """What `lumen.yaml` says of it."""
+        return self.project.modules.get(self.name, ModuleSettings())
+
+    def begin(self) -> None:
+        """Listen, and start working."""
+        self._listen()
+        self._thread.start()
+
+    def use(self, project: Project) -> None:
+        """Talk on the routes of this project from now on."""
+        old, self.project = self._undo, project
+        self._undo = []
+        self._listen()
+        for undo in old:
+            undo()
+
+    def settle(self, timeout: float = 5.0) -> bool:
+        """Wait until everything heard so far is dealt with; whether that was so within `timeout` [s]."""
+        with self._changed:
+            return self._changed.wait_for(lambda: not (self._waiting or self._busy), timeout)
+
+    def close(self) -> None:
+        """Deal with what waits, and end; harmless when repeated."""
+        for undo in self._undo:
+            undo()
+        self._undo = []
+        with self._changed:
+            self._ending = True
+            self._changed.notify_all()
+        if self._thread.is_alive() and threading.current_thread() is not self._thread:
+            self._thread.join(5.0)
+
+    def publish(self, route: str, body: Any) -> None:
+        """Send a body on a route; where the bus refuses, the operator is told."""
+        row = self.project.routes.get(route)
+        try:
+            self.bus.publish(self.key(route), body, ttl=row.ttl if row else None)
+        except BusError as error:
+            self.tell(str(error))
+
+    def reply(self, message: Message, body: Any) -> None:
+        """Answer who asked; nobody where the bus is gone."""
+        try:
+            self.bus.reply(message, body)
+        except BusError as error:
+            self.tell(str(error))
+
+    def key(self, route: str) -> str:
+        """The routing key of a route."""
+        row = self.project.routes.get(route)
+        return row.key_for(self.project.robot) if row else KEYS[route].replace("{robot}", self.project.robot)
+
+    def tell(self, text: str) -> None:
+        """A line to the operator, once until `well`."""
+        if text not in self._said and len(self._said) < REASONS:
+            self._said.add(text)
+            self._tell(text)
+            try:
+                self.bus.publish(self.key("trouble"), {"module": self.name, "text": text}, ttl=10.0)
+            except BusError as error:
+                _log.debug("nobody was told of the trouble: %s", error)
+
+    def well(self) -> None:
+        """It works (again): the next trouble is told of anew."""
+        self._said.clear()
+
+    def _listen(self) -> None:
+        for route in self.hears():
+            self._undo.append(self.bus.subscribe(self.key(route), partial(self._take, route)))
+
+    def _take(self, route: str, message: Message) -> None:
+        row = self.project.routes.get(route)
+        with self._changed:
+            if row and row.keep == 1:
+                self._waiting = deque((w for w in self._waiting if w[0] != route), maxlen=WAITING)
+            self._waiting.append((route, message))
+            self._changed.notify_all()
+
+    def _run(self) -> None:
+        while job := self._next():
+            route, message = job
+            try:
+                self.hears()[route](message)
+            except ModuleError as error:
+                self.tell(str(error))
+            except Exception as error:  # a fault of ours: told, and the tour goes on without this message
+                _log.exception("the module `%s` failed on `%s`", self.name, message.key)
+                self.tell(f"failed on a message: {error!r}")
+            self.handled += 1
+        self.end()
+
+    def end(self) -> None:
+        """Let go of what its thread holds; called on that thread."""
+
+    def idle(self) -> float | None:
+        """Called on its thread when nothing waits; in how many seconds again, None for not before a message."""
+        return None
+
+    def _next(self) -> tuple[str, Message] | None:
+        while True:
+            with self._changed:
+                if self._waiting:
+                    self._busy = True
+                    return self._waiting.popleft()
+            again = self.idle()
+            with self._changed:
+                if self._waiting:
+                    continue
+                self._busy = False
+                self._changed.notify_all()
+                if self._ending:
+                    return None
+                self._changed.wait_for(lambda: self._waiting or self._ending, again)
+                self._busy = True
