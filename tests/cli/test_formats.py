@@ -35,13 +35,16 @@ def test_diagrams(format: str, first: str, capsys: pytest.CaptureFixture[str]) -
 
 def test_what_is_left_out_is_listed_with_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "chart.scxml"
-    file.write_text(CHART.format('<invoke src="x"/>'), "utf-8")
+    file.write_text(CHART.format('<invoke type="x-other" src="x"/>'), "utf-8")
     assert main(["import", str(file)]) == 1
     printed = capsys.readouterr()
     assert f"{file}:3:17 error[not-carried-over] `<invoke>`" in printed.err
     assert "id: chart" in printed.out
     assert main(["import", str(file), "--format", "json"]) == 1
     assert '"code": "not-carried-over"' in capsys.readouterr().err
+    assert "`lumen explain not-carried-over` says more" in printed.err
+    assert main(["explain", "not-carried-over"]) == 0
+    assert "left out" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

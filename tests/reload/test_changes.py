@@ -10,7 +10,7 @@ import pytest
 from lumen.cli.main import main
 from lumen.cli.versions import version
 from lumen.errors import UsageError
-from lumen.interpreters.changes import Risk, changes, live, risk, summary
+from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
 from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -79,7 +79,12 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
         Risk.BEHAVIOR,
     ),
     ("phrases", [(TOUR, "en: [dance, dancing]", "en: [dance]")], ["phrases `dance` changed"], Risk.BEHAVIOR),
-    ("a route", [("lumen.yaml", "ttl: 2s, keep", "ttl: 3s, keep")], ["route `command` ttl 2 s → 3 s"], Risk.WIRING),
+    (
+        "a route",
+        [("lumen.yaml", "ttl: 2s, keep: 10", "ttl: 3s, keep: 10")],
+        ["route `command` ttl 2 s → 3 s"],
+        Risk.WIRING,
+    ),
     (
         "a fuzzy rule",
         [("fuzzy/head.yaml", "if FaceXLoc is Zero then AngleX is Zero", "if FaceXLoc is Zero then AngleX is Positive")],
@@ -130,10 +135,14 @@ def test_all_changes_in_one_line() -> None:
     expected = "state `dance` now plays `photo`; route `command` ttl 2 s → 3 s; 2 texts changed"
     assert summary(changes(PLAIN, other)) == expected
     assert summary(()) == "nothing that matters changed"
+    many = [Change("story", "", "", Risk.COSMETIC), Change("behavior", "", "", Risk.BEHAVIOR)]
+    assert summary(many * 5) == "5 behaviors changed; 5 stories changed"
 
 
 def test_what_can_not_change_live_stays_as_it_was() -> None:
-    other = edited(("lumen.yaml", "x: [-0.4, 0.4]", "x: [-0.3, 0.4]"), ("lumen.yaml", "ttl: 2s, keep", "ttl: 3s, keep"))
+    other = edited(
+        ("lumen.yaml", "x: [-0.4, 0.4]", "x: [-0.3, 0.4]"), ("lumen.yaml", "ttl: 2s, keep: 10", "ttl: 3s, keep: 10")
+    )
     assert [c.risk for c in changes(PLAIN, live(PLAIN, other))] == [Risk.WIRING]
 
 
@@ -188,7 +197,10 @@ def test_lint_finds_what_a_reload_would_refuse_or_move(repository: Path, capsys:
     out = capsys.readouterr().out
     assert f"{TOUR}:2:46: info[reload-moves] a reload would lead from `talk.ask`, which is gone, to `talk.dance`" in out
     assert out.count("reload-moves") == 1
+    assert main(["lint", "--against", "HEAD", "--select", "reload", "--format", "concise", "fuzzy/head.yaml"]) == 0
+    assert "reload-moves" not in capsys.readouterr().out
     assert main(["lint", "--against", "nothing"]) == 2
+    assert main(["lint", "--against", "HEAD", "--diff"]) == 2
 
 
 def test_what_runs_is_compared_with_what_is_saved(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:

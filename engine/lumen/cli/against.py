@@ -35,7 +35,9 @@ def compared(found: Findings, name: str, wanted: Callable[[Diagnostic], bool]) -
     root = Path(found.root)
     old, new = version(name, root).project, check_files(root, found.files)[0]
     more = [d for d in against(old, new) if wanted(d)] if new else []
-    return replace(found, diagnostics=[*found.diagnostics, *more])
+    shown = [d for d in more if not found.asked or d.place.file in found.asked]
+    elsewhere = found.elsewhere + len(more) - len(shown)
+    return replace(found, diagnostics=[*found.diagnostics, *shown], elsewhere=elsewhere)
 
 
 def _refused(new: Project, everywhere: Fates) -> Iterator[Diagnostic]:

@@ -7,6 +7,7 @@ from typing import Any
 
 from lumen.cli.render.words import COLOURS
 from lumen.cli.terminal import coloured, paint
+from lumen.formats.findings import MEANINGS
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.pages import Example, Page, page
 from lumen.rules.selection import selected
@@ -24,6 +25,9 @@ def run(options: argparse.Namespace) -> int:
     if word in CODES:
         found = page(word)
         print(json.dumps(_as_json(found), indent=2) if json_wanted else _text(found, coloured()))
+    elif word in MEANINGS:
+        what = MEANINGS[word]
+        print(json.dumps({"code": word, "what": what}, indent=2) if json_wanted else f"{word}\n\n{what}")
     else:
         codes = selected([word]) if word else CODES.keys()
         print(_json_list(codes) if json_wanted else _list(codes, coloured()))

@@ -1,6 +1,7 @@
 """Options before, between and after the other words of a command: `export scxml --project here tour`."""
 
 import argparse
+import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,7 +14,7 @@ class Intermixed(argparse.ArgumentParser):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: Any = None
     ) -> tuple[Any, list[str]]:
-        if self._mixing:
+        if self._mixing or "--" in (sys.argv[1:] if args is None else args):  # behind `--` is no option, and no mixing
             return super().parse_known_args(args, namespace)
         self._mixing = True
         try:

@@ -3,11 +3,11 @@
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from lumen.cli.findings import Findings
-from lumen.cli.linting import Asked, Wanted, asked, lint
+from lumen.cli.linting import Asked, Judge, Wanted, asked, lint
 from lumen.cli.render import FORMATS, render
 from lumen.cli.sweeping import unswept
 from lumen.cli.terminal import coloured
@@ -42,20 +42,16 @@ def run(options: argparse.Namespace) -> int:
     projects = asked(options.paths, options.stdin_filename)
     if options.fix and not options.paths and projects[0].root == shipped_root() and not _here(projects[0]):
         raise UsageError("there is no project here or above to repair: name its folder")
+    judge = _judge(options.against, wanted)
     if options.watch:
         from lumen.cli.watching import watch
 
-        return watch(projects, wanted, options.format)
+        return watch(projects, judge, options.format)
     if options.diff:
         return _diff(projects, wanted)
     if options.fix:
         _fix(projects, wanted)
-    with unswept():
-        found = [lint(what, wanted) for what in projects]
-    if options.against is not None:
-        from lumen.cli.against import compared
-
-        found = [compared(each, options.against, wanted) for each in found]
+    found = [judge(what) for what in projects]
     show(render(options.format, found, coloured=options.format in ("text", "concise") and coloured()))
     return verdict(found, strict=options.strict)
 
@@ -73,6 +69,21 @@ def show(text: str) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(error, BrokenPipeError):
             raise UsageError(f"can't print: {(error.strerror or str(error)).lower()}") from None
+
+
+def _judge(against: str | None, wanted: Wanted) -> Judge:
+    """What finds what is wanted in a project, what a reload from `against` would refuse, move or forget included."""
+
+    def judge(what: Asked, files: Mapping[str, bytes] | None = None) -> Findings:
+        with unswept():
+            found = lint(what, wanted, files)
+        if against is None:
+            return found
+        from lumen.cli.against import compared
+
+        return compared(found, against, wanted)
+
+    return judge
 
 
 def _wanted(options: argparse.Namespace) -> Wanted:
@@ -94,6 +105,8 @@ def _here(project: Asked) -> bool:
 def _consistent(options: argparse.Namespace) -> None:
     if options.fix and options.diff:
         raise UsageError("--fix repairs and --diff only shows: choose one")
+    if options.diff and options.against is not None:
+        raise UsageError("--diff shows what --fix would change, and no reload is repaired: leave out --against")
     if options.watch and (options.fix or options.diff or "-" in options.paths):
         raise UsageError("--watch goes on until Ctrl-C: it can't stand beside --fix, --diff or `-`")
     if options.watch and options.format not in ("text", "concise"):

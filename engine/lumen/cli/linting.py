@@ -4,6 +4,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from lumen.cli.findings import Findings
 from lumen.errors import UsageError
@@ -33,6 +34,12 @@ class Asked:
 
     def shown(self, diagnostic: Diagnostic) -> bool:
         return not self.only or diagnostic.place.file in self.only
+
+
+class Judge(Protocol):
+    """What finds what is wrong in a project; `files` are what it holds, where somebody has read them already."""
+
+    def __call__(self, what: Asked, files: Mapping[str, bytes] | None = None) -> Findings: ...
 
 
 def asked(paths: Sequence[str], stdin_name: str | None = None) -> list[Asked]:

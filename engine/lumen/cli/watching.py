@@ -8,7 +8,7 @@ from contextlib import ExitStack
 
 from lumen.cli.findings import Findings
 from lumen.cli.lint import show, verdict
-from lumen.cli.linting import Asked, Wanted, lint
+from lumen.cli.linting import Asked, Judge
 from lumen.cli.render import render
 from lumen.cli.terminal import coloured, paint
 from lumen.runtime.watcher import Saved, Watcher
@@ -19,10 +19,10 @@ QUIET = 0.01
 _CLEAR = "\x1b[2J\x1b[H"
 
 
-def watch(projects: Sequence[Asked], wanted: Wanted, format: str, ended: Callable[[], bool] = lambda: False) -> int:
+def watch(projects: Sequence[Asked], judge: Judge, format: str, ended: Callable[[], bool] = lambda: False) -> int:
     """Show what is wrong, and again after every change, until `ended` or Ctrl-C; always 0."""
     changes: queue.SimpleQueue[tuple[int, Saved]] = queue.SimpleQueue()
-    found = [lint(what, wanted) for what in projects]
+    found = [judge(what) for what in projects]
     with ExitStack() as stack:
         for i, what in enumerate(projects):
             watcher = Watcher(what.root, found[i].files, _into(changes, i), quiet=QUIET)
@@ -35,7 +35,7 @@ def watch(projects: Sequence[Asked], wanted: Wanted, format: str, ended: Callabl
                 while not changes.empty():
                     latest.update([changes.get()])
                 for i, saved in latest.items():
-                    found[i] = lint(projects[i], wanted, saved.files)
+                    found[i] = judge(projects[i], saved.files)
                 _draw(found, format, time.monotonic() - min(saved.seen for saved in latest.values()))
         except KeyboardInterrupt:
             if sys.stdout.isatty():

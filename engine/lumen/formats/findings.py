@@ -8,6 +8,10 @@ Placing = Callable[[Path], Place]
 """Where the node at that path of a behaviour's file stands."""
 
 LOST, CHANGED = "not-carried-over", "carried-over-differently"
+MEANINGS = {
+    LOST: "what `lumen import` or `lumen export` left out: the result does something else without it",
+    CHANGED: "what `lumen import` or `lumen export` wrote in another form, or what only Lumen understands in it",
+}
 
 
 class ForeignFileError(Exception):

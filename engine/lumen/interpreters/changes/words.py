@@ -34,5 +34,7 @@ def names(found: Any) -> str:
 
 
 def how_many(number: int, what: str) -> str:
-    """`1 text`, `2 texts`."""
-    return f"{number} {what}{'s' * (number != 1)}"
+    """`1 text`, `2 texts`, `2 stories`."""
+    if number == 1:
+        return f"1 {what}"
+    return f"{number} {what[:-1]}ies" if what.endswith("y") else f"{number} {what}s"
