@@ -27,14 +27,26 @@ HASHING = "rabbit_password_hashing_sha256"
 USERS = {"guest": (".*", ".*"), "visual": (r"^lumen\.visual\.", r"^avatar\.")}
 """Who may use the broker: which keys of `amq.topic` each may write, and which read."""
 
+NOWHERE = {
+    "vhost": "/",
+    "name": "nowhere",
+    "pattern": r"^amq\.topic$",
+    "apply-to": "exchanges",
+    "definition": {"alternate-exchange": "lumen.nowhere"},
+}
+
 
 class RabbitMQ:
-    """A broker in a folder of its own; `url` is where it listens once `start` has returned."""
+    """A broker in a folder of its own; `url` is where it listens once `start` has returned.
 
-    def __init__(self) -> None:
-        self._script = _script()
+    With a folder of certificates it listens for TLS too, on the port `secure`, and has the policy of docs/broker.md for
+    messages that nobody waits for.
+    """
+
+    def __init__(self, certificate: Path | None = None) -> None:
+        self._script, self.certificate = _script(), certificate
         self.folder = Path(tempfile.mkdtemp(prefix="lumen-rabbitmq-"))
-        self.port, self.distribution, self.epmd = _free_ports(3)
+        self.port, self.distribution, self.epmd, self.secure = _free_ports(4)
         self.url = self.url_of("guest")
         self._process: subprocess.Popen[bytes] | None = None
 
@@ -45,8 +57,8 @@ class RabbitMQ:
     def start(self) -> None:
         """Start it, or start it again with what it had stored, and wait until it accepts connections."""
         (self.folder / "plugins").write_text("[].")
-        (self.folder / "rabbitmq.conf").write_text(f"load_definitions = {self.folder}/definitions.json\n")
-        (self.folder / "definitions.json").write_text(json.dumps(_definitions()))
+        (self.folder / "rabbitmq.conf").write_text("\n".join(self._settings()))
+        (self.folder / "definitions.json").write_text(json.dumps(_definitions(nowhere=self.certificate is not None)))
         with (self.folder / "log").open("ab") as log:
             self._process = subprocess.Popen(
                 [self._script], env=self._environment(), stdout=log, stderr=log, start_new_session=True
@@ -57,6 +69,15 @@ class RabbitMQ:
                 self.stop()
                 pytest.fail(f"RabbitMQ did not start; it said:\n{self._said()}", pytrace=False)
             time.sleep(0.1)
+
+    def _settings(self) -> list[str]:
+        """Users, and where there is a certificate (`server.pem`, `server.key`, signed by `ca.pem`) a port for TLS."""
+        settings = [f"load_definitions = {self.folder}/definitions.json"]
+        if self.certificate:
+            names = (("cacertfile", "ca.pem"), ("certfile", "server.pem"), ("keyfile", "server.key"))
+            settings.append(f"listeners.ssl.1 = 127.0.0.1:{self.secure}")
+            settings += [f"ssl_options.{option} = {self.certificate}/{file}" for option, file in names]
+        return [*settings, ""]
 
     def kill(self) -> None:
         """End it as a power cut would."""
@@ -121,14 +142,15 @@ def _shared() -> RabbitMQ:
     return rabbitmq
 
 
-def _definitions() -> dict[str, object]:
-    """Users and permissions as the broker imports them."""
+def _definitions(*, nowhere: bool) -> dict[str, object]:
+    """Users and permissions as the broker imports them, and whether what nobody waits for goes to `lumen.nowhere`."""
     return {
         "vhosts": [{"name": "/"}],
         "users": [
             {"name": user, "password_hash": _hashed(user), "hashing_algorithm": HASHING, "tags": ""} for user in USERS
         ],
         "permissions": [{"user": user, "vhost": "/", "configure": ".*", "write": ".*", "read": ".*"} for user in USERS],
+        "policies": [NOWHERE] if nowhere else [],
         "topic_permissions": [
             {"user": user, "vhost": "/", "exchange": "amq.topic", "write": write, "read": read}
             for user, (write, read) in USERS.items()

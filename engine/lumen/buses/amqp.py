@@ -121,6 +121,7 @@ class AmqpBus:
         self._routes: Mapping[str, Route] = {}
         self._name, self._numbers = uuid.uuid4().hex[:12], count(1)
         self._stop: Way | None = None
+        self._watching = False
         self._way = Way(self._address, self._outage)
         try:
             self._way.open()
@@ -133,6 +134,9 @@ class AmqpBus:
         if self._stop is None and any(route.carried is Carried.STOP for route in routes.values()):
             self._stop = Way(self._address, self._outage, "stop-")
             self._stop.begin()
+        if not self._watching:
+            self._watching = True
+            self._way.consuming.watch(self._way.publishing.lament)
         out = [k for k, r in routes.items() if r.carried is Carried.JOURNAL and r.direction is Direction.OUT]
         self._way.publishing.journals = {key: journal_of(key) for key in out}
         for way in self._ways():

@@ -13,13 +13,15 @@ from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
 from lumen.buses.addresses import Address
 from lumen.buses.bodies import MAX_BYTES
 from lumen.buses.links import Link, Outage
-from lumen.buses.queues import EXCHANGE, Queue, queue_of
+from lumen.buses.queues import EXCHANGE, NOWHERE, Queue, queue_of
 from lumen.errors import BusError
 from lumen.language.routes import Route
 from lumen.ports import Handler
 
 PREFETCH = 64
 PATIENCE = 5.0
+LEAVING = 2.0
+"""How long a queue that nothing comes to any more is read on [s]: what was in it has come by then."""
 OTHERWISE = 406
 """The broker's code for a queue that exists and was made otherwise."""
 
@@ -37,6 +39,7 @@ class Subscription:
     handler: Handler | None
     route: Route | None = None
     number: int = 0
+    exchange: str = EXCHANGE
     active: bool = True
     queue: str = ""
     tag: str = ""
@@ -129,6 +132,13 @@ class Consuming(Link):
                 self._later(lambda s=subscription: self._bind(s))  # type: ignore[misc]
                 self._await(subscription)
 
+    def watch(self, told: Callable[[str], None]) -> None:
+        """Tell of the keys for which nobody waits, as far as the broker knows of them."""
+        subscription = Subscription("#", lambda message: told(message.key), exchange=NOWHERE)
+        with self._changing:
+            self._subscriptions.append(subscription)
+        self._later(lambda: self._bind(subscription))
+
     def carry(self, routes: Mapping[str, Route]) -> None:
         """Go on under these routes; where one of them needs another queue, that is bound before the old one is left."""
         for subscription in self.subscriptions():
@@ -204,13 +214,13 @@ class Consuming(Link):
         if not subscription.active or self.channel is None or subscription.epoch == self._epoch:
             return
         try:
-            queue = queue_of(subscription.pattern, subscription.route, subscription.number)
+            queue = queue_of(subscription.pattern, subscription.route, subscription.number, subscription.exchange)
             subscription.queue, refusal = self._make(queue)
             if refusal:
                 self._refused(subscription, refusal)
                 return
             subscription.epoch = self._epoch
-            if subscription.handler:
+            if subscription.handler is not None:
                 self._consume(subscription)
         finally:
             subscription.bound.set()
@@ -242,7 +252,7 @@ class Consuming(Link):
         made = channel.queue_declare(
             queue.name, durable=not mine, exclusive=mine, auto_delete=mine, arguments=arguments
         )
-        channel.queue_bind(made.method.queue, EXCHANGE, queue.key)
+        channel.queue_bind(made.method.queue, queue.exchange, queue.key)
         return str(made.method.queue)
 
     def _renew(self, channel: Any, queue: Queue) -> str:
@@ -265,7 +275,11 @@ class Consuming(Link):
         left = Subscription(subscription.pattern, None, old, queue=subscription.queue, tag=subscription.tag)
         subscription.epoch = 0
         self._bind(subscription)
-        self._drop(left)
+        with suppress(ChannelClosedByBroker):
+            channel = self.connection.channel()
+            channel.queue_unbind(left.queue, EXCHANGE, left.pattern)
+            channel.close()
+        self.connection.call_later(LEAVING, lambda: self._drop(left))
 
     def _drop(self, subscription: Subscription) -> None:
         """Stop reading a queue; one that outlives us is bound to nothing any more, and deleted if it is empty."""
@@ -273,6 +287,8 @@ class Consuming(Link):
             return
         if subscription.tag:
             self.channel.basic_cancel(subscription.tag)
+        if any(other.queue == subscription.queue for other in self.subscriptions()):
+            return
         with suppress(ChannelClosedByBroker):
             channel = self.connection.channel()
             if subscription.must_arrive:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from lumen.buses.bodies import JSON, decode
 from lumen.buses.consuming import Delivery, Subscription
 from lumen.buses.pace import Pace
+from lumen.buses.queues import NOWHERE
 from lumen.ports import Message, Refused
 
 MARK = "lumen.mark"
@@ -103,14 +104,20 @@ class Dispatching:
 
     def _deliver(self, subscription: Subscription, delivery: Delivery) -> None:
         properties = delivery.properties
+        if subscription.exchange == NOWHERE:
+            self._hand(subscription, delivery, Message(delivery.key, None))
+            return
         try:
             body = decode(delivery.body, properties.content_type or JSON)
         except ValueError as error:
             self._drop(delivery, str(error))
             return
         message = Message(delivery.key, body, properties.reply_to or "", properties.correlation_id or "")
+        self._hand(subscription, delivery, message)
+
+    def _hand(self, subscription: Subscription, delivery: Delivery, message: Message) -> None:
         try:
-            assert subscription.handler
+            assert subscription.handler is not None
             subscription.handler(message)
         except Refused as error:
             self._refused(delivery, str(error))

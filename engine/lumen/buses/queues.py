@@ -2,8 +2,9 @@
 
 Telemetry has a queue that goes away with its reader and keeps the newest. A command has one that outlives a reader's
 absence for as long as the command is good for; then it is dead, with the others in `lumen.dead`. A journal that comes
-in has a quorum queue, one that goes out a stream, from which any number of modules may read. Nothing here grows without
-bound: what can't be kept is refused to the sender, or is the oldest of what may be lost.
+in has a durable queue (docs/decisions says why no quorum queue), one that goes out a stream, from which any number of
+modules may read. Nothing here grows without bound: what can't be kept is refused to the sender, or is the oldest of
+what may be lost.
 """
 
 import hashlib
@@ -38,6 +39,7 @@ class Queue:
 
     key: str
     name: str = ""
+    exchange: str = EXCHANGE
     arguments: dict[str, Any] = field(default_factory=dict)
 
     def declare(self, call: Call, channel: Any) -> None:
@@ -46,24 +48,26 @@ class Queue:
         call(channel.queue_bind, self.name, EXCHANGE, self.key)
 
 
-def queue_of(key: str, route: Route | None, number: int = 0) -> Queue:
+def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXCHANGE) -> Queue:
     """The queue for what comes in under a key; `number` tells those of the same key apart."""
     if route is None or not route.must_arrive:
         newest = WAITING if route is None else route.keep or NEWEST
-        return Queue(key, arguments={"x-max-length": newest, "x-overflow": "drop-head", **_lifetime(route)})
+        return Queue(
+            key, exchange=exchange, arguments={"x-max-length": newest, "x-overflow": "drop-head", **_lifetime(route)}
+        )
     name = _name(f"lumen.queue.{key}", number)
     if route.carried is Carried.JOURNAL:
-        limits = {"x-queue-type": "quorum", "x-max-length-bytes": GIGABYTE, "x-overflow": "reject-publish"}
-        return Queue(key, name, {**limits, "x-single-active-consumer": True})
+        limits = {"x-max-length-bytes": GIGABYTE, "x-overflow": "reject-publish"}
+        return Queue(key, name, exchange, {**limits, "x-single-active-consumer": True})
     limits = {"x-max-length": MOST, "x-overflow": "reject-publish", "x-dead-letter-exchange": DEAD}
     unused = {"x-expires": UNUSED} if route.lifetime else {}
-    return Queue(key, name, {**limits, **_lifetime(route), **unused, "x-single-active-consumer": True})
+    return Queue(key, name, exchange, {**limits, **_lifetime(route), **unused, "x-single-active-consumer": True})
 
 
 def journal_of(key: str) -> Queue:
     """The stream of a journal that goes out: a month or a gigabyte, from which modules read where they left off."""
     arguments = {"x-queue-type": "stream", "x-max-age": "30D", "x-max-length-bytes": GIGABYTE}
-    return Queue(key, _name(f"lumen.journal.{key}"), arguments)
+    return Queue(key, _name(f"lumen.journal.{key}"), arguments=arguments)
 
 
 def declare_aside(call: Call, channel: Any) -> None:

@@ -23,6 +23,8 @@ VERBS = {
     "stop": "let the robot of a running exhibition rest, at once",
     "reload": "have a running exhibition take its files, or say how it stands with them",
     "diff": "say what differs between two versions of a project, and where a reload would lead",
+    "topic": "list, print, measure and send the messages of a running exhibition",
+    "doctor": "say whether an exhibition's bus can be used, and what is missing on it",
     "lint": "say what is wrong in a project, and where",
     "explain": "say what a code of lint means, and show an example",
     "lsp": "answer an editor (Language Server Protocol)",

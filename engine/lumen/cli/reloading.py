@@ -4,9 +4,10 @@ import logging
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from lumen.buses.validated import by_key
 from lumen.cli.bulletin import Bulletin, refusal_of, what_for
 from lumen.cli.judging import BUDGET, Judge, Judged, told
 from lumen.cli.jury import Here, Jury
@@ -118,9 +119,13 @@ class Reloading:
             self._go(self._staged, now)
 
     def _judge(self, judge: Judge, saved: Saved) -> Judged:
-        """On the watcher's thread."""
+        """On the watcher's thread: routes that come with the files are made ready here, where nobody has to wait."""
         judged = judge(saved)
-        if judged.good:
+        if judged.good and judged.project:
+            try:
+                self._bus.prepare(by_key(judged.project))
+            except BusError as error:
+                return replace(judged, fault=f"the bus refuses its routes: {error}")
             self._records.store(saved.files)
         return judged
 

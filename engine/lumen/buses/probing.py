@@ -1,0 +1,88 @@
+"""What a broker lets us do, asked without anybody else noticing."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import pika
+from pika.exceptions import AMQPError, ChannelClosedByBroker
+
+from lumen.buses.addresses import Address
+from lumen.buses.flow import Flow
+from lumen.buses.queues import EXCHANGE, queue_of
+from lumen.errors import BusError
+from lumen.language.routes import Route
+
+NOBODY = "lumen doctor"
+REFUSED = 403
+
+
+class Served(NamedTuple):
+    """How many messages wait in a route's queue, and how many read it; both None where there is no such queue."""
+
+    waiting: int | None = None
+    readers: int | None = None
+
+
+class Probe:
+    """A connection that asks; raises BusError, saying what to do, where the broker can't be used."""
+
+    def __init__(self, url: str) -> None:
+        self.address = Address(url)
+        try:
+            flow = Flow(self.address.parameters)
+            self.product, self.version = (_text(flow.server.get(name)) for name in ("product", "version"))
+            server = flow.server
+            flow.close()
+            self.address.check_version(server)
+            self._connection = pika.BlockingConnection(self.address.parameters)
+        except (AMQPError, OSError) as error:
+            raise self.address.explain(error) from error
+
+    def reading(self, key: str) -> str:
+        """Why we may not read what is sent under this key; empty where we may."""
+        try:
+            with self._channel() as channel:
+                queue = channel.queue_declare("", exclusive=True).method.queue
+                channel.queue_bind(queue, EXCHANGE, key)
+                channel.queue_delete(queue)
+        except ChannelClosedByBroker as error:
+            return str(error.reply_text)
+        return ""
+
+    def writing(self, key: str) -> str:
+        """Why we may not send under this key; empty where we may.
+
+        The message claims to be from somebody else, which the broker refuses after it has looked whether we may send
+        it: so it goes to nobody.
+        """
+        properties = pika.BasicProperties(user_id=NOBODY)
+        try:
+            with self._channel() as channel:
+                channel.confirm_delivery()
+                channel.basic_publish(EXCHANGE, key, b"", properties)
+        except ChannelClosedByBroker as error:
+            return str(error.reply_text) if error.reply_code == REFUSED else ""
+        raise BusError(f"the broker at {self.address} took a message that claims to be from `{NOBODY}`")
+
+    def served(self, key: str, route: Route) -> Served:
+        """How the queue of a route that must arrive is doing."""
+        try:
+            with self._channel() as channel:
+                found = channel.queue_declare(queue_of(key, route).name, passive=True).method
+        except ChannelClosedByBroker:
+            return Served()
+        return Served(found.message_count, found.consumer_count)
+
+    def close(self) -> None:
+        self._connection.close()
+
+    @contextmanager
+    def _channel(self) -> Iterator[Any]:
+        channel = self._connection.channel()
+        yield channel
+        channel.close()
+
+
+def _text(value: object) -> str:
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value or "")

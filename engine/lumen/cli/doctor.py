@@ -1,0 +1,158 @@
+"""`lumen doctor`: whether an exhibition's bus can be used, and what is missing on it."""
+
+import argparse
+import json
+import os
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+from lumen.bus import connect
+from lumen.buses.probing import Probe
+from lumen.buses.validated import by_key
+from lumen.cli.reach import reach
+from lumen.cli.terminal import coloured, paint
+from lumen.language.projects import Project
+from lumen.language.routes import Direction, Route
+from lumen.loading.files import read_files
+from lumen.loading.packaged import find_project
+from lumen.ports import Bus
+from lumen.rules import check_files
+
+LISTENING = 2.0
+SKEW = 1.0
+"""How far two clocks may be apart [s] before it is worth a word."""
+SIGNS = {"ok": ("ok", "green"), "note": ("--", "dim"), "warning": ("??", "yellow"), "error": ("!!", "red")}
+
+
+class Finding(NamedTuple):
+    """What was looked at, how bad it is (`ok`, `note`, `warning`, `error`), and what was found."""
+
+    what: str
+    severity: str
+    text: str
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Look at the bus of an exhibition: whether the broker is there, new enough and lets us read and send, whether"
+        " the clocks agree, and which routes nobody serves."
+    )
+    parser.add_argument("project", nargs="?", metavar="PROJECT", help="default: the one here or above")
+    parser.add_argument("--bus", metavar="URL", help="default: LUMEN_BUS, then lumen.yaml's, then this machine")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="default: text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 all well, 1 something is wrong; raises BusError where there is nothing to look at."""
+    root = find_project(options.project)
+    project = check_files(root, read_files(root))[0]
+    url = options.bus or os.environ.get("LUMEN_BUS") or (project.bus if project else "memory://")
+    findings = list(_broker(url, project) if url.startswith(("amqp:", "amqps:")) else _embedded(options, url, project))
+    bad = any(finding.severity in ("warning", "error") for finding in findings)
+    if options.format == "json":
+        print(json.dumps({"ok": not bad, "findings": [finding._asdict() for finding in findings]}))
+    else:
+        for finding in findings:
+            sign, colour = SIGNS[finding.severity]
+            print(f"{paint(sign, colour, on=coloured(sys.stdout))} {finding.what}: {finding.text}")
+    return int(bad)
+
+
+def _broker(url: str, project: Project | None) -> Iterator[Finding]:
+    with closing(Probe(url)) as probe:
+        yield Finding("broker", "ok", f"{probe.product} {probe.version} at {probe.address}, as `{probe.address.user}`")
+        if not url.startswith("amqps:") and not probe.address.place.startswith(("127.", "localhost", "[::1]")):
+            yield Finding("broker", "warning", "everybody on the network can read along: use amqps://")
+        if project is None:
+            yield Finding("project", "error", "it has errors: see `lumen lint`")
+            return
+        yield from _permissions(probe, project)
+        with closing(connect(url)) as bus:
+            yield from _life(bus, project)
+        yield from _served(probe, project)
+
+
+def _embedded(options: argparse.Namespace, url: str, project: Project | None) -> Iterator[Finding]:
+    if not url.startswith("memory:"):
+        connect(url)  # says what an address looks like
+    with closing(reach(options).bus) as bus:
+        yield Finding("bus", "ok", "an exhibition with an embedded bus runs on this machine")
+        if project is None:
+            yield Finding("project", "error", "its files have errors now: see `lumen lint`")
+        else:
+            yield from _life(bus, project)
+
+
+def _permissions(probe: Probe, project: Project) -> Iterator[Finding]:
+    refused = False
+    for key, route in by_key(project).items():
+        reading = route.direction is Direction.IN
+        if reason := probe.reading(key) if reading else probe.writing(key):
+            refused = True
+            yield Finding("permissions", "error", f"`{route.name}` can't be {'read' if reading else 'sent'}: {reason}")
+    if not refused:
+        yield Finding("permissions", "ok", f"all {len(project.routes)} routes may be used as they go")
+
+
+def _life(bus: Bus, project: Project) -> Iterator[Finding]:
+    """What is heard in two seconds: the senses, and how late it is for who sends them."""
+    routes, heard, skews = by_key(project), set[str](), list[float]()
+
+    def listen(message: Any) -> None:
+        heard.add(message.key)
+        if (skew := _skew(message.body)) is not None:
+            skews.append(skew)
+
+    undo = bus.subscribe("#", listen)
+    end = time.monotonic() + LISTENING
+    senses = {key: route for key, route in routes.items() if route.every and route.every <= LISTENING / 2}
+    while time.monotonic() < end and not (senses.keys() <= heard and skews):
+        time.sleep(0.05)
+    undo()
+    silent = [route.name for key, route in senses.items() if key not in heard]
+    if silent:
+        text = f"nothing came on {_names(silent)} in {LISTENING:g} s: does the robot run?"
+        yield Finding("senses", "warning", text)
+    elif senses:
+        yield Finding("senses", "ok", f"{_names([route.name for route in senses.values()])} come")
+    if not skews:
+        yield Finding("clocks", "note", "nobody sent a date to compare")
+        return
+    skew = min(skews, key=abs)
+    text = f"this machine's clock and the robot's are {abs(skew):.1f} s apart"
+    yield Finding("clocks", "warning" if abs(skew) > SKEW else "ok", text)
+
+
+def _served(probe: Probe, project: Project) -> Iterator[Finding]:
+    alone: list[str] = []
+    must: dict[str, Route] = {
+        key: route for key, route in by_key(project).items() if route.must_arrive and route.direction is Direction.IN
+    }
+    for key, route in must.items():
+        served = probe.served(key, route)
+        if not served.readers:
+            waiting = f", and {served.waiting} messages wait" if served.waiting else ""
+            alone.append(route.name)
+            yield Finding("routes", "warning", f"nobody serves `{route.name}` ({key}){waiting}")
+    if must and not alone:
+        yield Finding("routes", "ok", f"{_names([route.name for route in must.values()])} served")
+
+
+def _skew(body: Any) -> float | None:
+    """How far ahead this machine's clock is of the date in a body [s]."""
+    date = body.get("datePublished") if isinstance(body, dict) else None
+    if not isinstance(date, str):
+        return None
+    try:
+        at = datetime.fromisoformat(date)
+    except ValueError:
+        return None
+    return (datetime.now(UTC) - (at if at.tzinfo else at.replace(tzinfo=UTC))).total_seconds()
+
+
+def _names(names: list[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)

@@ -1,0 +1,222 @@
+"""`lumen topic`: what is said on the bus of a running exhibition, and a word of one's own."""
+
+import argparse
+import json
+import queue
+import sys
+import time
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from lumen.buses.bodies import encode
+from lumen.buses.validated import by_key, validated
+from lumen.cli.reach import reach
+from lumen.cli.tables import table
+from lumen.errors import BusError, UsageError
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.loading.packaged import find_project
+from lumen.loading.units import seconds
+from lumen.ports import Bus, Message
+from lumen.rules import check_files
+
+LISTENING = "3s"
+ANSWERS = "lumen.operator.answer"
+SHOWN = 200
+LOOK = 0.5
+
+
+class Heard(NamedTuple):
+    """A message, and when it came [s]."""
+
+    message: Message
+    at: float
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Look at the messages of a running exhibition, on a broker or on this machine, or send one."
+    verbs = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
+    listing = verbs.add_parser("list", help="the routes, and what comes on them meanwhile")
+    echo = verbs.add_parser("echo", help="print messages as they come")
+    pub = verbs.add_parser("pub", help="send a message, checked against its route's schema")
+    hz = verbs.add_parser("hz", help="how often messages come, and the longest gap")
+    bw = verbs.add_parser("bw", help="how many bytes messages have, and how many come in a second")
+    for one in (echo, hz, bw):
+        one.add_argument("pattern", metavar="PATTERN", help="a key, or a route's name; `*` is one word, `#` any number")
+    echo.add_argument("--count", metavar="N", type=int, default=0, help="end after so many")
+    pub.add_argument("key", metavar="KEY", help="a key, or a route's name")
+    pub.add_argument("body", metavar="BODY", help="JSON; what is none is sent as a text")
+    pub.add_argument("--wait", metavar="TIME", default="", help="wait so long for an answer, and print it")
+    for one, default in ((listing, LISTENING), (echo, ""), (hz, LISTENING), (bw, LISTENING)):
+        until = f"default: {default}" if default else "default: until Ctrl-C"
+        one.add_argument("--for", dest="span", metavar="TIME", default=default, help=f"listen so long ({until})")
+    for one in (listing, echo, pub, hz, bw):
+        one.add_argument("--project", metavar="DIR", help="whose exhibition; default: the one here or above")
+        one.add_argument("--bus", metavar="URL", help="where it runs; default: LUMEN_BUS, then this machine")
+        one.add_argument("--format", choices=("text", "json"), default="text", help="default: text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0, or for `pub --wait` 1 where no answer came."""
+    project = _project(options)
+    bus = reach(options).bus
+    try:
+        return {"list": _list, "echo": _echo, "pub": _pub, "hz": _hz, "bw": _bw}[options.what](options, bus, project)
+    finally:
+        bus.close()
+
+
+def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
+    counts: dict[str, int] = {}
+    span = _span(options)
+    for heard in _listen(bus, "#", span):
+        counts[heard.message.key] = counts.get(heard.message.key, 0) + 1
+    routes = by_key(project) if project else {}
+    rows = []
+    for key in sorted({*routes, *counts}):
+        route = routes.get(key)
+        name, direction, carried = (route.name, route.direction, route.carried) if route else ("", "", "")
+        rows.append(
+            {"key": key, "route": name, "direction": direction, "carried": carried, "messages": counts.get(key, 0)}
+        )
+    if options.format == "json":
+        print(json.dumps({"seconds": span, "topics": rows}))
+        return 0
+    print(table(["key", "route", "direction", "carried", f"in {span:g} s"], [[*map(str, r.values())] for r in rows]))
+    return 0
+
+
+def _echo(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
+    pattern = _key(options.pattern, project)
+    for number, heard in enumerate(_listen(bus, pattern, _span(options) if options.span else None), 1):
+        message = heard.message
+        if options.format == "json":
+            said = {"key": message.key, "body": message.body, "reply_to": message.reply_to}
+            print(json.dumps({**said, "correlation_id": message.correlation_id}, ensure_ascii=False), flush=True)
+        else:
+            print(f"{message.key}  {_short(message.body)}", flush=True)
+        if number == options.count:
+            break
+    return 0
+
+
+def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
+    try:
+        body = json.loads(options.body)
+    except (ValueError, RecursionError):
+        body = options.body
+    patience = _seconds(options.wait, "--wait") if options.wait else 0.0
+    key, answers = _key(options.key, project), queue.SimpleQueue[Any]()
+    if project:
+        bus = validated(bus, project)
+    if patience:
+        bus.subscribe(ANSWERS, lambda message: answers.put(message.body))
+    bus.publish(key, body, reply_to=ANSWERS if patience else "")
+    if not patience:
+        return 0
+    try:
+        answer = answers.get(timeout=patience)
+    except queue.Empty:
+        print(f"lumen topic: no answer within {patience:g} s", file=sys.stderr)
+        return 1
+    print(json.dumps(answer, ensure_ascii=False) if options.format == "json" else _short(answer))
+    return 0
+
+
+def _hz(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
+    times: dict[str, list[float]] = {}
+    span = _span(options)
+    for heard in _listen(bus, _key(options.pattern, project), span):
+        times.setdefault(heard.message.key, []).append(heard.at)
+    rows = []
+    for key, at in sorted(times.items()):
+        gaps = [after - before for before, after in zip(at, at[1:], strict=False)]
+        rate = len(gaps) / (at[-1] - at[0]) if gaps and at[-1] > at[0] else None
+        rows.append(
+            {"key": key, "messages": len(at), "hz": _round(rate), "longest_gap": _round(max(gaps, default=None))}
+        )
+    return _rows(options, span, rows, ["key", "messages", "per second", "longest gap [s]"])
+
+
+def _bw(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
+    sizes: dict[str, list[int]] = {}
+    span = _span(options)
+    for heard in _listen(bus, _key(options.pattern, project), span):
+        sizes.setdefault(heard.message.key, []).append(len(encode(heard.message.body)))
+    rows = [
+        {
+            "key": key,
+            "messages": len(size),
+            "mean_bytes": round(sum(size) / len(size)),
+            "bytes_per_second": round(sum(size) / span),
+        }
+        for key, size in sorted(sizes.items())
+    ]
+    return _rows(options, span, rows, ["key", "messages", "bytes each", "bytes/s"])
+
+
+def _rows(options: argparse.Namespace, span: float, rows: list[dict[str, Any]], head: list[str]) -> int:
+    if options.format == "json":
+        print(json.dumps({"seconds": span, "topics": rows}))
+    elif rows:
+        print(table(head, [["-" if v is None else str(v) for v in row.values()] for row in rows]))
+    else:
+        print(f"nothing came on `{options.pattern}` in {span:g} s")
+    return 0
+
+
+def _listen(bus: Bus, pattern: str, span: float | None) -> Iterator[Heard]:
+    """What comes, until the time is over, somebody presses Ctrl-C, or the exhibition is gone."""
+    came: queue.SimpleQueue[Heard] = queue.SimpleQueue()
+    undo = bus.subscribe(pattern, lambda message: came.put(Heard(message, time.monotonic())))
+    end = None if span is None else time.monotonic() + span
+    gone = getattr(bus, "gone", None)
+    try:
+        while end is None or time.monotonic() < end:
+            try:
+                yield came.get(timeout=LOOK if end is None else max(0.0, min(LOOK, end - time.monotonic())))
+            except queue.Empty:
+                if gone is not None and gone.is_set():
+                    raise BusError("the exhibition has ended") from None
+    except KeyboardInterrupt:
+        pass
+    finally:
+        undo()
+
+
+def _project(options: argparse.Namespace) -> Project | None:
+    """The project, for its routes; None where it has errors: looking on goes without."""
+    root = find_project(options.project)
+    return check_files(root, read_files(root))[0]
+
+
+def _key(text: str, project: Project | None) -> str:
+    """The key of a route of that name, else the text itself."""
+    if project and (route := project.routes.get(text)):
+        return route.key_for(project.robot)
+    if "." not in text and text not in ("#", "*", "lumen", "avatar"):
+        hint = did_you_mean(text, project.routes if project else (), "lumen.yaml has")
+        raise UsageError(f"`{text}` is neither a key nor a route: {hint}")
+    return text
+
+
+def _span(options: argparse.Namespace) -> float:
+    return _seconds(options.span, "--for")
+
+
+def _seconds(text: str, option: str) -> float:
+    length = seconds(text)
+    if length is None or length <= 0.0:
+        raise UsageError(f"{option} {text}: write a number and its unit, such as `500ms`, `20s` or `2min`")
+    return length
+
+
+def _round(value: float | None) -> float | None:
+    return None if value is None else round(value, 3)
+
+
+def _short(body: Any) -> str:
+    text = body if isinstance(body, str) else json.dumps(body, ensure_ascii=False)
+    text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]} … ({len(text):,} characters)"

@@ -1,0 +1,314 @@
+"""How messages travel as their routes say, with a real broker."""
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pika
+import pytest
+
+from lumen.bus import Bus, BusError, Message, Refused, connect
+from lumen.language.routes import Carried, Direction, Route
+from tests.rabbitmq import RabbitMQ
+from tests.relay import Relay
+from tests.waiting import Collector, until
+
+pytestmark = pytest.mark.xdist_group("rabbitmq")
+
+Open = Callable[..., Bus]
+
+
+@pytest.fixture
+def opened(broker: RabbitMQ) -> Iterator[Open]:
+    """Makes handles whose routes are given, closed at the end; what they left on the broker is deleted."""
+    handles: list[Bus] = []
+
+    def make(*routes: Route, url: str = broker.url) -> Bus:
+        bus = connect(url)
+        bus.carry({route.key: route for route in routes})
+        handles.append(bus)
+        return bus
+
+    yield make
+    for bus in handles:
+        bus.close()
+
+
+@pytest.fixture
+def stranger(broker: RabbitMQ) -> Iterator[Any]:
+    connection = pika.BlockingConnection(pika.URLParameters(broker.url))
+    channel = connection.channel()
+    for name in ("lumen.dead", "lumen.nowhere"):
+        channel.exchange_declare(name, "fanout", durable=True)
+    yield channel
+    connection.close()
+
+
+def route(key: str, carried: Carried, direction: Direction = Direction.IN, **options: Any) -> Route:
+    options.setdefault("must_arrive", carried is not Carried.TELEMETRY)
+    return Route(key, key, direction, carried=carried, **options)
+
+
+def read(channel: Any, queue: str) -> tuple[Any, Any, bytes]:
+    """The next message of a queue, waited for."""
+    got: list[Any] = []
+    until(lambda: got.append(channel.basic_get(queue, auto_ack=True)) or got[-1][0])
+    return tuple(got[-1])  # type: ignore[return-value]
+
+
+def copies(channel: Any, exchange: str) -> str:
+    """A queue of one's own for what comes to a fanout from now on."""
+    queue = str(channel.queue_declare("", exclusive=True).method.queue)
+    channel.queue_bind(queue, exchange)
+    return queue
+
+
+def test_of_telemetry_the_newest_wins_where_a_handler_is_slow(opened: Open) -> None:
+    way = route("lumen.newest", Carried.TELEMETRY, keep=1)
+    bus, other, seen = opened(way), opened(), Collector()
+    busy, go = threading.Event(), threading.Event()
+
+    def slow(message: Message) -> None:
+        seen(message)
+        busy.set()
+        assert go.wait(20)
+
+    bus.subscribe("lumen.newest", slow)
+    other.publish("lumen.newest", -1)
+    assert busy.wait(20)
+    for i in range(500):
+        other.publish("lumen.newest", i)
+    other.close()
+    go.set()
+    until(lambda: seen.bodies[-1] == 499)
+    assert len(seen.bodies) <= 10
+
+
+def test_old_telemetry_is_not_handed_on(opened: Open) -> None:
+    bus, seen, go = opened(route("lumen.old", Carried.TELEMETRY, ttl=0.05)), Collector(), threading.Event()
+
+    def slow(message: Message) -> None:
+        seen(message)
+        assert go.wait(20)
+
+    bus.subscribe("lumen.old", slow)
+    for i in range(3):
+        bus.publish("lumen.old", i)
+    seen.wait(1)
+    passed = time.monotonic() + 0.1
+    until(lambda: time.monotonic() > passed)
+    go.set()
+    bus.publish("lumen.old", "new")
+    until(lambda: seen.bodies[-1] == "new")
+    assert seen.bodies == [0, "new"]
+
+
+def test_a_command_waits_for_a_reader_that_is_away_but_not_for_long(opened: Open, stranger: Any) -> None:
+    way = route("avatar.A.command", Carried.COMMAND, ttl=1.0)
+    bus, sender, seen, dead = opened(way), opened(way), Collector(), copies(stranger, "lumen.dead")
+    bus.subscribe(way.key, Collector())
+    bus.close()
+    sender.publish(way.key, "too early")
+    assert read(stranger, dead)[2] == b'"too early"'
+    sender.publish(way.key, "in time")
+    bus = opened(way)
+    bus.subscribe(way.key, seen)
+    assert seen.wait(1) == ["in time"]
+
+
+def test_a_command_is_never_done_twice(opened: Open, stranger: Any) -> None:
+    way = route("avatar.B.command", Carried.COMMAND)
+    bus, seen = opened(way), Collector()
+    bus.subscribe(way.key, seen)
+    for id in ("1", "2", "1", None, None):
+        stranger.basic_publish("amq.topic", way.key, b"0", pika.BasicProperties(message_id=id))
+    stranger.basic_publish("amq.topic", way.key, b"1")
+    until(lambda: seen.bodies[-1:] == [1])
+    assert seen.bodies == [0, 0, 0, 0, 1]
+
+
+def test_what_failed_in_a_handler_is_put_aside_with_the_reason(opened: Open, stranger: Any) -> None:
+    way = route("avatar.C.command", Carried.COMMAND)
+    bus, dead = opened(way), copies(stranger, "lumen.dead")
+
+    def fail(message: Message) -> None:
+        raise KeyError("arm")
+
+    bus.subscribe(way.key, fail)
+    stranger.basic_publish("amq.topic", way.key, b'{"method": "wave"}')
+    method, properties, body = read(stranger, dead)
+    assert (method.routing_key, body) == (way.key, b'{"method": "wave"}')
+    assert properties.headers == {"key": way.key, "reason": "who should handle it failed: KeyError('arm')"}
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [(b"{", "it is not JSON"), (b"\xff", "it is not UTF-8"), (b"[" * 10_000, "deeper than 64"), (b'"no"', "unusable")],
+)
+def test_a_module_of_2015_gets_an_answer_to_what_nobody_can_use(
+    opened: Open, stranger: Any, body: bytes, reason: str
+) -> None:
+    bus, dead = opened(), copies(stranger, "lumen.dead")
+
+    def refuse(message: Message) -> None:
+        raise Refused(f"it is {message.body}: unusable")
+
+    bus.subscribe("avatar.D.command", refuse)
+    mine = stranger.queue_declare("", exclusive=True).method.queue
+    stranger.basic_publish(
+        "amq.topic", "avatar.D.command", body, pika.BasicProperties(reply_to=mine, correlation_id="7")
+    )
+    _, properties, answer = read(stranger, mine)
+    assert answer.decode().startswith("message refused: ")
+    assert reason in answer.decode()
+    assert (properties.correlation_id, properties.content_type) == ("7", "text/plain")
+    assert read(stranger, dead)[2] == body
+
+
+def test_a_stop_waits_behind_nothing(opened: Open) -> None:
+    slow, stop = route("avatar.E.command", Carried.COMMAND), route("avatar.E.stop", Carried.STOP)
+    bus, sender, seen = opened(slow, stop), opened(slow, stop), Collector()
+    busy, go = threading.Event(), threading.Event()
+
+    def work(message: Message) -> None:
+        busy.set()
+        assert go.wait(20)
+
+    bus.subscribe(slow.key, work)
+    bus.subscribe(stop.key, seen)
+    until(lambda: bus._stop.consuming.subscriptions()[0].queue)  # type: ignore[attr-defined]
+    sender.publish(slow.key, "dance")
+    assert busy.wait(20)
+    for _ in range(200):
+        sender.publish(slow.key, "x" * 100_000)
+    began = time.monotonic()
+    sender.publish(stop.key, "stop")
+    seen.wait(1)
+    assert time.monotonic() - began < 1.0
+    go.set()
+
+
+def test_a_journal_that_goes_out_is_kept_for_who_comes_later(opened: Open, stranger: Any) -> None:
+    way = route("lumen.F.journal", Carried.JOURNAL, Direction.OUT)
+    bus = opened(way)
+    for i in range(50):
+        bus.publish(way.key, i)
+    bus.close()
+    stranger.basic_qos(prefetch_count=100)
+    read: list[bytes] = []
+    for method, _, body in stranger.consume("lumen.journal.lumen.F.journal", arguments={"x-stream-offset": "first"}):
+        stranger.basic_ack(method.delivery_tag)
+        read.append(body)
+        if len(read) == 50:
+            break
+    stranger.cancel()
+    assert read == [str(i).encode() for i in range(50)]
+
+
+def test_a_journal_that_comes_in_loses_nothing_while_its_reader_is_away(opened: Open) -> None:
+    way = route("lumen.G.journal", Carried.JOURNAL)
+    bus, sender, first, later = opened(way), opened(way), Collector(), Collector()
+    bus.subscribe(way.key, first)
+    sender.publish(way.key, 0)
+    first.wait(1)
+    bus.close()
+    for i in range(1, 200):
+        sender.publish(way.key, i)
+    again = opened(way)
+    again.subscribe(way.key, later)
+    assert first.bodies + later.wait(199) == list(range(200))
+
+
+def test_what_nobody_waits_for_is_told_once_with_the_nearest_key(
+    opened: Open, stranger: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    out = Direction.OUT
+    lost = route("lumen.H.speech.recogniton", Carried.COMMAND, out)
+    bus, nowhere = (
+        opened(lost, route("lumen.H.speech.recognition", Carried.TELEMETRY)),
+        copies(stranger, "lumen.nowhere"),
+    )
+    bus.publish(lost.key, "hello")
+    bus.publish(lost.key, "hello?")
+    for body in (b'"hello"', b'"hello?"'):
+        method, properties, got = read(stranger, nowhere)
+        assert (got, method.routing_key) == (body, lost.key)
+        assert properties.headers == {"reason": f"nobody takes `{lost.key}`"}
+    told = [r.getMessage() for r in caplog.records if "nobody takes" in r.getMessage()]
+    assert told == [f"nobody takes what is sent on `{lost.key}`: did you mean `lumen.H.speech.recognition`?"]
+
+
+def test_a_time_to_live_that_changes_makes_the_queue_anew(opened: Open, caplog: pytest.LogCaptureFixture) -> None:
+    seen = Collector()
+    for ttl in (2.0, 3.0):
+        way = route("avatar.I.command", Carried.COMMAND, ttl=ttl)
+        bus = opened(way)
+        bus.subscribe(way.key, seen)
+        bus.publish(way.key, ttl)
+        until(lambda ttl=ttl: seen.bodies[-1:] == [ttl])  # type: ignore[misc]
+        bus.close()
+    assert not caplog.records
+
+
+def test_a_queue_that_is_in_use_otherwise_is_used_as_it_is(opened: Open) -> None:
+    one, other = (route("avatar.J.command", Carried.COMMAND, ttl=ttl) for ttl in (2.0, 3.0))
+    first, second, seen = opened(one), opened(other), Collector()
+    first.subscribe(one.key, Collector())
+    second.subscribe(one.key, seen)
+    first.close()
+    second.publish(one.key, "to the one who is left")
+    assert seen.wait(1) == ["to the one who is left"]
+
+
+def test_a_route_that_is_given_up_leaves_no_queue(opened: Open, stranger: Any) -> None:
+    way = route("avatar.K.command", Carried.COMMAND)
+    bus = opened(way)
+    undo = bus.subscribe(way.key, Collector())
+    stranger.queue_declare("lumen.queue.avatar.K.command", passive=True)
+    undo()
+    bus.close()
+    with pytest.raises(pika.exceptions.ChannelClosedByBroker, match="NOT_FOUND"):
+        stranger.queue_declare("lumen.queue.avatar.K.command", passive=True)
+
+
+def test_what_was_prepared_is_subscribed_to_without_waiting_for_the_network(broker: RabbitMQ, opened: Open) -> None:
+    relay, seen = Relay(broker.port), Collector()
+    url = f"amqp://guest:guest@127.0.0.1:{relay.port}/"
+    ways = [route(f"lumen.L.{i}", carried) for i, carried in enumerate((Carried.TELEMETRY, Carried.COMMAND))]
+    bus, sender = opened(url=url), opened()
+    bus.prepare({way.key: way for way in ways})
+    relay.cut()
+    began = time.monotonic()
+    bus.carry({way.key: way for way in ways})
+    for way in ways:
+        bus.subscribe(way.key, seen)
+    assert time.monotonic() - began < 0.05
+    for way in ways:
+        sender.publish(way.key, way.key)
+    sender.close()
+    relay.mend()
+    assert sorted(seen.wait(2)) == ["lumen.L.0", "lumen.L.1"]
+    bus.close()
+    relay.close()
+
+
+def test_preparing_says_what_the_broker_refuses(broker: RabbitMQ) -> None:
+    bus = connect(broker.url_of("visual"))
+    with pytest.raises(BusError, match=r"refuses to let us read `lumen\.secret`: ACCESS_REFUSED"):
+        bus.prepare({"lumen.secret": route("lumen.secret", Carried.TELEMETRY)})
+    bus.prepare({"avatar.M": route("avatar.M", Carried.TELEMETRY)})
+    bus.prepare({})
+    bus.close()
+
+
+def test_a_route_that_is_carried_otherwise_goes_on(opened: Open) -> None:
+    as_telemetry, as_command = (route("avatar.N.command", c) for c in (Carried.TELEMETRY, Carried.COMMAND))
+    bus, seen = opened(as_telemetry), Collector()
+    bus.subscribe("avatar.N.command", seen)
+    for i, way in enumerate((as_command, as_telemetry, as_command)):
+        bus.carry({way.key: way})
+        bus.publish(way.key, i)
+        until(lambda i=i: i in seen.bodies)  # type: ignore[misc]
+    (subscription,) = [s for s in bus._way.consuming.subscriptions() if s.handler is seen]  # type: ignore[attr-defined]
+    until(lambda: subscription.queue == "lumen.queue.avatar.N.command")

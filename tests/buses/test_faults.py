@@ -1,0 +1,209 @@
+"""What must arrive does, once, whatever befalls the broker and the way to it; and nothing grows meanwhile."""
+
+import threading
+import time
+import tracemalloc
+from collections import Counter
+from collections.abc import Iterator
+
+import pika
+import pytest
+
+from lumen.bus import Bus, Message, connect
+from lumen.language.routes import Carried, Direction, Route
+from tests.rabbitmq import RabbitMQ
+from tests.relay import Relay
+from tests.waiting import Collector, until
+
+pytestmark = pytest.mark.xdist_group("rabbitmq")
+
+WAYS = {
+    "lumen.fault.command": Route(
+        "command", "lumen.fault.command", Direction.IN, carried=Carried.COMMAND, must_arrive=True, ttl=600.0
+    ),
+    "lumen.fault.journal": Route(
+        "journal", "lumen.fault.journal", Direction.IN, carried=Carried.JOURNAL, must_arrive=True
+    ),
+}
+MEGABYTE = 2**20
+
+
+def opened(url: str) -> Bus:
+    bus = connect(url)
+    bus.carry(WAYS)
+    return bus
+
+
+@pytest.fixture
+def no_thread_stays() -> Iterator[None]:
+    before = set(threading.enumerate())
+    yield
+    until(lambda: not [t for t in set(threading.enumerate()) - before if t.name.startswith("lumen-bus")])
+
+
+class Sending:
+    """Publishes numbers on both ways, at a pace, until it is told to end; `sent` is how many of each."""
+
+    def __init__(self, bus: Bus, pause: float) -> None:
+        self.sent, self._bus, self._pause = 0, bus, pause
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def end(self) -> int:
+        self._ending.set()
+        self._thread.join()
+        return self.sent
+
+    def _run(self) -> None:
+        while not self._ending.wait(self._pause):
+            for key in WAYS:
+                self._bus.publish(key, self.sent)
+            self.sent += 1
+
+
+class Effects(Counter[tuple[str, int]]):
+    """How often each message had an effect."""
+
+    def __call__(self, message: Message) -> None:
+        self[message.key, message.body] += 1
+
+
+def arrive_once(effects: Effects, sent: int, timeout: float) -> None:
+    wanted = {(key, n): 1 for key in WAYS for n in range(sent)}
+    until(lambda: len(effects) >= len(wanted), timeout)
+    assert dict(effects) == wanted
+
+
+@pytest.mark.usefixtures("no_thread_stays")
+def test_a_broker_that_is_killed_and_started_again_loses_and_doubles_nothing() -> None:
+    broker, effects = RabbitMQ(), Effects()
+    broker.start()
+    try:
+        reader, sender = opened(broker.url), opened(broker.url)
+        for key in WAYS:
+            reader.subscribe(key, effects)
+        sending = Sending(sender, 0.002)
+        until(lambda: len(effects) > 200)
+        broker.kill()
+        sent = sending.sent
+        until(lambda: sending.sent > sent + 200)
+        broker.start()
+        until(lambda: len(effects) > 2 * sent + 600, 60)
+        arrive_once(effects, sending.end(), 60)
+        sender.close()
+        reader.close()
+    finally:
+        broker.stop()
+
+
+def cut_for(seconds: float, broker: RabbitMQ) -> None:
+    """A network that carries nothing for a while, and tells nobody."""
+    relay, effects = Relay(broker.port), Effects()
+    url = f"amqp://guest:guest@127.0.0.1:{relay.port}/?heartbeat=1"
+    reader, sender = opened(url), opened(url)
+    for key in WAYS:
+        reader.subscribe(key, effects)
+    sending = Sending(sender, 0.002)
+    until(lambda: len(effects) > 100)
+    relay.cut()
+    passed = time.monotonic() + seconds
+    until(lambda: time.monotonic() > passed, seconds + 5.0)
+    relay.mend()
+    came = len(effects)
+    until(lambda: len(effects) > came + 200, 60)
+    arrive_once(effects, sending.end(), 60)
+    sender.close()
+    reader.close()
+    relay.close()
+
+
+@pytest.mark.usefixtures("no_thread_stays")
+def test_a_network_that_is_cut_loses_and_doubles_nothing(broker: RabbitMQ) -> None:
+    cut_for(3.0, broker)
+
+
+@pytest.mark.soak
+@pytest.mark.usefixtures("no_thread_stays")
+def test_a_network_that_is_cut_for_ten_seconds_loses_and_doubles_nothing(broker: RabbitMQ) -> None:
+    cut_for(10.0, broker)
+
+
+def flood(broker: RabbitMQ, count: int, pause: float) -> float:
+    """So many messages of 200 bytes on each way, to a reader who takes his time; how much memory we had [bytes]."""
+    effects, filler = Effects(), "x" * 180
+
+    def slow(message: Message) -> None:
+        effects[message.key, message.body["n"]] += 1
+        if pause:
+            threading.Event().wait(pause)
+
+    reader, sender = opened(broker.url), opened(broker.url)
+    for key in WAYS:
+        reader.subscribe(key, slow)
+    tracemalloc.start()
+    for n in range(count):
+        for key in WAYS:
+            while len(sender._way.publishing.outbox) > 5_000:  # type: ignore[attr-defined]
+                threading.Event().wait(0.01)
+            sender.publish(key, {"n": n, "filler": filler})
+    arrive_once(effects, count, 600)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    sender.close()
+    reader.close()
+    return most
+
+
+def test_a_flood_on_a_slow_reader_arrives_whole_and_fills_no_memory(broker: RabbitMQ) -> None:
+    assert flood(broker, 1_000, 0.0) < 30 * MEGABYTE
+
+
+@pytest.mark.soak
+def test_a_flood_of_fifty_thousand_arrives_whole_and_fills_no_memory(broker: RabbitMQ) -> None:
+    assert flood(broker, 50_000, 0.0002) < 60 * MEGABYTE
+
+
+def test_telemetry_that_nobody_can_take_fills_no_memory(broker: RabbitMQ) -> None:
+    """A camera goes on while the network is away: the newest frame waits, and no other."""
+    relay, key = Relay(broker.port), "lumen.fault.image"
+    bus, seen = connect(f"amqp://guest:guest@127.0.0.1:{relay.port}/"), Collector()
+    bus.carry({key: Route("image", key, Direction.OUT, keep=1)})
+    relay.cut()
+    tracemalloc.start()
+    for n in range(2_000):
+        bus.publish(key, {"n": n, "frame": f"{n:15000}"})
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 20 * MEGABYTE
+    reader = connect(broker.url)
+    reader.subscribe(key, seen)
+    relay.mend()
+    until(lambda: seen.bodies and seen.bodies[-1]["n"] == 1_999)
+    for one in (bus, reader):
+        one.close()
+    relay.close()
+
+
+POISON = [b"\xff\xfe", b"{", b"[" * 10_000 + b"]" * 10_000, b'"' + b"x" * 10_000_000 + b'"', b"[NaN]"]
+
+
+def test_poison_on_a_way_that_must_arrive_is_put_aside_and_holds_up_nobody(broker: RabbitMQ) -> None:
+    connection = pika.BlockingConnection(pika.URLParameters(broker.url))
+    channel, seen = connection.channel(), Collector()
+    bus = opened(broker.url)
+    dead = channel.queue_declare("", exclusive=True).method.queue
+    channel.queue_bind(dead, "lumen.dead")
+    bus.subscribe("lumen.fault.journal", seen)
+    for body in POISON:
+        channel.basic_publish("amq.topic", "lumen.fault.journal", body)
+    channel.basic_publish("amq.topic", "lumen.fault.journal", b'"well"')
+    assert seen.wait(1) == ["well"]
+    until(lambda: channel.queue_declare(dead, passive=True).method.message_count == len(POISON))
+    for body in POISON:
+        _, properties, kept = channel.basic_get(dead, auto_ack=True)
+        assert kept == body[: 2**20]
+        assert properties.headers["key"] == "lumen.fault.journal"
+        assert properties.headers["reason"]
+    bus.close()
+    connection.close()

@@ -1,0 +1,20 @@
+"""An authority of our own, and the certificate that it signs for a broker."""
+
+import subprocess
+from pathlib import Path
+
+KEY = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2"]
+
+
+def certify(folder: Path, name: str) -> Path:
+    """A folder with `ca.pem`, and `server.pem` and `server.key` for the host of that name (`IP:…` or `DNS:…`)."""
+    _openssl(folder, "req", "-x509", *KEY, "-keyout", "ca.key", "-out", "ca.pem", "-subj", "/CN=Hall")
+    _openssl(folder, "req", *KEY, "-keyout", "server.key", "-out", "server.csr", "-subj", "/CN=broker")
+    (folder / "names").write_text(f"subjectAltName={name}\n")
+    signing = ["-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial", "-days", "2", "-extfile", "names"]
+    _openssl(folder, "x509", "-req", "-in", "server.csr", *signing, "-out", "server.pem")
+    return folder
+
+
+def _openssl(folder: Path, *arguments: str) -> None:
+    subprocess.run(["openssl", *arguments], cwd=folder, check=True, capture_output=True)
