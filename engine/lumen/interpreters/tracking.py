@@ -4,8 +4,8 @@ Each sight moves the joints to where they stood *when the image was taken* plus 
 binding's gain. Adding the output to the angles last commanded instead overshoots as soon as camera and bus take time:
 the same error is then corrected again and again before its correction can be seen.
 
-A head that stands still stands a little beside where it was told to, for its weight and for friction. From there the
-turn counts from what it was told, else it would rest as far beside the face.
+A head that stands still stands a little beside where it was told to, for its weight and for friction. How far is
+learned while it stands, and added; else it would rest about as far beside the face.
 """
 
 from collections.abc import Mapping
@@ -25,11 +25,14 @@ SWING = 0.5235987755982988
 EARLY = 0.1
 """How far in the future [s] a message may say it was made, as clocks go; farther, it goes by another clock."""
 
-STILL, LITTLE = 0.15, 0.0087
-"""A joint stands still that for `STILL` [s] neither moved nor was told to by more than `LITTLE` [rad], half a degree."""
+STILL, LITTLE = 0.15, 0.006
+"""A joint stands still that for `STILL` [s] has not moved, and not been told to, by more than `LITTLE` [rad]."""
 
 SAG = 0.035
 """How far [rad] weight and friction hold a joint off where it was told to go; farther off, something else does."""
+
+LEARNING = 0.3
+"""Which part of a new measurement of that is believed: the head may still be on its way."""
 
 
 class Tracker:
@@ -115,12 +118,14 @@ class Tracker:
         return self._tell(self.clamped({joint: times.ahead.get(joint, 0.0) for joint in self.joints}), now)
 
     def _stood(self, joint: str, time: float) -> float:
-        """Where the turn counts from [rad]: the joint's pose at that time, less what it sagged when it last stood still."""
+        """Where the turn counts from [rad]: the joint's pose at that time, and how far it sags, as last learned."""
         pose, start = self._poses.at(time)[joint], time - STILL
+        sag = self._sag.get(joint, 0.0)
         if self._poses.steady(joint, start, time, LITTLE) and self._told.steady(joint, start, time, LITTLE):
-            sag = self._told.at(time)[joint] - pose
-            self._sag[joint] = sag if abs(sag) <= SAG else 0.0
-        return pose + self._sag.get(joint, 0.0)
+            found = self._told.at(time)[joint] - pose
+            sag += LEARNING * (found - sag) if abs(found) <= SAG else -sag
+            self._sag[joint] = sag
+        return pose + sag
 
     def _tell(self, target: Angles, now: float) -> Angles:
         self._told.add(now, target)
