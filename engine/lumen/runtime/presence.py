@@ -82,7 +82,8 @@ class Presence:
 
     def find(self, part: str) -> Peer | None:
         """The process that is this part and was heard of lately; the one that has been there longest."""
-        found = (peer for peer in self._peers.values() if part in peer.parts and self.alive(peer))
+        peers = (peer for peer in self._peers.values() if part in peer.parts and peer.state == HERE)
+        found = filter(self.alive, peers)
         return min(found, key=lambda p: p.since, default=None)
 
     def get(self, session: str) -> Peer | None:

@@ -151,7 +151,7 @@ class BrainPart:
         if robot is None:
             return
         if self._session and robot.session != self._session:
-            self._lost = True
+            self.robot.lose(GONE)
             self._tracking.restart()
         self._session = robot.session
         other = self._presence.get(str(robot.said.get("follows", "")))

@@ -1,0 +1,130 @@
+"""Robot, brain, motion and visitor apart, on a real broker: what they do is what one process does."""
+
+import time
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.cli.cast import cast
+from lumen.cli.show import Show
+from lumen.errors import UsageError
+from lumen.language.commands import Posture, Rest
+from lumen.ports import Perform
+from tests.processes.troupe import Troupe, deeds
+from tests.relay import Relay
+from tests.waiting import Collector
+
+pytestmark = pytest.mark.xdist_group("rabbitmq")
+
+
+def alone(folder: Path, name: str) -> list[object]:
+    """What the behaviour does in one process."""
+    project = lumen.load(folder)
+    story = project.stories[name]
+    show = Show(project, cast("recording", project, "max", story), story=story)
+    trace = Collector()
+    show.bus.subscribe("lumen.state", trace)
+    show.start()
+    assert show.player
+    while not show.player.finished:
+        show.tick()
+    assert not show.player.failure
+    show.close()
+    return deeds(trace.bodies)
+
+
+def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
+    expected = alone(troupe.folder, "short")
+    robot = troupe.join("robot")
+    troupe.join("motion")
+    brain, visitor = troupe.join("brain", story="short"), troupe.join("visitor", story="short")
+    troupe.until(lambda: visitor.process.over)
+    assert not visitor.process.failed
+    troupe.until(lambda: len(deeds(troupe.trace.bodies)) >= len(expected))
+    assert deeds(troupe.trace.bodies) == expected
+    project = brain.brain.project if brain.brain else None
+    assert project
+    played = [command.motion for _, command in robot.body.performed if isinstance(command, Perform)]
+    assert [motion.name for motion in played] == ["photo", "goodbye"]
+    assert [m.tracks for m in played] == [project.motions[m.name].tracks for m in played]
+
+
+def test_without_a_motion_module_the_brain_does_it_itself_and_hands_it_over(troupe: Troupe) -> None:
+    robot, brain = troupe.join("robot"), troupe.join("brain", story="short")
+    visitor = troupe.join("visitor", story="short")
+    troupe.until(lambda: "ask_name" in brain.states)
+    assert brain.brain
+    assert brain.brain.robot.time() is not None
+    motion = troupe.join("motion")
+    troupe.until(lambda: "photo" in brain.states)
+    motion.close()
+    troupe.members.remove(motion)
+    troupe.until(lambda: visitor.process.over)
+    assert not visitor.process.failed
+    assert sum(isinstance(command, Perform) for _, command in robot.body.performed) == 2
+
+
+def test_a_brain_for_one_robot_moves_no_other(troupe: Troupe) -> None:
+    one, other = troupe.join("robot"), troupe.join("robot", robot="KURNIA")
+    brain = troupe.join("brain")
+    troupe.until(lambda: "idle" in brain.states and one.body.performed)
+    troupe.live(0.3)
+    assert other.body.performed == []
+    assert {body["robot"] for body in troupe.trace.bodies} == {"NAO"}
+
+
+@pytest.mark.parametrize("part", ["brain", "robot"])
+def test_a_second_one_of_the_same_kind_is_refused(troupe: Troupe, part: str) -> None:
+    robot, brain = troupe.join("robot"), troupe.join("brain")
+    troupe.until(lambda: "idle" in brain.states)
+    troupe.join(part)
+    with pytest.raises(UsageError, match=f"is the {part} of NAO on this bus already: end it first"):
+        troupe.live(5.0)
+    assert robot.process.over is False
+
+
+def test_a_robot_that_is_lost_is_answered_and_comes_back(troupe: Troupe) -> None:
+    robot, brain = troupe.play()
+    troupe.kill(robot)
+    troupe.until(lambda: "robot_lost" in brain.states)
+    assert "paused" in brain.states
+    again = troupe.join("robot")
+    troupe.until(lambda: "idle" in brain.states)
+    assert any(isinstance(command, Posture) for _, command in again.body.performed)
+
+
+def test_a_robot_whose_brain_is_gone_rests_after_5_seconds_and_tells_the_next_one(troupe: Troupe) -> None:
+    robot, brain = troupe.play()
+    troupe.kill(brain)
+    began = time.monotonic()
+    troupe.until(lambda: any(isinstance(command, Rest) for _, command in robot.body.performed))
+    assert 4.0 < time.monotonic() - began < 7.0
+    again = troupe.join("brain")
+    troupe.until(lambda: "brain_lost" in again.states)
+    troupe.until(lambda: "idle" in again.states)
+
+
+def test_a_network_that_is_cut_for_10_seconds_ends_safely_and_goes_on(troupe: Troupe) -> None:
+    port = int(troupe.url.rpartition(":")[2].strip("/"))
+    cable = Relay(port)
+    robot, motion = troupe.join("robot"), troupe.join("motion")
+    brain = troupe.join("brain", story="dancing", url=troupe.url.replace(str(port), str(cable.port)))
+    visitor = troupe.join("visitor", story="dancing")
+    troupe.until(lambda: "dance" in brain.states and robot.body.performed)
+    troupe.until(lambda: any(isinstance(command, Perform) for _, command in robot.body.performed))
+    cable.cut()
+    troupe.live(10.0)
+    assert "robot_lost" in brain.states
+    assert isinstance(robot.body.performed[-1][1], Rest)
+    dances = sum(isinstance(command, Perform) for _, command in robot.body.performed)
+    cable.mend()
+    troupe.until(lambda: {"offer", "watching"} <= brain.states)
+    assert sum(isinstance(command, Perform) for _, command in robot.body.performed) == dances == 1
+    troupe.until(lambda: visitor.process.over)
+    assert not visitor.process.failed
+    assert motion in troupe.members
+    for member in troupe.members:
+        member.close()
+    troupe.members.clear()
+    cable.close()

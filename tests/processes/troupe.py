@@ -1,0 +1,152 @@
+"""The parts of an exhibition, each with a bus, a clock and a loop of its own as in its own process."""
+
+import argparse
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import lumen
+from lumen.bus import Bus, connect
+from lumen.buses.validated import validated
+from lumen.cli.apart.brain import BrainPart
+from lumen.cli.apart.starting import assembled
+from lumen.cli.cast import Cast, cast
+from lumen.cli.premises import Premises
+from lumen.clocks.real import RealClock
+from lumen.ports import Clock
+from lumen.robots.recording import RecordingRobot
+from lumen.runtime.presence import BRAIN, ROBOT
+from tests.waiting import Collector
+
+SPEED = "4"
+DEADLINE = 60.0
+STORIES = {
+    "short": """title: A short visit
+at: "10:30"
+steps:
+  - wait: 1s
+  - visitor: arrives
+  - expect: {state: ask_name, said: Good morning}
+  - says: My name is Ada
+  - expect: {state: how_are_you, context: {visitor: Ada}}
+  - says: fine
+  - expect: {state: offer}
+  - says: A photo, please
+  - expect: {state: offer, played: photo, within: 40s}
+  - says: No, that is all
+  - expect: {played: goodbye}
+  - visitor: leaves
+  - expect: {state: idle}
+""",
+    "dancing": """title: A visitor and a dance
+at: "10:30"
+steps:
+  - visitor: arrives
+  - expect: {state: ask_name, within: 60s}
+  - says: My name is Ada
+  - expect: {state: how_are_you, context: {visitor: Ada}}
+  - says: fine
+  - expect: {state: offer}
+  - says: dance
+  - expect: {state: dance}
+  - expect: {state: offer, within: 60s}
+  - says: No, that is all
+  - expect: {state: goodbye, context: {visitor: Ada}}
+  - visitor: leaves
+  - expect: {state: idle}
+""",
+}
+
+
+class Member:
+    """One process, its parts, and what stands behind it."""
+
+    def __init__(self, folder: Path, url: str, names: tuple[str, ...], story: str, name: str) -> None:
+        project = replace(lumen.load(folder), robot=name)
+        options = argparse.Namespace(speed=SPEED, reload="manual", fresh=False, robot="recording")
+        self.premises = Premises(folder, guest=BRAIN not in names)
+        self.cast: Cast | None = cast("recording", project, SPEED) if ROBOT in names else None
+        clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(SPEED))
+        played = project.stories[story] if story else None
+        bus = validated(connect(url), project)
+        self.process, self.brain = assembled(
+            options, project, played, names, (bus, url), self.premises, "", clock, self.cast
+        )
+
+    @property
+    def body(self) -> RecordingRobot:
+        assert self.cast
+        assert isinstance(self.cast.robot, RecordingRobot)
+        return self.cast.robot
+
+    @property
+    def states(self) -> frozenset[str]:
+        """Where the behaviour stands; nowhere before it has begun."""
+        assert isinstance(self.brain, BrainPart)
+        snapshot = self.brain.show.exhibition.runtime._snapshot
+        return snapshot.configuration if snapshot else frozenset()
+
+    def close(self) -> None:
+        self.process.close()
+        self.premises.close(forget=True)
+
+
+class Troupe:
+    """Members that live while somebody waits for something."""
+
+    def __init__(self, folder: Path, url: str) -> None:
+        self.folder, self.url = folder, url
+        self.members: list[Member] = []
+        self.told = StringIO()
+        self.ear: Bus = connect(url)
+        self.trace = Collector()
+        self.ear.subscribe("lumen.state", self.trace)
+
+    def join(self, *names: str, story: str = "", robot: str = "NAO", url: str = "") -> Member:
+        member = Member(self.folder, url or self.url, names, story, robot)
+        self.members.append(member)
+        return member
+
+    def play(self) -> tuple[Member, Member]:
+        """A robot that follows a brain, which is idle."""
+        robot, brain = self.join("robot"), self.join("brain")
+        self.until(lambda: "idle" in brain.states and robot.process._presence.find(BRAIN))
+        self.live(0.1)
+        return robot, brain
+
+    def kill(self, member: Member) -> None:
+        """It lives no more, and tells nobody; its connections end, as the system sees to."""
+        self.members.remove(member)
+        member.process._bus.close()
+        member.premises.close(forget=False)
+
+    def until(self, condition: Callable[[], object], timeout: float = DEADLINE) -> None:
+        deadline = time.monotonic() + timeout
+        while not condition():
+            for member in self.members:
+                member.process.step()
+            assert time.monotonic() < deadline, f"not within {timeout:g} s"
+
+    def live(self, seconds: float) -> None:
+        """So much real time."""
+        end = time.monotonic() + seconds
+        self.until(lambda: time.monotonic() >= end)
+
+    def close(self) -> None:
+        for member in self.members:
+            member.close()
+        self.ear.close()
+
+
+def deeds(bodies: list[Any], robot: str = "NAO") -> list[Any]:
+    """What a behaviour did by its trace, without times and ids: states entered and left, and commands."""
+    found: list[Any] = []
+    for body in bodies:
+        if body["robot"] == robot and "command" in body:
+            found.append({name: value for name, value in body["command"].items() if name != "id"})
+        elif body["robot"] == robot and body.get("entered"):
+            found.append((body["exited"], body["entered"]))
+    return found
