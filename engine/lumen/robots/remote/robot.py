@@ -11,7 +11,7 @@ from typing import Any
 
 from lumen.errors import BusError
 from lumen.language.commands import Rest, Stop
-from lumen.language.events import ROBOT_EVENTS, Event
+from lumen.language.events import CUE, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Message, Perform, Reading, RobotCommand, Sense
 from lumen.robots.remote.bodies import body_of, reading_of
@@ -36,7 +36,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass
 class _Pending:
-    """A command that is not over; times in [s] on the caller's clock."""
+    """A command that is not over, `heard` of, `cancelled`, or `held` back; times in [s] on the caller's clock."""
 
     id: str
     command: RobotCommand | None
@@ -44,6 +44,7 @@ class _Pending:
     told: float
     heard: bool = False
     cancelled: bool = False
+    held: bool = False
 
 
 Delegate = Callable[[str, Perform], bool]
@@ -54,8 +55,10 @@ class RemoteRobot:
     """The robot whose server is on this bus, as the routes of the project say.
 
     Commands travel under ids that no other process has (`session`). One that is not heard of is sent again; one that
-    the robot never took fails after 5 s, and would not be performed if it came after all. `clock` [s] stamps events,
-    `patience` [s] is the time that answers take. `delegate` may take motions over.
+    the robot never took fails after 5 s, and would not be performed if it came after all. What stops the robot has a
+    way of its own on the bus: what was sent before and not heard of is called off with it, what comes after it waits
+    until the robot has it. `clock` [s] stamps events, `patience` [s] is the time that answers take. `delegate` may take
+    motions over.
     """
 
     def __init__(
@@ -96,17 +99,24 @@ class RemoteRobot:
             self._send(AIM, body_of(command), AIM_LASTING)
             return
         now = self._patience()
-        pending = _Pending(id, command, now, now)
-        self._pending[f"{self.session}.{id}"] = pending
-        self._order(f"{self.session}.{id}", command)
+        whole = f"{self.session}.{id}"
+        pending = _Pending(id, command, now, now, held=self._stopping())
+        if isinstance(command, Rest | Stop):
+            self._call_off()
+            pending.held = False
+        self._pending[whole] = pending
+        if not pending.held:
+            self._order(whole, command)
 
     def forward(self, whole: str, command: RobotCommand) -> None:
         """Have the robot perform somebody else's command, under the whole id that it has there."""
         self._order(whole, command, delegable=False)
 
     def cancel(self, id: str) -> None:
-        for whole, pending in self._pending.items():
-            if pending.id == id:
+        for whole, pending in list(self._pending.items()):
+            if pending.id == id and pending.held:
+                self._end(whole, "cancelled")
+            elif pending.id == id:
                 pending.cancelled, pending.told = True, self._patience()
                 self._ask("cancel", whole)
 
@@ -126,6 +136,7 @@ class RemoteRobot:
         while self._came:
             self._hear(self._came.popleft())
         self._chase()
+        self._release()
         events, self._events = self._events, []
         return events
 
@@ -155,6 +166,29 @@ class RemoteRobot:
         way = STOP if isinstance(command, Rest | Stop) else COMMAND
         self._send(way, {**body_of(command), "id": whole}, COMMAND_LASTING)
 
+    def _stopping(self) -> bool:
+        """Whether something that stops the robot is on its way to it."""
+        return any(isinstance(p.command, Rest | Stop) and not p.heard for p in self._pending.values())
+
+    def _call_off(self) -> None:
+        """What is on its way to the robot now must not be performed after what stops it."""
+        for whole, pending in list(self._pending.items()):
+            if pending.held:
+                self._end(whole, "cancelled")
+            elif not pending.heard and not isinstance(pending.command, Rest | Stop):
+                pending.cancelled = True
+                self._ask("cancel", whole)
+
+    def _release(self) -> None:
+        """The robot has what stops it, or never will: now to what was asked for since."""
+        if self._stopping():
+            return
+        now = self._patience()
+        for whole, pending in list(self._pending.items()):
+            if pending.held and pending.command is not None:
+                pending.held, pending.since, pending.told = False, now, now
+                self._order(whole, pending.command)
+
     def _ask(self, method: str, whole: str) -> None:
         self._send(COMMAND, {"type": "motion", "method": method, "parameter": {"id": whole}}, COMMAND_LASTING)
 
@@ -173,7 +207,7 @@ class RemoteRobot:
         match message.body:
             case {"id": str(whole), "state": str(state)}:
                 self._report(whole, state, str(message.body.get("reason", "")))
-            case {"name": str(name)} if name in ROBOT_EVENTS and message.key == key_of(self._project, NOTICED):
+            case {"name": str(name)} if name in (*ROBOT_EVENTS, CUE) and message.key == key_of(self._project, NOTICED):
                 self._events.append(Event(name, message.body.get("data"), self._clock()))
 
     def _report(self, whole: str, state: str, reason: str) -> None:
@@ -199,6 +233,8 @@ class RemoteRobot:
         now = self._patience()
         for whole, pending in list(self._pending.items()):
             quiet = now - pending.told
+            if pending.held:
+                continue
             if not pending.heard and now - pending.since > GIVEN_UP:
                 self._forsaken.append(whole)
                 self._end(whole, "error", "the robot does not answer")
