@@ -95,10 +95,11 @@ class Oracle(Sets):
         if enabled:
             self.count()
             self.taken += enabled
+            domains = self.domains(enabled)
             self.exit_states(enabled)
             for transition in enabled:
                 self.world.execute(transition.actions, self.source(transition))
-            self.enter(self.in_document_order(self.compute_entry_set(enabled)))
+            self.enter(self.in_document_order(self.compute_entry_set(domains)))
 
     def exit_states(self, enabled: list[Transition]) -> None:
         world = self.world

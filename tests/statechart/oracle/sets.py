@@ -1,9 +1,10 @@
 """Which states transitions leave and enter, and which transitions go together: the sets of Appendix D.
 
-Twice the pseudo-code, taken by its letter, leads to two active children of one state, and section 3.13 decides. Its
+Three times the pseudo-code, taken by its letter, leads to configurations that are none, and section 3.13 decides. Its
 entry set has no state that is active and not left: `add_ancestors` ends at a state that stays, which it could pass on
 the way up from what a history remembers. Its complete target set begins a compound state by default only if none
-of its children is in the set: a target around another target enters nothing by itself.
+of its children is in the set: a target around another target enters nothing by itself. And a transition has one domain:
+asked again after the exit, when a history among its targets has begun to remember, it could be a smaller one.
 """
 
 from lumen.language.machines import Kind, State, Transition
@@ -71,15 +72,16 @@ class Sets(Tree):
                 found += self.effective_targets(self.initial(state))
         return found
 
-    def compute_entry_set(self, transitions: list[Transition]) -> list[State]:
+    def domains(self, transitions: list[Transition]) -> list[tuple[Transition, State]]:
+        return [(t, self.transition_domain(t)) for t in transitions if t.targets]
+
+    def compute_entry_set(self, domains: list[tuple[Transition, State]]) -> list[State]:
         entering: list[State] = []
-        for transition in transitions:
+        for transition, domain in domains:
             for state in self.innermost(self.targets(transition)):
                 self.add_descendants(state, entering)
-            if transition.targets:
-                domain = self.transition_domain(transition)
-                for state in self.effective_targets(self.targets(transition)):
-                    self.add_ancestors(state, domain, entering)
+            for state in self.effective_targets(self.targets(transition)):
+                self.add_ancestors(state, domain, entering)
         return entering
 
     def add_descendants(self, state: State, entering: list[State]) -> list[State]:

@@ -25,6 +25,7 @@ from lumen.language.commands import (
     Language,
     Log,
     Look,
+    Move,
     Play,
     Posture,
     Publish,
@@ -99,7 +100,7 @@ def compile_command(action: Action) -> Make:
                 return action
 
             return speak
-        case Play() | Posture() | Walk() | Look() | Track() | Stop() | Rest() | Wake():
+        case Play() | Posture() | Walk() | Move() | Look() | Track() | Stop() | Rest() | Wake():
             return lambda bench: action
         case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText() | If() | Wait() | Parallel():
             raise TypeError(f"{action} is no command")

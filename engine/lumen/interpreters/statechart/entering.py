@@ -24,9 +24,10 @@ class Entered(set[Node]):
 class Topology:
     """The sets of one chart under one history; `staying` are the active states that are not left.
 
-    Two things are not in Appendix D's letter, but in the definitions of 3.13, and keep configurations legal: what is
-    active and stays is not entered, though a history in it is the target; and where one target holds another, the
-    inner one says how the outer one is entered.
+    Three things are not in Appendix D's letter, but in the definitions of 3.13, and keep configurations legal: what is
+    active and stays is not entered, though a history in it is the target; where one target holds another, the inner
+    one says how the outer one is entered; and a transition enters within the domain that it left, whatever a history
+    among its targets has come to remember meanwhile.
     """
 
     def __init__(self, chart: Chart, history: History, staying: AbstractSet[Node] = frozenset()) -> None:
@@ -42,15 +43,16 @@ class Topology:
                 left.update(_active_below(self.domain(rule), active))
         return left
 
-    def entry_set(self, rules: Iterable[Rule]) -> set[Node]:
-        """The states that these transitions enter (`computeEntrySet`)."""
+    def domains(self, rules: Iterable[Rule]) -> dict[Rule, Node]:
+        """The domain of each of these transitions that has a target."""
+        return {rule: self.domain(rule) for rule in rules if rule.targets}
+
+    def entry_set(self, domains: Mapping[Rule, Node]) -> set[Node]:
+        """The states that these transitions enter, each within its domain (`computeEntrySet`)."""
         entered = Entered()
-        for rule in rules:
-            if not rule.targets:
-                continue
+        for rule, domain in domains.items():
             for target in _innermost(rule.targets):
                 self.add_descendants(target, entered)
-            domain = self.domain(rule)
             for target in self.effective(rule.targets):
                 self.add_ancestors(target, domain, entered)
         return entered

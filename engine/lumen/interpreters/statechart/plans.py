@@ -115,7 +115,7 @@ class Planner:
             rules = _without_conflicts(topology, enabled, start)
             left = topology.exit_set(rules, start.nodes)
             kept = {**history, **_remembered(start.nodes, left)}  # a history target finds what is left just now
-            entered = Topology(self.chart, kept, start.nodes - left).entry_set(rules)
+            entered = Topology(self.chart, kept, start.nodes - left).entry_set(topology.domains(rules))
             found = start.plans[key] = self._make(start, rules, kept, left, entered)
         return found
 
