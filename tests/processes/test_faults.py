@@ -1,0 +1,137 @@
+"""Processes that are killed, and a broker that is: the tour goes on or ends safely, and nothing is done twice."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from lumen.language.commands import Rest
+from lumen.ports import Perform
+from lumen.runtime.keeping import SNAPSHOT
+from tests.processes.troupe import Member, Troupe
+from tests.rabbitmq import RabbitMQ
+
+pytestmark = pytest.mark.xdist_group("rabbitmq")
+
+SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+Start = Callable[..., "subprocess.Popen[str]"]
+
+
+@pytest.fixture
+def start(copy: Path, broker: RabbitMQ) -> Iterator[Start]:
+    """Starts `lumen run --only …` in a process of its own."""
+    with ExitStack() as stack:
+
+        def run(only: str, *words: str) -> "subprocess.Popen[str]":
+            line = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", "4"]
+            line += ["--bus", broker.url, "--only", only, *words]
+            pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+            process = subprocess.Popen(line, text=True, **pipes)  # type: ignore[call-overload]
+            stack.callback(process.wait, 30)
+            stack.callback(process.kill)
+            return process  # type: ignore[no-any-return]
+
+        yield run
+
+
+def motions(member: Member) -> list[str]:
+    return [command.motion.name for _, command in member.body.performed if isinstance(command, Perform)]
+
+
+def shown(troupe: Troupe, state: str) -> bool:
+    """Whether the behaviour has told that it entered that state."""
+    return any(state in body.get("entered", ()) for body in troupe.trace.bodies)
+
+
+def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_between(
+    troupe: Troupe, start: Start
+) -> None:
+    robot, visitor = troupe.join("robot"), troupe.join("visitor", story="dancing")
+    brain = start("brain", "--story", "dancing")
+    troupe.until(lambda: "dance" in motions(robot))
+    assert (troupe.folder / ".lumen" / SNAPSHOT).exists()
+    os.kill(brain.pid, signal.SIGKILL)
+    brain.wait()
+    tour = troupe.folder / "behaviors" / "tour.yaml"
+    tour.write_text(tour.read_text("utf-8").replace(SORRY, PARDON), "utf-8")
+    again = start("brain", "--story", "dancing")
+    troupe.until(lambda: visitor.process.over)
+    assert not visitor.process.failed
+    assert motions(robot) == ["dance", "goodbye"]
+    again.send_signal(signal.SIGTERM)
+    said = again.communicate(timeout=20)[0]
+    assert "this one goes on from there, in dance" in said
+    assert again.returncode == 0
+    assert "Traceback" not in said
+
+
+def test_ctrl_c_ends_each_process_cleanly_and_who_waits_says_for_whom(start: Start) -> None:
+    waiting = [start("brain"), start("visitor"), start("motion")]
+    lines = []
+    for process in waiting:
+        assert process.stdout
+        said = [process.stdout.readline(), process.stdout.readline()]
+        lines.append(said[1].strip())
+        process.send_signal(signal.SIGINT)
+        rest = process.communicate(timeout=20)[0]
+        assert process.returncode == 0, rest
+        assert "Traceback" not in rest
+    assert lines == ["waiting for the robot on avatar.NAO.command"] * 3
+
+
+@pytest.mark.soak
+def test_the_whole_tour_in_four_processes(troupe: Troupe, start: Start) -> None:
+    """Everybody is a process of their own; the tour of `make run` is played to its end."""
+    others = [start("robot"), start("motion"), start("brain", "--story", "visitor")]
+    visitor = start("visitor", "--story", "visitor")
+    said = visitor.communicate(timeout=300)[0]
+    assert visitor.returncode == 0, said
+    for process in others:
+        process.send_signal(signal.SIGTERM)
+        rest = process.communicate(timeout=20)[0]
+        assert process.returncode == 0, rest
+        assert "Traceback" not in rest
+
+
+@pytest.mark.soak
+def test_a_robot_that_is_killed_and_started_again(troupe: Troupe, start: Start) -> None:
+    brain, robot = troupe.join("brain", story="dancing"), start("robot")
+    visitor = troupe.join("visitor", story="dancing")
+    troupe.until(lambda: "dance" in brain.states)
+    os.kill(robot.pid, signal.SIGKILL)
+    troupe.until(lambda: "robot_lost" in brain.states)
+    start("robot")
+    troupe.until(lambda: {"offer", "watching"} <= brain.states)
+    troupe.until(lambda: visitor.process.over, 120.0)
+    assert "Ada" in str(brain.brain and brain.brain.show.exhibition.runtime.snapshot.context) or visitor.process.failed
+
+
+@pytest.mark.soak
+def test_a_broker_that_is_killed_mid_tour_and_comes_back(copy: Path) -> None:
+    broker = RabbitMQ()
+    broker.start()
+    troupe = Troupe(copy, broker.url)
+    try:
+        robot, motion = troupe.join("robot"), troupe.join("motion")
+        brain, visitor = troupe.join("brain", story="dancing"), troupe.join("visitor", story="dancing")
+        troupe.until(lambda: "dance" in motions(robot))
+        broker.kill()
+        troupe.live(8.0)
+        assert "robot_lost" in brain.states
+        assert isinstance(robot.body.performed[-1][1], Rest)
+        before = motions(robot)
+        broker.start()
+        troupe.until(lambda: {"offer", "watching"} <= brain.states, 120.0)
+        assert motions(robot) == before == ["dance"]
+        troupe.until(lambda: visitor.process.over, 120.0)
+        assert not visitor.process.failed
+        assert motions(robot) == ["dance", "goodbye"]
+        assert motion in troupe.members
+    finally:
+        troupe.close()
+        broker.stop()
