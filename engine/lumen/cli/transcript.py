@@ -15,6 +15,7 @@ from lumen.language.commands import (
     Language,
     Log,
     Look,
+    Move,
     Play,
     Posture,
     Publish,
@@ -26,7 +27,7 @@ from lumen.language.commands import (
     Wake,
     Walk,
 )
-from lumen.language.events import Event
+from lumen.language.events import CUE, Event
 from lumen.language.machines import Machine
 from lumen.language.stories import Arrive, Deed, Happen, Leave, Send, Speak, Touch
 from lumen.runtime.exhibition import Observer
@@ -90,6 +91,9 @@ class Transcript(Observer):
             self.played[motion] = self.played.get(motion, 0) + 1
         elif kind == "cancelled" and running:
             self.line("robot", f"ends early: {running}")
+        elif event.name == CUE:
+            if isinstance(event.data, dict) and event.data.get("kind") == "sound":
+                self.line("robot", f"sounds {event.data.get('value')}")
         elif not id:
             details = ", ".join(f"{k} {v}" for k, v in (event.data or {}).items())
             self.line("robot", f"notices {event.name}" + (f": {details}" if details else ""))
@@ -127,6 +131,8 @@ def _words(command: object) -> str:
             return f"takes the posture {name}"
         case Walk(x, y, theta):
             return f"walks {x:g} m, {y:g} m, {theta:.2f} rad"
+        case Move(vx, vy, vtheta):
+            return f"walks on at {vx:g} m/s, {vy:g} m/s, {vtheta:.2f} rad/s"
         case Look():
             return "turns its head"
         case Track(controller, on):

@@ -2,25 +2,30 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot, isfinite
+from math import hypot, inf, isfinite
 
 from lumen.errors import RobotError, UsageError
 from lumen.interpreters.projection import seen
-from lumen.language.commands import Look, Posture, Rest, Say, Wake, Walk
+from lumen.language.commands import Look, Move, Posture, Rest, Say, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.robots.cues import Prompter
 from lumen.robots.executor import Executor
 from lumen.robots.parts import part_of, parts
 
 _VERBS: Mapping[type, str] = {
-    Say: "say", Perform: "play", Posture: "posture", Walk: "walk", Look: "look", Rest: "rest", Wake: "wake",
+    Say: "say", Perform: "play", Posture: "posture", Walk: "walk", Move: "walk", Look: "look", Rest: "rest",
+    Wake: "wake",
 }  # fmt: skip
 
 TORSO = 0.333
 """Where a standing NAO's torso is above its soles [m]."""
+
+TURNING = 0.25
+"""How fast a walk turns [rad/s]: the simulated robot turns around by 90 degrees in 7 s."""
 
 PODIUM = 0.5
 """What the robot stands on [m]."""
@@ -40,6 +45,20 @@ class _Lasting:
 
     def cancel(self) -> None:
         self.until = 0.0
+
+
+class _Playing(_Lasting):
+    """A motion, its words and sounds told as they come."""
+
+    def __init__(self, until: float, begin: float, prompter: Prompter) -> None:
+        super().__init__(until)
+        self._begin, self._prompter = begin, prompter
+
+    def advance(self, now: float) -> bool:
+        over = super().advance(now)
+        if not over or self.until:
+            self._prompter.advance(now - self._begin, now)
+        return over
 
 
 class RecordingRobot:
@@ -124,6 +143,9 @@ class RecordingRobot:
     def plug(self, plugged: bool) -> None:
         self._plugged = plugged
 
+    def _notice(self, event: Event) -> None:
+        self._noticed.append(event)
+
     def _begin(self, command: RobotCommand, now: float) -> _Lasting:
         self.performed.append((now, command))
         behaves = self._behaves.get(_VERBS[type(command)])
@@ -135,7 +157,10 @@ class RecordingRobot:
             self._angles.update(self.body.postures[command.name])
         elif isinstance(command, Look):
             self._turn({"HeadYaw": command.yaw, "HeadPitch": command.pitch})
-        return _Lasting(float("inf") if behaves == "hangs" else now + _duration(command, behaves))
+        until = float("inf") if behaves == "hangs" else now + _duration(command, behaves)
+        if isinstance(command, Perform):
+            return _Playing(until, now, Prompter(command.motion, self._notice))
+        return _Lasting(until)
 
     def _free(self, joint: str) -> bool:
         """Whether no command owns that joint, or the robot has none of that name."""
@@ -158,8 +183,10 @@ def _duration(command: RobotCommand, behaves: str | float | None) -> float:
             return 0.4 + 0.06 * len(text)
         case Perform(motion):
             return motion.duration
-        case Walk(x, y, _):
-            return hypot(x, y) / 0.1
+        case Walk(x, y, theta):
+            return hypot(x, y) / 0.1 + abs(theta) / TURNING
+        case Move(vx, vy, vtheta):
+            return inf if any((vx, vy, vtheta)) else 1.0
         case Look():
             return 1.0
         case _:

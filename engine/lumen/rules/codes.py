@@ -95,7 +95,7 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "overlapping-guards": Code(INFO, "phrases are taken for others that are asked for earlier"),
         "shadowed-transition": Code(WARNING, "a transition is never taken, because one before it always is"),
         "unreachable-state": Code(WARNING, "no transition leads to a state"),
-        "no-effect": Code(WARNING, "something that is read, and has no effect yet"),
+        "no-effect": Code(WARNING, "something that is read, and has no effect"),
         "unused-event": Code(WARNING, "an event is raised that nothing waits for"),
     },
     "reload": {
@@ -161,6 +161,7 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "angle-out-of-range": Code(ERROR, "an angle lies outside the joint's limits"),
         "hand-out-of-range": Code(ERROR, "a hand is opened to less than 0 or more than 1"),
         "handles-without-key": Code(ERROR, "handles are given for a joint that has no key there"),
+        "missing-sound": Code(WARNING, "a sound file is not there, so that a motion is silent"),
         "mixed-keyframe": Code(ERROR, "a keyframe is a block and a pose at once"),
         "motion-cycle": Code(ERROR, "a motion plays itself in the end"),
         "no-tempo": Code(ERROR, "beats are counted without a tempo"),

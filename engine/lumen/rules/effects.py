@@ -1,4 +1,6 @@
-"""What a file may say, and nothing does yet: whoever wrote it should know."""
+"""What a file may say, and nothing comes of it: whoever wrote it should know."""
+
+from pathlib import Path
 
 from lumen.language.machines import Machine
 from lumen.language.motions import Motion
@@ -6,19 +8,14 @@ from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.finding import find
 
-_INSTEAD = {
-    "say": "let the behaviour say it: `parallel: [{play: …}, {say: …}]` in a `do`",
-    "sound": "delete it: no robot plays sounds yet",
-}
-"""The cues that no robot gives yet, and what to do about them."""
-
 
 def check(draft: Draft) -> None:
-    """Report keys that are read and have no effect."""
+    """Report keys that are read and have no effect, and sounds that are not there."""
     for name, machine in draft.behaviors.items():
         _reload(machine, draft.report("behaviors", name))
     for name, motion in draft.motions.items():
-        _cues(motion, draft.report("motions", name))
+        if draft.root is not None:
+            _sounds(motion, draft.report("motions", name), draft.root)
 
 
 def _reload(machine: Machine, report: Report) -> None:
@@ -29,8 +26,17 @@ def _reload(machine: Machine, report: Report) -> None:
             find(report, "no-effect", (*state.where, "onReload"), message, hint, key=True)
 
 
-def _cues(motion: Motion, report: Report) -> None:
+def _sounds(motion: Motion, report: Report, root: Path) -> None:
+    """Sound files that are not in the project's folder."""
     for cue in motion.cues:
-        if cue.kind in _INSTEAD and cue.where[-1:] == (cue.kind,):
-            message = f"`{cue.kind}` in a motion has no effect yet: it is silent"
-            find(report, "no-effect", cue.where, message, _INSTEAD[cue.kind], key=True)
+        if cue.kind == "sound" and cue.where[-1:] == ("sound",) and not _there(root, str(cue.value)):
+            message = f"there is no file {cue.value} in the project: the motion is silent here"
+            hint = "put the file there, or name one that is"
+            find(report, "missing-sound", cue.where, message, hint, cause=f"sound {cue.value}")
+
+
+def _there(root: Path, file: str) -> bool:
+    try:
+        return (root / file).is_file() and (root / file).resolve().is_relative_to(root.resolve())
+    except (OSError, ValueError):
+        return False

@@ -6,9 +6,10 @@ from typing import Any
 from lumen.interpreters.migration import Plan, Verdict
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Track
-from lumen.language.events import Event
+from lumen.language.events import CUE, Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot
+from lumen.runtime.cues import Cues
 from lumen.runtime.inbox import Inbox
 from lumen.runtime.performer import Performer
 from lumen.runtime.resuming import Resumption
@@ -55,6 +56,7 @@ class Exhibition:
         self.inbox = Inbox(bus)
         self.tracking: Following = tracking or Tracking(project, robot, bus)
         self._performer = Performer(robot, bus, self.tracking.switch)
+        self._cues = Cues()
         self._events: list[Event] = []
         self._last = clock.now()
 
@@ -134,6 +136,7 @@ class Exhibition:
         for event in answers:
             for observer in self.observers:
                 observer.answered(event)
+            self._perform(self._cues.answered(event, self.project, self.runtime.snapshot.language), now)
         happened, self._events = self._events, []
         ended, self._performer.events = self._performer.events, []
         heard = [event for event in answers if _ours(event)]
@@ -143,6 +146,7 @@ class Exhibition:
         for command in commands:
             for observer in self.observers:
                 observer.performing(command, now)
+            self._cues.performing(command)
             try:
                 self._performer.perform(project or self.project, command, now)
             except Exception as error:
@@ -157,6 +161,11 @@ class Exhibition:
 
 
 def _ours(event: Event) -> bool:
-    """Whether it is for the behaviour: its own commands are c1, d2@quiz, …; others' answers are theirs alone."""
+    """Whether it is for the behaviour: its own commands are c1, d2@quiz, …; others' answers are theirs alone.
+
+    The words and sounds of a motion are for us.
+    """
+    if event.name == CUE:
+        return False
     _, separator, id = event.name.partition(".command.")
     return not separator or (id[:1] in ("c", "d") and id[1:].partition("@")[0].isdecimal())

@@ -17,6 +17,7 @@ class Motors:
     """Takes goals, and drives every joint there inside the body's limits and speeds.
 
     `goal` is where the joints are wanted, `command` what their servos are told: Shape (joints,), [rad; hands 0..1].
+    `effort` is the greatest torque of each motor [N m], 0 at a joint that shares another's.
     """
 
     def __init__(self, world: World) -> None:
@@ -28,6 +29,8 @@ class Motors:
         self._leader = dict(body.shared)
         self._limits = {joint.name: (joint.minimum, joint.maximum) for joint in body.joints.values()}
         self._effort = world.model.actuator_forcerange[world.actuators].copy()
+        self.effort = np.zeros(len(self.names))
+        self.effort[world.driven] = self._effort[:, 1]
         self.stiffness = np.ones(len(self.names))
         self.goal: Angles = world.angles.copy()
         self.command: Angles = self.goal.copy()

@@ -6,6 +6,7 @@ from math import isfinite
 from lumen.errors import RobotError
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import Cue, Motion
+from lumen.robots.cues import Notice, Prompter
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.transition import Transition
@@ -22,18 +23,32 @@ _NEAR = 0.05
 class Performance:
     """A motion: to the posture it begins in where the robot is not there, then along its keys, cues beside them.
 
-    `home` holds that posture's angles [rad] of the joints that the motion owns. Raises RobotError for a motion that
-    names other joints than the robot's, or angles that are no numbers.
+    `home` holds that posture's angles [rad] of the joints that the motion owns; `notice` is told of words and sounds.
+    Raises RobotError for a motion that names other joints than the robot's, or angles that are no numbers.
     """
 
-    def __init__(self, motors: Motors, lights: Lights, motion: Motion, home: Mapping[str, float], now: float) -> None:
+    def __init__(
+        self,
+        motors: Motors,
+        lights: Lights,
+        motion: Motion,
+        home: Mapping[str, float],
+        now: float,
+        notice: Notice = lambda _: None,
+    ) -> None:
         _check(motors, motion)
         self._motors, self._lights, self._motion, self._home = motors, lights, motion, home
         self._begin = self._now = now
         self._cues = sorted(motion.cues, key=lambda cue: cue.time)
+        self._prompter = Prompter(motion, notice)
         self._trajectory: Trajectory | None = None
         self._approach = Transition(motors, home, now, APPROACH) if self._away() else None
         self._recovery: Transition | None = None
+
+    @property
+    def reached(self) -> float:
+        """How far along the motion it is [s]; 0 on the way to its beginning."""
+        return self._now - self._begin if self._trajectory else 0.0
 
     def advance(self, now: float) -> bool:
         self._now = now
@@ -61,6 +76,7 @@ class Performance:
     def _play(self, trajectory: Trajectory, t: float) -> bool:
         while self._cues and self._cues[0].time <= t:
             self._cue(self._cues.pop(0))
+        self._prompter.advance(t, self._now)
         self._motors.aim(trajectory.sample(t))
         if t < self._motion.duration:
             return False

@@ -6,9 +6,10 @@ from typing import assert_never
 
 from lumen.errors import RobotError
 from lumen.interpreters.postures import RESTFUL, UPRIGHT
-from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.ports import Aim, Perform, RobotCommand
+from lumen.robots.cues import Notice
 from lumen.robots.executor import Activity
 from lumen.robots.parts import part_of, parts
 from lumen.robots.simulation.instruments import Instruments
@@ -29,7 +30,10 @@ _UPRIGHT = pi / 9
 
 
 class Repertoire:
-    """Begins activities; knows whether the motors are on, in which posture the robot is and whether it has fallen."""
+    """Begins activities; knows whether the motors are on, in which posture the robot is and whether it has fallen.
+
+    `notice` is told of what a motion says and sounds; `playing` is the motion begun last.
+    """
 
     def __init__(
         self,
@@ -39,13 +43,15 @@ class Repertoire:
         walker: Walker,
         instruments: Instruments,
         posture: str,
+        notice: Notice,
     ) -> None:
         self._world, self._motors, self._lights, self._walker = world, motors, lights, walker
-        self._instruments = instruments
+        self._instruments, self._notice = instruments, notice
         self._postures = world.body.postures
         self._part = part_of(world.body)
         self._stance = Stance(posture)
         self._way: Way | None = None
+        self.playing: Performance | None = None
         self.awake, self.fallen = True, False
 
     @property
@@ -78,10 +84,10 @@ class Repertoire:
                 return self._rest(now)
             case Wake():
                 return self._wake(now)
-            case Walk():
+            case Walk() | Move():
                 if not self.upright:
                     raise RobotError(f"the robot is in {self._stance.posture}: send it to Stand first")
-                return self._walker.begin(command, now)
+                return self._walker.begin(command, now) if isinstance(command, Walk) else self._walker.move(command, now)
             case Stop() | Aim():
                 raise RobotError(f"{type(command).__name__} does not last")
             case _:
@@ -106,7 +112,8 @@ class Repertoire:
         here = self._stance.posture
         if motion.start and motion.start != here and not (self.upright and motion.start in UPRIGHT):
             raise RobotError(f"`{motion.name}` begins in {motion.start}; the robot is in {here}: send it there first")
-        return Performance(self._motors, self._lights, motion, home, now)
+        self.playing = Performance(self._motors, self._lights, motion, home, now, self._notice)
+        return self.playing
 
     def _posture(self, name: str, speed: float, now: float) -> Activity:
         if not 0 < speed <= 1:

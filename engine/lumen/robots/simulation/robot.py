@@ -83,7 +83,9 @@ class SimulatedRobot:
             self._free,
             lambda: self.condition.hot,
         )
-        self._repertoire = Repertoire(self.world, self.motors, self.lights, walker, self._instruments, posture)
+        self._repertoire = Repertoire(
+            self.world, self.motors, self.lights, walker, self._instruments, posture, self._notice
+        )
         self._executor = Executor(self._begin, self._repertoire.parts)
         self._figure = Figure(self.world.model, self.world.data)
         self._camera = TopCamera(self.world, body.camera)
@@ -174,6 +176,9 @@ class SimulatedRobot:
 
     def plug(self, plugged: bool) -> None:
         self.condition.plugged = plugged
+
+    def _notice(self, event: Event) -> None:
+        self._events.append(event)
 
     def _begin(self, command: RobotCommand, now: float) -> Activity:
         if self.condition.empty and not isinstance(command, Rest):

@@ -1,0 +1,29 @@
+"""The words and sounds of a motion, told as their times come."""
+
+from collections.abc import Callable
+
+from lumen.language.events import CUE, Event
+from lumen.language.motions import Cue, Motion
+
+TOLD = ("say", "sound")
+"""Kinds of cues that a robot tells of; the others it gives itself."""
+
+Notice = Callable[[Event], None]
+
+
+def told(motion: Motion, cue: Cue, now: float) -> Event:
+    """The event that a cue of that motion is due."""
+    return Event(CUE, {"motion": motion.name, "kind": cue.kind, "value": cue.value}, now)
+
+
+class Prompter:
+    """Tells of a motion's cues to `notice`, each when it comes."""
+
+    def __init__(self, motion: Motion, notice: Notice) -> None:
+        self._motion, self._notice = motion, notice
+        self._left = sorted((cue for cue in motion.cues if cue.kind in TOLD), key=lambda cue: cue.time, reverse=True)
+
+    def advance(self, t: float, now: float) -> None:
+        """Live until `t` [s] from the motion's beginning, which is `now` on the robot's clock."""
+        while self._left and self._left[-1].time <= t:
+            self._notice(told(self._motion, self._left.pop(), now))

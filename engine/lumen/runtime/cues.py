@@ -1,0 +1,66 @@
+"""What motions say and sound: words become a `Say` like any other, sounds are for whoever plays them."""
+
+import logging
+from collections.abc import Mapping
+from pathlib import Path
+
+from lumen.language.commands import Cancel, Command, Play, Say, Start
+from lumen.language.events import CUE, Event
+from lumen.language.projects import Project
+
+_log = logging.getLogger(__name__)
+
+
+class Cues:
+    """Answers what a robot tells of the cues of a motion.
+
+    Words wait for the voice as every `say` does, under ids `cue1`, `cue2`, …; they end with a motion that is cancelled
+    or fails. A sound is an event that observers of the exhibition hear, so a player of audio is one of them; a file
+    that is not there is logged, once, and stays silent.
+    """
+
+    def __init__(self) -> None:
+        self._playing: dict[str, str] = {}
+        self._saying: dict[str, str] = {}
+        self._lacking: set[str] = set()
+        self._number = 0
+
+    def performing(self, command: Command) -> None:
+        """Take note of a motion that is about to be played."""
+        match command:
+            case Start(id, Play(motion)):
+                self._playing[id] = motion
+
+    def answered(self, event: Event, project: Project, language: str) -> list[Command]:
+        """What has to be done about something that the robot told."""
+        if event.name == CUE and isinstance(event.data, Mapping):
+            return self._cue(event.data, project, language)
+        kind, _, id = event.name.partition(".command.")
+        self._saying.pop(id, None)
+        motion = self._playing.pop(id, None)
+        if motion is None or kind == "done":
+            return []
+        return [Cancel(said) for said, by in self._saying.items() if by == motion]
+
+    def _cue(self, data: Mapping[str, object], project: Project, language: str) -> list[Command]:
+        motion, kind, value = str(data.get("motion", "")), data.get("kind"), data.get("value")
+        if kind == "say" and (text := words(value, language, project.languages[0])):
+            self._number += 1
+            id = f"cue{self._number}"
+            self._saying[id] = motion
+            return [Start(id, Say(text, language))]
+        if kind == "sound":
+            self._sound(str(value), motion, project)
+        return []
+
+    def _sound(self, file: str, motion: str, project: Project) -> None:
+        if file not in self._lacking and not (Path(project.root) / file).is_file():
+            self._lacking.add(file)
+            _log.warning("`%s` sounds `%s`, which is not there: it stays silent", motion, file)
+
+
+def words(value: object, language: str, default: str) -> str:
+    """The text of a `say` in that language, else in the default one, else any; empty where it has none."""
+    if isinstance(value, Mapping):
+        value = value.get(language) or value.get(default) or next(iter(value.values()), "")
+    return value if isinstance(value, str) else ""
