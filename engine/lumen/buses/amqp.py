@@ -136,7 +136,7 @@ class AmqpBus:
             self._stop.begin()
         if not self._watching:
             self._watching = True
-            self._way.consuming.watch(self._way.publishing.lament)
+            self._way.consuming.watch(self._way.publishing.stray)
         out = [k for k, r in routes.items() if r.carried is Carried.JOURNAL and r.direction is Direction.OUT]
         self._way.publishing.journals = {key: journal_of(key) for key in out}
         for way in self._ways():

@@ -139,6 +139,11 @@ class Publishing(Link):
             headers = {"reason": f"nobody takes `{key}`"}
             self.outbox.put(Parcel(NOWHERE, key, body, properties.content_type or "", headers=headers))
 
+    def stray(self, key: str) -> None:
+        """Somebody sent a message under this key, and nobody took it: that is worth a word where no route has it."""
+        if key not in self.known:
+            self.lament(key)
+
     def lament(self, key: str) -> None:
         """Say once that nobody takes what is sent under this key."""
         if key in self._told or len(self._told) >= TOLD:

@@ -6,7 +6,7 @@ import os
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, suppress
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
@@ -15,6 +15,7 @@ from lumen.buses.probing import Probe
 from lumen.buses.validated import by_key
 from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
+from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.language.routes import Direction, Route
 from lumen.loading.files import read_files
@@ -107,12 +108,13 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
         if (skew := _skew(message.body)) is not None:
             skews.append(skew)
 
-    undo = bus.subscribe("#", listen)
-    end = time.monotonic() + LISTENING
     senses = {key: route for key, route in routes.items() if route.every and route.every <= LISTENING / 2}
+    for key in senses:
+        with suppress(BusError):  # what we may not read is nothing that we hear
+            bus.subscribe(key, listen)
+    end = time.monotonic() + LISTENING
     while time.monotonic() < end and not (senses.keys() <= heard and skews):
         time.sleep(0.05)
-    undo()
     silent = [route.name for key, route in senses.items() if key not in heard]
     if silent:
         text = f"nothing came on {_names(silent)} in {LISTENING:g} s: does the robot run?"

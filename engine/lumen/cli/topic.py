@@ -6,6 +6,7 @@ import queue
 import sys
 import time
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from lumen.buses.bodies import encode
@@ -21,7 +22,15 @@ from lumen.loading.units import seconds
 from lumen.ports import Bus, Message
 from lumen.rules import check_files
 
-LISTENING = "3s"
+VERBS = {
+    "list": "the routes, and what comes on them meanwhile",
+    "echo PATTERN": "messages as they come",
+    "pub KEY BODY": "send a message, checked against its route's schema; a BODY that is no JSON is a text",
+    "hz PATTERN": "how often messages come, and the longest gap",
+    "bw PATTERN": "how many bytes messages have, and how many come in a second",
+}
+"""A PATTERN is a key (`*` is one word, `#` any number of them) or a route's name."""
+LISTENING = 3.0
 ANSWERS = "lumen.operator.answer"
 SHOWN = 200
 LOOK = 0.5
@@ -36,35 +45,33 @@ class Heard(NamedTuple):
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = "Look at the messages of a running exhibition, on a broker or on this machine, or send one."
-    verbs = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
-    listing = verbs.add_parser("list", help="the routes, and what comes on them meanwhile")
-    echo = verbs.add_parser("echo", help="print messages as they come")
-    pub = verbs.add_parser("pub", help="send a message, checked against its route's schema")
-    hz = verbs.add_parser("hz", help="how often messages come, and the longest gap")
-    bw = verbs.add_parser("bw", help="how many bytes messages have, and how many come in a second")
-    for one in (echo, hz, bw):
-        one.add_argument("pattern", metavar="PATTERN", help="a key, or a route's name; `*` is one word, `#` any number")
-    echo.add_argument("--count", metavar="N", type=int, default=0, help="end after so many")
-    pub.add_argument("key", metavar="KEY", help="a key, or a route's name")
-    pub.add_argument("body", metavar="BODY", help="JSON; what is none is sent as a text")
-    pub.add_argument("--wait", metavar="TIME", default="", help="wait so long for an answer, and print it")
-    for one, default in ((listing, LISTENING), (echo, ""), (hz, LISTENING), (bw, LISTENING)):
-        until = f"default: {default}" if default else "default: until Ctrl-C"
-        one.add_argument("--for", dest="span", metavar="TIME", default=default, help=f"listen so long ({until})")
-    for one in (listing, echo, pub, hz, bw):
-        one.add_argument("--project", metavar="DIR", help="whose exhibition; default: the one here or above")
-        one.add_argument("--bus", metavar="URL", help="where it runs; default: LUMEN_BUS, then this machine")
-        one.add_argument("--format", choices=("text", "json"), default="text", help="default: text")
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = "\n".join(["what to do:", *(f"  {verb:14} {what}" for verb, what in VERBS.items())])
+    parser.add_argument("what", metavar="WHAT", choices=[verb.split()[0] for verb in VERBS], help="see below")
+    parser.add_argument("words", metavar="WORD", nargs="*", help="a PATTERN, or a KEY and a BODY")
+    parser.add_argument("--count", metavar="N", type=int, default=0, help="echo: end after so many")
+    parser.add_argument("--for", dest="span", metavar="TIME", help="listen so long (default: 3s; echo: until Ctrl-C)")
+    parser.add_argument("--wait", metavar="TIME", help="pub: wait so long for an answer, and print it")
+    parser.add_argument("--project", metavar="DIR", help="whose exhibition; default: the one here or above")
+    parser.add_argument("--bus", metavar="URL", help="where it runs; default: LUMEN_BUS, then this machine")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="default: text")
 
 
 def run(options: argparse.Namespace) -> int:
     """0, or for `pub --wait` 1 where no answer came."""
+    _check_words(options)
     project = _project(options)
     bus = reach(options).bus
     try:
         return {"list": _list, "echo": _echo, "pub": _pub, "hz": _hz, "bw": _bw}[options.what](options, bus, project)
     finally:
         bus.close()
+
+
+def _check_words(options: argparse.Namespace) -> None:
+    wanted = next(verb.split()[1:] for verb in VERBS if verb.split()[0] == options.what)
+    if len(options.words) != len(wanted):
+        raise UsageError(f"write `lumen topic {' '.join([options.what, *wanted])}`")
 
 
 def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
@@ -88,7 +95,7 @@ def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int
 
 
 def _echo(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
-    pattern = _key(options.pattern, project)
+    pattern = _key(options.words[0], project)
     for number, heard in enumerate(_listen(bus, pattern, _span(options) if options.span else None), 1):
         message = heard.message
         if options.format == "json":
@@ -103,11 +110,11 @@ def _echo(options: argparse.Namespace, bus: Bus, project: Project | None) -> int
 
 def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
     try:
-        body = json.loads(options.body)
+        body = json.loads(options.words[1])
     except (ValueError, RecursionError):
-        body = options.body
+        body = options.words[1]
     patience = _seconds(options.wait, "--wait") if options.wait else 0.0
-    key, answers = _key(options.key, project), queue.SimpleQueue[Any]()
+    key, answers = _key(options.words[0], project), queue.SimpleQueue[Any]()
     if project:
         bus = validated(bus, project)
     if patience:
@@ -127,32 +134,26 @@ def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
 def _hz(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
     times: dict[str, list[float]] = {}
     span = _span(options)
-    for heard in _listen(bus, _key(options.pattern, project), span):
+    for heard in _listen(bus, _key(options.words[0], project), span):
         times.setdefault(heard.message.key, []).append(heard.at)
     rows = []
     for key, at in sorted(times.items()):
-        gaps = [after - before for before, after in zip(at, at[1:], strict=False)]
+        gaps = [after - before for before, after in pairwise(at)]
         rate = len(gaps) / (at[-1] - at[0]) if gaps and at[-1] > at[0] else None
-        rows.append(
-            {"key": key, "messages": len(at), "hz": _round(rate), "longest_gap": _round(max(gaps, default=None))}
-        )
+        longest = _round(max(gaps, default=None))
+        rows.append({"key": key, "messages": len(at), "hz": _round(rate), "longest_gap": longest})
     return _rows(options, span, rows, ["key", "messages", "per second", "longest gap [s]"])
 
 
 def _bw(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
     sizes: dict[str, list[int]] = {}
     span = _span(options)
-    for heard in _listen(bus, _key(options.pattern, project), span):
+    for heard in _listen(bus, _key(options.words[0], project), span):
         sizes.setdefault(heard.message.key, []).append(len(encode(heard.message.body)))
-    rows = [
-        {
-            "key": key,
-            "messages": len(size),
-            "mean_bytes": round(sum(size) / len(size)),
-            "bytes_per_second": round(sum(size) / span),
-        }
-        for key, size in sorted(sizes.items())
-    ]
+    rows = []
+    for key, size in sorted(sizes.items()):
+        mean, rate = round(sum(size) / len(size)), round(sum(size) / span)
+        rows.append({"key": key, "messages": len(size), "mean_bytes": mean, "bytes_per_second": rate})
     return _rows(options, span, rows, ["key", "messages", "bytes each", "bytes/s"])
 
 
@@ -162,7 +163,7 @@ def _rows(options: argparse.Namespace, span: float, rows: list[dict[str, Any]], 
     elif rows:
         print(table(head, [["-" if v is None else str(v) for v in row.values()] for row in rows]))
     else:
-        print(f"nothing came on `{options.pattern}` in {span:g} s")
+        print(f"nothing came on `{options.words[0]}` in {span:g} s")
     return 0
 
 
@@ -202,7 +203,7 @@ def _key(text: str, project: Project | None) -> str:
 
 
 def _span(options: argparse.Namespace) -> float:
-    return _seconds(options.span, "--for")
+    return _seconds(options.span, "--for") if options.span else LISTENING
 
 
 def _seconds(text: str, option: str) -> float:

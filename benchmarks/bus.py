@@ -1,0 +1,229 @@
+"""How many messages a second cross a bus, and how long a question takes; against pika itself, in one run.
+
+    python benchmarks/bus.py [--bus URL] [--seconds S]
+
+Without `--bus` a private RabbitMQ is started on loopback. pika's BlockingConnection sends bytes that are JSON already
+and takes them as they are; ours makes JSON of a body, sends, confirms, receives, decodes and hands it to a handler.
+Telemetry is sent by pika without confirms, as one would; ours has the broker's word for every message all the same,
+and is counted until the last has it.
+"""
+
+import argparse
+import json
+import platform
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from statistics import median, quantiles
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+import pika
+
+import lumen
+from lumen.bus import Bus, connect
+from lumen.buses.validated import validated
+from lumen.language.routes import Carried, Direction, Route
+
+KEY, ANSWER = "lumen.bench.body", "lumen.bench.answer"
+SIZES = {"200 B": 200, "15 kB": 15_000}
+ROUNDS = 5
+TELEMETRY = Route("bench", KEY, Direction.IN, keep=1_000_000)
+COMMAND = Route("bench", KEY, Direction.IN, carried=Carried.COMMAND, must_arrive=True)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--bus", help="the broker (default: a private one)")
+    parser.add_argument("--seconds", type=float, default=1.0, help="how long each measurement takes")
+    options = parser.parse_args()
+    print(f"{platform.machine()}, {platform.system()} {platform.release()}, CPython {platform.python_version()}")
+    in_process(options.seconds)
+    with broker(options.bus) as url:
+        over_the_broker(url, options.seconds)
+        round_trip(url)
+
+
+def in_process(seconds: float) -> None:
+    """One publisher, one subscriber, a body of the face detector, on the embedded bus."""
+    project, body = lumen.load(), {"x": 160, "y": 120, "time": 12.5}
+    face = "lumen.visual.face.detection"
+    rates = {}
+    for name, bus in (("off", connect("memory://")), ("on", validated(connect("memory://"), project))):
+        bus.subscribe(face, lambda message: None)
+        rates[name] = best(lambda bus=bus: bus.publish(face, body), seconds)
+        bus.close()
+    cost = 1e6 / rates["on"] - 1e6 / rates["off"]
+    print(f"in process, schema checks off    {rates['off']:>9,.0f} msg/s")
+    print(f"in process, schema checks on     {rates['on']:>9,.0f} msg/s  (checked twice, {cost:.2f} us a message)")
+
+
+def best(work: Callable[[], object], seconds: float) -> float:
+    """Calls a second, the best of several rounds."""
+    rates = []
+    for _ in range(ROUNDS):
+        began, count = time.perf_counter(), 0
+        while time.perf_counter() - began < seconds / ROUNDS:
+            for _ in range(1_000):
+                work()
+            count += 1_000
+        rates.append(count / (time.perf_counter() - began))
+    return max(rates)
+
+
+def over_the_broker(url: str, seconds: float) -> None:
+    """Sending until the last is confirmed, into a queue that nobody reads; the rounds of both alternate."""
+    for size, length in SIZES.items():
+        body = {"filler": "x" * (length - len('{"filler":""}'))}
+        for what, confirms, route in (("confirmed", True, COMMAND), ("telemetry", False, TELEMETRY)):
+            ours, theirs = [], []
+            for _ in range(ROUNDS):
+                theirs.append(raw(url, json.dumps(body).encode(), confirms, seconds / ROUNDS))
+                ours.append(lumens(url, body, route, seconds / ROUNDS))
+            ratio = median(mine / other for mine, other in zip(ours, theirs, strict=True))
+            print(
+                f"RabbitMQ, {size}, {what:9}  ours {median(ours):>8,.0f} msg/s, pika {median(theirs):>8,.0f} msg/s,"
+                f" {ratio:.2f} x"
+            )
+
+
+def raw(url: str, body: bytes, confirms: bool, seconds: float) -> float:
+    """Messages a second of pika's BlockingConnection."""
+    connection = pika.BlockingConnection(pika.URLParameters(url))
+    channel = connection.channel()
+    sink(channel)
+    if confirms:
+        channel.confirm_delivery()
+    properties = pika.BasicProperties(content_type="application/json", delivery_mode=2 if confirms else 1)
+    began, count = time.perf_counter(), 0
+    while time.perf_counter() - began < seconds:
+        channel.basic_publish("amq.topic", KEY, body, properties, mandatory=confirms)
+        count += 1
+    connection.process_data_events(0)
+    rate = count / (time.perf_counter() - began)
+    connection.close()
+    return rate
+
+
+def lumens(url: str, body: Any, route: Route, seconds: float) -> float:
+    """Messages a second of ours, the broker's word for the last one included, whether it was asked for or not."""
+    bus: Any = connect(url)
+    bus.carry({KEY: route})
+    connection = pika.BlockingConnection(pika.URLParameters(url))
+    sink(connection.channel())
+    sender = bus._way.publishing
+    began, count = time.perf_counter(), 0
+    while time.perf_counter() - began < seconds:
+        for _ in range(100):
+            bus.publish(KEY, body, ttl=60.0)
+        count += 100
+        while len(sender.outbox) > 2_000:
+            time.sleep(0.001)
+    while sender.outbox or sender._window:
+        time.sleep(0.001)
+    rate = count / (time.perf_counter() - began)
+    bus.close()
+    connection.close()
+    return rate
+
+
+def sink(channel: Any) -> None:
+    """A queue that keeps one message, so that what is measured is the way to it."""
+    queue = channel.queue_declare("", exclusive=True, arguments={"x-max-length": 1}).method.queue
+    channel.queue_bind(queue, "amq.topic", KEY)
+
+
+def round_trip(url: str) -> None:
+    """A command and its answer, one after the other."""
+    for name, ask in (("ours", asking(url)), ("pika", asking_raw(url))):
+        times = []
+        for _ in range(600):
+            began = time.perf_counter()
+            next(ask)
+            times.append(1e3 * (time.perf_counter() - began))
+        cuts = quantiles(times[100:], n=100)
+        print(f"round trip of a command, {name}  p50 {cuts[49]:.2f} ms, p99 {cuts[98]:.2f} ms")
+        ask.close()
+
+
+def asking(url: str) -> Iterator[None]:
+    server, client = connect(url), connect(url)
+    for bus in (server, client):
+        bus.carry({KEY: COMMAND})
+    came = threading.Semaphore(0)
+    answer: Callable[[Bus], Callable[[Any], None]] = lambda bus: lambda m: bus.reply(m, "command finished")  # noqa: E731
+    server.subscribe(KEY, answer(server))
+    client.subscribe(ANSWER, lambda message: came.release())
+    try:
+        while True:
+            client.publish(KEY, {"type": "motion", "method": "rest"}, reply_to=ANSWER)
+            came.acquire()
+            yield
+    finally:
+        client.close()
+        server.close()
+
+
+def asking_raw(url: str) -> Iterator[None]:
+    """Both sides with BlockingConnection, the sender with confirms, as ours."""
+    ready, ending = threading.Event(), threading.Event()
+
+    def serve() -> None:
+        connection = pika.BlockingConnection(pika.URLParameters(url))
+        channel = connection.channel()
+        queue = channel.queue_declare("", exclusive=True).method.queue
+        channel.queue_bind(queue, "amq.topic", KEY)
+
+        def answer(_: Any, method: Any, properties: Any, body: bytes) -> None:
+            channel.basic_publish("", properties.reply_to, b"command finished")
+            channel.basic_ack(method.delivery_tag)
+
+        channel.basic_consume(queue, answer)
+        ready.set()
+        while not ending.is_set():
+            connection.process_data_events(0.1)
+        connection.close()
+
+    server = threading.Thread(target=serve)
+    server.start()
+    ready.wait()
+    connection = pika.BlockingConnection(pika.URLParameters(url))
+    channel = connection.channel()
+    channel.confirm_delivery()
+    mine, came = channel.queue_declare("", exclusive=True).method.queue, []
+    channel.basic_consume(mine, lambda *delivery: came.append(delivery), auto_ack=True)
+    properties = pika.BasicProperties(reply_to=mine, delivery_mode=2)
+    try:
+        while True:
+            channel.basic_publish("amq.topic", KEY, b'{"type":"motion","method":"rest"}', properties, mandatory=True)
+            while not came:
+                connection.process_data_events(1.0)
+            came.clear()
+            yield
+    finally:
+        ending.set()
+        server.join()
+        connection.close()
+
+
+@contextmanager
+def broker(url: str | None) -> Iterator[str]:
+    if url:
+        yield url
+        return
+    from tests.rabbitmq import RabbitMQ
+
+    private = RabbitMQ()
+    private.start()
+    try:
+        yield private.url
+    finally:
+        private.stop()
+
+
+if __name__ == "__main__":
+    main()
