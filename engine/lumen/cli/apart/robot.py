@@ -10,6 +10,7 @@ from lumen.cli.performance import told_count
 from lumen.cli.transcript import Transcript
 from lumen.language.commands import Rest
 from lumen.language.events import Event
+from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.robots.remote import Host
 from lumen.runtime.perception import FaceDetector
@@ -48,7 +49,7 @@ class RobotPart:
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         assert self._host
         assert self._guard
-        if self._faces:
+        if self._faces and not self._presence.find(EYES):
             self._faces.tick(now)
         self._guard.tick(now)
         for event in self._host.tick(now):

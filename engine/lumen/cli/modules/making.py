@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.language.modules import MEMORY, MODULES
+from lumen.language.modules import EYES, MEMORY, MODULES
 from lumen.language.projects import Project
 from lumen.modules.module import Module
 from lumen.ports import Bus
@@ -20,4 +20,9 @@ def make(name: str, project: Project, bus: Bus, tell: Callable[[str], None], fol
         from lumen.modules.memory.memory import FILE
 
         return Memory(project, bus, tell, folder and folder / FILE)
+    if name == EYES:
+        from lumen.modules.eyes import Eyes
+        from lumen.modules.eyes.eyes import FILE as FACES
+
+        return Eyes(project, bus, tell, folder and folder / FACES)
     raise UsageError(f"no module `{name}`: there are {', '.join(MODULES)}")

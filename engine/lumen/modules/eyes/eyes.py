@@ -1,0 +1,163 @@
+"""Looks at the camera's images, and publishes what there is in them."""
+
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from lumen.errors import ModuleError
+from lumen.language.modules import EYES
+from lumen.language.projects import Project
+from lumen.modules.eyes.finding import Box, Finder
+from lumen.modules.eyes.known import DAY, SAMPLES, Known
+from lumen.modules.eyes.pictures import Frame, frame_of
+from lumen.modules.eyes.sources import ROBOT, Source
+from lumen.modules.module import Handler, Module
+from lumen.ports import Bus, Message
+
+FILE = "faces.npz"
+EVERY = 0.1
+"""How often it looks [s]."""
+PEOPLE = 1.0
+"""How often it looks for people [s], which takes longer."""
+AGAIN = 2.0
+"""How often it says whose face it is, while that stays the same [s]."""
+GONE = 1.0
+"""After how long without a face the next one is a new visitor's [s]."""
+KEEP = 30.0
+UNKNOWN, UNRECOGNISED, FAILED = "unknown", "face unrecognized", "error cvException"
+"""What the modules of 2015 said where a face has no name, where there is none to name, and where OpenCV failed."""
+LONGEST = 60
+
+
+class Eyes(Module):
+    """The visual module. A name on `lumen.visual.command` is given to the next faces seen, until it knows them well.
+
+    `file` keeps the faces that have names, None for this process only. Raises ModuleError where there is no OpenCV, its
+    models can't be loaded, or there is no such camera.
+    """
+
+    name = EYES
+
+    def __init__(
+        self,
+        project: Project,
+        bus: Bus,
+        tell: Callable[[str], None],
+        file: Path | None,
+        clock: Callable[[], float] = time.time,
+    ) -> None:
+        super().__init__(project, bus, tell)
+        options = self.settings.options
+        self._clock, self._finder, self._known = clock, Finder(), Known(file, clock)
+        camera = options.get("camera", ROBOT)
+        self._source = None if camera == ROBOT else Source(camera, Path(project.root))
+        self._every, self._keep = float(options.get("every", EVERY)), float(options.get("keep", KEEP)) * DAY
+        self._looked = self._sought = self._seen = self._named = float("-inf")
+        self._learning, self._left = "", 0
+        self._who, self._expired = "", 0.0
+
+    def hears(self) -> Mapping[str, Handler]:
+        heard: dict[str, Handler] = {"visual_command": self._enrol, "fact": self._fact}
+        return heard if self._source else {"image": self._image, **heard}
+
+    def idle(self) -> float | None:
+        if self._clock() - self._expired > 3_600.0:
+            self._expired = self._clock()
+            self._guarded(lambda: self._known.expire(self._clock() - self._keep))
+        if self._source is None:
+            return 3_600.0
+        self._guarded(self._watch)
+        return self._source.period if self._source else 3_600.0
+
+    def end(self) -> None:
+        if self._source:
+            self._source.close()
+
+    def look(self, frame: Frame, now: float) -> None:
+        """Publish what there is in a frame that was taken at `now` [s]."""
+        try:
+            faces = self._finder.faces(frame.grey)
+            if faces:
+                self._face(frame, faces[0], now)
+            if now - self._sought >= PEOPLE:
+                self._sought = now
+                for person in self._finder.people(frame.grey)[:1]:
+                    x, y = self._place(frame, person)
+                    self.publish("human", {"x": round(x), "y": round(y), **_when(frame)})
+        except Exception as error:
+            if type(error).__module__ != "cv2":
+                raise
+            self.publish("recognised", {"name": FAILED, **_when(frame)})
+            raise ModuleError(f"OpenCV failed on an image: {str(error).splitlines()[0][:200]}") from None
+        self.well()
+
+    def _image(self, message: Message) -> None:
+        now = message.body.get("time") if isinstance(message.body, dict) else None
+        now = float(now) if isinstance(now, int | float) else time.monotonic()
+        if 0.0 <= now - self._looked < self._every - 1e-6:
+            return
+        self._looked = now
+        self.look(frame_of(message.body), now)
+
+    def _watch(self) -> None:
+        assert self._source
+        frame = self._source.read()
+        if frame is None:
+            self._source.close()
+            self._source = None
+            raise ModuleError("the video is over: nothing is seen any more")
+        now = time.monotonic()
+        if now - self._looked >= self._every:
+            self._looked = now
+            self.look(frame, now)
+
+    def _face(self, frame: Frame, face: Box, now: float) -> None:
+        x, y = self._place(frame, face)
+        self.publish("face", {"x": round(x), "y": round(y), **_when(frame)})
+        self.publish("face_tracking", {"x": x, "y": y, **_when(frame)})
+        if self._left:
+            self._learn(frame, face)
+        who = self._known.who(frame.grey, face) or UNKNOWN
+        if who != self._who or now - self._seen > GONE or now - self._named >= AGAIN:
+            self._who, self._named = who, now
+            self.publish("recognised", {"name": who, **_when(frame)})
+        self._seen = now
+
+    def _place(self, frame: Frame, box: Box) -> tuple[float, float]:
+        """The middle of a box, in pixels of the robot's camera."""
+        camera, (height, width) = self.project.body.camera, frame.grey.shape
+        x, y = box.centre
+        x, y = x * camera.width / width, y * camera.height / height
+        return min(max(x, 0.0), float(camera.width)), min(max(y, 0.0), float(camera.height))
+
+    def _learn(self, frame: Frame, face: Box) -> None:
+        self._known.enrol(self._learning, frame.grey, face)
+        self._left -= 1
+        if not self._left:
+            self._tell(f"knows {self._learning} by now")
+
+    def _enrol(self, message: Message) -> None:
+        """Whose face the next ones are; a bare name, as in 2015."""
+        name = message.body.strip() if isinstance(message.body, str) else ""
+        if not name or len(name) > LONGEST or not name.isprintable():
+            raise ModuleError(f"a name of up to {LONGEST} characters is expected on {message.key}, and nothing else")
+        self._learning, self._left = name, SAMPLES
+
+    def _fact(self, message: Message) -> None:
+        """Who is forgotten is not recognised either."""
+        match message.body:
+            case {"method": "forget", "name": str(name)} if name.strip():
+                if self._learning.casefold() == name.strip().casefold():
+                    self._learning, self._left = "", 0
+                self._known.forget(name.strip())
+
+    def _guarded(self, work: Callable[[], Any]) -> None:
+        try:
+            work()
+        except ModuleError as error:
+            self.tell(str(error))
+
+
+def _when(frame: Frame) -> dict[str, float]:
+    return {} if frame.time is None else {"time": frame.time}

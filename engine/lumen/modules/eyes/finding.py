@@ -1,0 +1,79 @@
+"""Where faces and people are in a picture, by the models that OpenCV's own package carries."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from lumen.errors import ModuleError
+from lumen.modules.eyes.opencv import INSTALL, opencv
+
+if TYPE_CHECKING:
+    from lumen.modules.eyes.pictures import Grey
+
+CASCADE = "haarcascade_frontalface_alt.xml"
+"""The stump-based Haar cascade of R. Lienhart: of those in the package it puts its box tightest around the face."""
+WIDTH = 320
+"""Pictures are looked at in this width [px]: a face at 2 m is 22 px wide in it, and a look takes 50 ms."""
+SCALE, NEIGHBOURS, LEAST = 1.05, 3, 20
+RIM = 30
+"""Pictures are continued so far over their rim [px]: a face whose forehead is cut off is still a face."""
+CERTAIN = 0.4
+
+
+class Box(NamedTuple):
+    """A rectangle in a picture [px], from its left upper corner."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        return self.x + self.width / 2, self.y + self.height / 2
+
+
+class Finder:
+    """Finds faces and people. Raises ModuleError where the models can't be loaded."""
+
+    def __init__(self, cascade: Path | None = None) -> None:
+        cv2 = self._cv2 = opencv()
+        file = cascade or Path(cv2.data.haarcascades) / CASCADE
+        if not file.is_file():
+            raise ModuleError(f"the face model {file} is missing: {INSTALL}; OpenCV 5 does not carry it any more")
+        self._faces = cv2.CascadeClassifier()
+        try:
+            loaded = self._faces.load(str(file))
+        except cv2.error:
+            loaded = False
+        if not loaded:
+            raise ModuleError(f"the face model {file} can't be loaded: {INSTALL} again")
+        self._people = cv2.HOGDescriptor()
+        self._people.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
+
+    def faces(self, grey: "Grey") -> list[Box]:
+        """The faces, the largest first: whoever is nearest."""
+        small, zoom = self._small(grey)
+        framed = self._cv2.copyMakeBorder(small, RIM, RIM, RIM, RIM, self._cv2.BORDER_REPLICATE)
+        found = self._faces.detectMultiScale(framed, SCALE, NEIGHBOURS, minSize=(LEAST, LEAST))
+        return _sorted([(x - RIM, y - RIM, w, h) for x, y, w, h in found], zoom)
+
+    def people(self, grey: "Grey") -> list[Box]:
+        """Those who can be seen from head to foot, or nearly so; the largest first (Dalal and Triggs, CVPR 2005)."""
+        small, zoom = self._small(grey)
+        if small.shape[0] < 128 or small.shape[1] < 64:
+            return []
+        found, weights = self._people.detectMultiScale(small, winStride=(8, 8), scale=1.05)
+        return _sorted([box for box, weight in zip(found, weights, strict=True) if weight > CERTAIN], zoom)
+
+    def _small(self, grey: "Grey") -> tuple[Any, float]:
+        """The picture at the width that is looked at, and what to multiply by to get back."""
+        height, width = grey.shape
+        if width == WIDTH:
+            return grey, 1.0
+        zoom = width / WIDTH
+        return self._cv2.resize(grey, (WIDTH, max(1, round(height / zoom))), interpolation=self._cv2.INTER_AREA), zoom
+
+
+def _sorted(found: Any, zoom: float) -> list[Box]:
+    boxes = [Box(*(float(number) * zoom for number in box)) for box in found]
+    return sorted(boxes, key=lambda box: -box.width * box.height)

@@ -1,0 +1,127 @@
+"""Whose face it is: local binary patterns of the faces that were shown together with a name."""
+
+import io
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lumen.errors import ModuleError
+from lumen.modules.eyes.finding import Box
+from lumen.modules.eyes.opencv import opencv
+
+if TYPE_CHECKING:
+    from lumen.modules.eyes.pictures import Grey
+
+SIZE = 96
+"""Faces are compared at this width and height [px]."""
+SAMPLES = 8
+"""How many pictures of a face are kept for a name."""
+ALIKE = 70.0
+"""How far (chi-square distance of the patterns' histograms) a face may be from a known one to be it."""
+MOST = 500
+DAY = 86_400.0
+
+
+class Known:
+    """The faces that have names, in `file` or, without one, in this process only. What its owner alone may read.
+
+    It holds pictures of people: `forget` deletes those of a name, `expire` those that were made before a time.
+    Raises ModuleError where the file can't be used.
+    """
+
+    def __init__(self, file: Path | None, clock: Callable[[], float]) -> None:
+        self._cv2, self._file, self._clock = opencv(), file, clock
+        self._faces: list[tuple[str, float, Any]] = []
+        self._model: Any = None
+        if file and file.exists():
+            self._faces = list(_read(file))
+            self._train()
+
+    @property
+    def names(self) -> list[str]:
+        """Everybody who is known."""
+        return sorted({name for name, _, _ in self._faces})
+
+    def enrol(self, name: str, grey: "Grey", face: Box) -> int:
+        """Remember this face under a name; how many pictures of it there are now. Raises ModuleError where it can't."""
+        mine = [i for i, (other, _, _) in enumerate(self._faces) if other == name]
+        if len(mine) >= SAMPLES:
+            del self._faces[mine[0]]
+        if len(self._faces) >= MOST:
+            raise ModuleError(f"{MOST} pictures of faces are known: forget somebody before `{name}` can be learnt")
+        self._faces.append((name, self._clock(), self._cut(grey, face)))
+        self._save()
+        return sum(other == name for other, _, _ in self._faces)
+
+    def who(self, grey: "Grey", face: Box) -> str:
+        """Whose face that is; empty where it is nobody's that is known."""
+        if self._model is None:
+            return ""
+        label, distance = self._model.predict(self._cut(grey, face))
+        return self.names[label] if distance <= ALIKE else ""
+
+    def forget(self, name: str) -> int:
+        """Delete what is kept under a name, whatever its capitals; how many pictures that were."""
+        return self._keep([face for face in self._faces if face[0].casefold() != name.casefold()])
+
+    def expire(self, before: float) -> int:
+        """Delete what was learnt before that time [s since 1970]; how many pictures that were."""
+        return self._keep([face for face in self._faces if face[1] >= before])
+
+    def _keep(self, faces: list[tuple[str, float, Any]]) -> int:
+        gone = len(self._faces) - len(faces)
+        if gone:
+            self._faces = faces
+            self._save()
+        return gone
+
+    def _cut(self, grey: "Grey", face: Box) -> Any:
+        height, width = grey.shape
+        left, top = max(0, round(face.x)), max(0, round(face.y))
+        right, bottom = min(width, round(face.x + face.width)), min(height, round(face.y + face.height))
+        cut = grey[top : max(bottom, top + 1), left : max(right, left + 1)]
+        return self._cv2.equalizeHist(self._cv2.resize(cut, (SIZE, SIZE), interpolation=self._cv2.INTER_AREA))
+
+    def _train(self) -> None:
+        import numpy as np
+
+        self._model = None
+        if self._faces:
+            names = self.names
+            self._model = self._cv2.face.LBPHFaceRecognizer_create()
+            labels = np.array([names.index(name) for name, _, _ in self._faces])
+            self._model.train([face for _, _, face in self._faces], labels)
+
+    def _save(self) -> None:
+        """Compare with these from now on; the file is replaced as a whole."""
+        self._train()
+        if self._file is None:
+            return
+        import numpy as np
+
+        data, draft = io.BytesIO(), self._file.with_suffix(".new")
+        names = np.array([name for name, _, _ in self._faces], dtype=np.str_)
+        times = np.array([time for _, time, _ in self._faces], dtype=np.float64)
+        faces = np.array([face for _, _, face in self._faces], dtype=np.uint8).reshape(-1, SIZE, SIZE)
+        np.savez_compressed(data, names=names, times=times, faces=faces)
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
+                file.write(data.getvalue())
+            os.replace(draft, self._file)
+        except OSError as error:
+            raise ModuleError(f"{self._file} can't be written: {error.strerror}") from None
+
+
+def _read(file: Path) -> Iterable[tuple[str, float, Any]]:
+    import numpy as np
+
+    try:
+        with np.load(file, allow_pickle=False) as data:
+            names, times, faces = data["names"].tolist(), data["times"].tolist(), data["faces"]
+        if faces.shape != (len(names), SIZE, SIZE) or faces.dtype != np.uint8 or len(times) != len(names):
+            raise ValueError
+    except Exception:  # a damaged file raises whatever zip, numpy and the disk do
+        raise ModuleError(f"{file} holds no faces, or is damaged: move it away, and names are learnt anew") from None
+    return zip(map(str, names), map(float, times), faces, strict=True)

@@ -1,0 +1,21 @@
+"""OpenCV, imported late: who has no eyes does not need it."""
+
+from types import ModuleType
+
+from lumen.errors import ModuleError
+
+INSTALL = "pip install 'lumen-robot[eyes]'"
+
+
+def opencv() -> ModuleType:
+    """The module `cv2`. Raises ModuleError where it is missing, or lacks the parts that the eyes use."""
+    try:
+        import cv2
+    except ImportError as error:
+        raise ModuleError(f"the eyes need OpenCV, which can't be imported ({error}): {INSTALL}") from None
+    for part in ("CascadeClassifier", "HOGDescriptor", "face"):
+        if not hasattr(cv2, part):
+            raise ModuleError(f"this OpenCV ({cv2.__version__}) has no `{part}`: {INSTALL}, without another OpenCV")
+    cv2.setNumThreads(1)  # the robot's physics and the behaviour want the other cores
+    module: ModuleType = cv2
+    return module

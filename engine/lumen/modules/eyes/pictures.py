@@ -1,0 +1,59 @@
+"""Frames from message bodies, checked before anything is made of them."""
+
+import base64
+import binascii
+from io import BytesIO
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from lumen.errors import ModuleError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Grey = NDArray[np.uint8]
+    """Shape (height, width)."""
+
+LEAST, MOST = 32, 4096
+"""Between these sizes [px] a picture is one that somebody can be found in."""
+
+
+class Frame(NamedTuple):
+    """A picture in shades of grey, and when it was taken [s, the robot's clock]; None where nobody said."""
+
+    grey: "Grey"
+    time: float | None
+
+
+def frame_of(body: Any) -> Frame:
+    """The frame in the body of an image. Raises ModuleError for one that is none, or of no sensible size."""
+    url = body.get("contentUrl") if isinstance(body, dict) else None
+    if not isinstance(url, str) or not url.startswith("data:image/"):
+        raise ModuleError("an image has no `contentUrl` that begins with `data:image/`: it is not looked at")
+    try:
+        data = base64.b64decode(url.partition(",")[2], validate=True)
+    except (binascii.Error, ValueError):
+        raise ModuleError("the `contentUrl` of an image is no base64: it is not looked at") from None
+    time = body.get("time")
+    return Frame(_grey(data), float(time) if isinstance(time, int | float) else None)
+
+
+def _grey(data: bytes) -> "Grey":
+    import numpy as np
+    from PIL import Image
+
+    try:
+        with Image.open(BytesIO(data)) as picture:
+            check_size(*picture.size)
+            grey: Grey = np.asarray(picture.convert("L"))
+    except ModuleError:
+        raise
+    except Exception as error:  # Pillow raises whatever its decoders do
+        raise ModuleError(f"an image can't be read, {type(error).__name__}: it is not looked at") from None
+    return grey
+
+
+def check_size(width: int, height: int) -> None:
+    """Raises ModuleError where nobody could be found in a picture of that size [px], or it would take too long."""
+    if not (LEAST <= width <= MOST and LEAST <= height <= MOST):
+        raise ModuleError(f"an image is {width} x {height} px, and has to lie between {LEAST} and {MOST} either way")
