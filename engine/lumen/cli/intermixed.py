@@ -1,9 +1,28 @@
-"""Options before, between and after the other words of a command: `export scxml --project here tour`."""
+"""Options before, between and after the other words of a command: `export scxml --project here tour`; and help."""
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from typing import Any
+
+
+class Help(argparse.HelpFormatter):
+    """Python's help, without `shutil` for the width of the terminal: it takes as long as reading ten files."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, width=_columns() - 2)
+
+
+def _columns() -> int:
+    try:
+        return int(os.environ.get("COLUMNS", "")) or 80
+    except ValueError:
+        pass
+    try:
+        return os.get_terminal_size(1).columns or 80
+    except OSError:
+        return 80
 
 
 class Intermixed(argparse.ArgumentParser):

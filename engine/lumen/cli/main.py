@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from io import TextIOWrapper
 
 import lumen
-from lumen.cli.intermixed import Intermixed
+from lumen.cli.intermixed import Help, Intermixed
 from lumen.cli.sweeping import unswept
 from lumen.errors import LumenError, ProjectError
 
@@ -33,8 +33,9 @@ VERBS = {
     "play": "show a motion on the simulated robot",
     "memory": "list who and what the robot remembers, and forget somebody",
     "graph": "draw a behaviour (Mermaid)",
+    "plot": "draw a controller, what it says of some inputs, or a motion",
     "import": "turn a statechart or a motion of another tool into a file of ours",
-    "export": "write a behaviour as SCXML, for XState, or as a diagram",
+    "export": "write a behaviour as SCXML, for XState, or as a diagram; the routes as AsyncAPI",
 }
 MODULES = {"import": "importing", "export": "exporting"}
 """Modules of verbs that are words of Python."""
@@ -48,12 +49,17 @@ def main(argv: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="replace")
     arguments = sys.argv[1:] if argv is None else list(argv)
     parser = argparse.ArgumentParser(
-        prog="lumen", description="Give a humanoid robot its behaviour in YAML.", epilog="lumen VERB --help says more."
+        prog="lumen",
+        description="Give a humanoid robot its behaviour in YAML.",
+        epilog="lumen VERB --help says more.",
+        formatter_class=Help,
     )
     parser.add_argument("--version", action="version", version=f"lumen {lumen.__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True, parser_class=Intermixed, prog="lumen")
     for verb, summary in VERBS.items():
-        command = verbs.add_parser(verb, help=summary, description=summary[0].upper() + summary[1:] + ".")
+        command = verbs.add_parser(
+            verb, help=summary, description=summary[0].upper() + summary[1:] + ".", formatter_class=Help
+        )
         if verb in arguments[:1]:
             with unswept():
                 module = importlib.import_module(f"lumen.cli.{MODULES.get(verb, verb)}")

@@ -25,20 +25,24 @@ class Excess(NamedTuple):
     limit: float
 
 
-def beyond_limits(motion: Motion, body: Body) -> list[Excess]:
-    """Where a joint leaves its limits [rad], coupled ones included: in its keys, or on a Bezier curve between them."""
-    tracks = {track.joint: track for track in Trajectory(motion).tracks}
+def beyond_limits(motion: Motion, body: Body, course: Trajectory | None = None) -> list[Excess]:
+    """Where a joint leaves its limits [rad], coupled ones included: in its keys, or on a Bezier curve between them.
+
+    `course` is `Trajectory(motion)`, for who has it already.
+    """
+    tracks = {track.joint: track for track in (course or Trajectory(motion)).tracks}
     coupled = (excess for limit in body.coupled for excess in _beyond_coupled(motion, limit, tracks))
     return [*_beyond(motion, body, tracks), *coupled]
 
 
-def overspeed(motion: Motion, body: Body) -> list[Excess]:
+def overspeed(motion: Motion, body: Body, course: Trajectory | None = None) -> list[Excess]:
     """Where a joint would move faster than it can [rad/s], begun in the motion's start posture.
 
     One for each key that can't be reached in time; without a start posture the way to the first key is not judged.
+    `course` is `Trajectory(motion)`, for who has it already.
     """
     found = []
-    for track in Trajectory(motion).tracks:
+    for track in (course or Trajectory(motion)).tracks:
         limit = body.joints[track.joint].speed if track.joint in body.joints else inf
         for key, segment in zip(motion.tracks[track.joint], track.segments, strict=True):
             if (speed := segment.peak_speed()) > limit * (1 + TOLERANCE):

@@ -8,7 +8,7 @@ from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, Path, Place
 from lumen.loading.schema import schema_faults
-from lumen.loading.source import Document, Report, merge_conflict, parse
+from lumen.loading.source import MAX_DEPTH, Document, Report, merge_conflict, parse
 
 ENDING = ".schema.json"
 
@@ -26,6 +26,8 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
         data = json.loads(content)
     except (ValueError, RecursionError) as error:
         return None, (_syntax(file, content, error),)
+    if _plainly_sound(data, content):
+        return data, ()
     document, found = parse(file, content.replace(b"\t", b" "))  # JSON may be indented with tabs
     report = Report(document or Document(file, data))
     report.diagnostics += found
@@ -34,6 +36,30 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
     else:
         report("wrong-type", (), "a message schema should be a map of keys and values", hint='as in {"type": "object"}')
     return (None if report.diagnostics else data), tuple(report.diagnostics)
+
+
+def _plainly_sound(data: Any, content: bytes) -> bool:
+    """Whether nothing is to be said of a schema, so that nobody needs its places: they take most of the time."""
+    try:
+        json.loads(content, object_pairs_hook=_each_once)
+        if not isinstance(data, dict) or _depth(data) > MAX_DEPTH:
+            return False
+    except (KeyError, RecursionError):
+        return False
+    return examine(data, Report(Document("", data)))
+
+
+def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """The map of these keys and values; raises KeyError where a key stands twice."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise KeyError
+    return found
+
+
+def _depth(data: Any) -> int:
+    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
+    return 1 + max(map(_depth, inner), default=0)
 
 
 def examine(schema: Any, report: Report, where: Path = ()) -> bool:

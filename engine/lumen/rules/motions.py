@@ -4,6 +4,7 @@ from functools import partial
 from math import ceil
 
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
+from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
 from lumen.loading.draft import Draft
@@ -37,7 +38,8 @@ def check(draft: Draft) -> None:
 
 def _excesses(motion: Motion, body: Body) -> tuple[tuple[Excess, ...], tuple[Excess, ...]]:
     """Where a joint is too fast, and where it goes too far."""
-    return tuple(overspeed(motion, body)), tuple(beyond_limits(motion, body))
+    course = Trajectory(motion)
+    return tuple(overspeed(motion, body, course)), tuple(beyond_limits(motion, body, course))
 
 
 def _too_fast(report: Report, excess: Excess, unit: str, body: Body) -> None:

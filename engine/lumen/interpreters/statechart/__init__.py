@@ -1,19 +1,26 @@
-"""Statecharts with SCXML's meaning: an event and a snapshot become a step, and nothing else happens."""
+"""Statecharts with SCXML's meaning: an event and a snapshot become a step, and nothing else happens.
 
-from lumen.interpreters.statechart.frozen import Timing, freeze, retimed
-from lumen.interpreters.statechart.stepping import due, elapse, initial, step
-from lumen.interpreters.statechart.thawing import thaw
-from lumen.interpreters.statechart.values import (
-    Awaiting,
-    Counters,
-    Fork,
-    Invoked,
-    Position,
-    Snapshot,
-    Step,
-    Timer,
-    Within,
-)
+What runs them is loaded when it is first asked for: lint asks this package about types and names, and runs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lumen.interpreters.statechart.frozen import Timing, freeze, retimed
+    from lumen.interpreters.statechart.stepping import due, elapse, initial, step
+    from lumen.interpreters.statechart.thawing import thaw
+    from lumen.interpreters.statechart.values import (
+        Awaiting,
+        Counters,
+        Fork,
+        Invoked,
+        Position,
+        Snapshot,
+        Step,
+        Timer,
+        Within,
+    )
 
 __all__ = [
     "Awaiting",
@@ -34,3 +41,18 @@ __all__ = [
     "step",
     "thaw",
 ]
+
+_PLACES = {
+    "frozen": ("Timing", "freeze", "retimed"),
+    "stepping": ("due", "elapse", "initial", "step"),
+    "thawing": ("thaw",),
+    "values": ("Awaiting", "Counters", "Fork", "Invoked", "Position", "Snapshot", "Step", "Timer", "Within"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    for module, names in _PLACES.items():
+        if name in names:
+            found = globals()[name] = getattr(import_module(f"{__name__}.{module}"), name)
+            return found
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

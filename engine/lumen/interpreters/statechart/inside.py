@@ -3,15 +3,18 @@
 from collections.abc import Iterable, Iterator
 from itertools import compress
 from operator import not_
+from typing import TYPE_CHECKING
 
-from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.machines import Machine
+
+if TYPE_CHECKING:
+    from lumen.interpreters.statechart.values import Snapshot, Step
 
 INSIDE = "/"
 """Stands between the id of an `invoke` and a state of the behaviour that runs under it."""
 
 
-def active(snapshot: Snapshot) -> frozenset[str]:
+def active(snapshot: "Snapshot") -> frozenset[str]:
     """The names of all active states, those of invoked behaviours included."""
     if not snapshot.invoked:
         return snapshot.configuration
@@ -19,7 +22,7 @@ def active(snapshot: Snapshot) -> frozenset[str]:
     return snapshot.configuration.union(inner)
 
 
-def innermost(machine: Machine, snapshot: Snapshot) -> Iterator[str]:
+def innermost(machine: Machine, snapshot: "Snapshot") -> Iterator[str]:
     """The names of the active states that have none active within, invoked behaviours' after those of their host."""
     for state in machine.states.values():
         if state.name in snapshot.configuration and not any(
@@ -31,14 +34,14 @@ def innermost(machine: Machine, snapshot: Snapshot) -> Iterator[str]:
         yield from (f"{id}{INSIDE}{name}" for name in innermost(other, child.snapshot))
 
 
-def entered(step: Step) -> Iterator[str]:
+def entered(step: "Step") -> Iterator[str]:
     """The names of all states that a step entered, those of invoked behaviours included."""
     yield from step.entered
     for id, inner in step.invoked:
         yield from (f"{id}{INSIDE}{name}" for name in entered(inner))
 
 
-def unfolded(machine: Machine, step: Step, prefix: str = "") -> Iterator[tuple[str, Machine, Step]]:
+def unfolded(machine: Machine, step: "Step", prefix: str = "") -> "Iterator[tuple[str, Machine, Step]]":
     """A step and those of the behaviours invoked in it, each with its machine, and `quiz/` before its states' names.
 
     What an invoked behaviour did is before its host's step where it led to it, else after.
@@ -50,7 +53,7 @@ def unfolded(machine: Machine, step: Step, prefix: str = "") -> Iterator[tuple[s
     yield from _below(machine, compress(step.invoked, map(not_, early)), prefix)
 
 
-def ran(machine: Machine, id: str, step: Step) -> str:
+def ran(machine: Machine, id: str, step: "Step") -> str:
     """The behaviour of which a step is, among those that the machine invokes under that id."""
     behaviors = [invoke.behavior for state in machine.states.values() for invoke in state.invoke if invoke.id == id]
     names = {*step.entered, *step.exited, *step.snapshot.configuration}
@@ -67,7 +70,7 @@ def meant(machine: Machine, name: str) -> Iterator[tuple[Machine, str]]:
     yield machine, name
 
 
-def _below(machine: Machine, steps: Iterable[tuple[str, Step]], prefix: str) -> Iterator[tuple[str, Machine, Step]]:
+def _below(machine: Machine, steps: "Iterable[tuple[str, Step]]", prefix: str) -> "Iterator[tuple[str, Machine, Step]]":
     for id, step in steps:
         yield from unfolded(machine.invoked[ran(machine, id, step)], step, f"{prefix}{id}{INSIDE}")
 
