@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.events import Event
 from lumen.language.motions import Motion
 from lumen.language.routes import Route
@@ -90,7 +90,7 @@ class Aim:
     speed: float = 0.3
 
 
-RobotCommand = Say | Perform | Posture | Walk | Look | Aim | Stop | Rest | Wake
+RobotCommand = Say | Perform | Posture | Walk | Move | Look | Aim | Stop | Rest | Wake
 """What a robot understands."""
 
 
@@ -117,6 +117,40 @@ class Robot(Protocol):
         ...
 
     def close(self) -> None: ...
+
+
+class Sole(NamedTuple):
+    """Where a foot stands in the world [m], and what it bears [N]."""
+
+    x: float
+    y: float
+    load: float
+
+
+class Strain(NamedTuple):
+    """How a body fares at one moment.
+
+    `played` is how far along its motion it is [s], `tilt` how far the torso leans [rad]. `touching` are pairs of its
+    own links that press into each other; `exhausted` the joints whose motors give all they can; `behind` is by how
+    much [rad] joints come late whose motors turn as fast as they can.
+    """
+
+    played: float
+    tilt: float
+    touching: frozenset[tuple[str, str]]
+    soles: Mapping[str, Sole]
+    exhausted: frozenset[str]
+    behind: Mapping[str, float]
+
+
+class Subject(Robot, Protocol):
+    """A simulated robot that can be examined while it moves."""
+
+    def advance(self, dt: float) -> None:
+        """Live `dt` [s]."""
+        ...
+
+    def strain(self) -> Strain: ...
 
 
 class Hall(Protocol):

@@ -3,7 +3,7 @@
 import pytest
 
 from lumen.errors import RobotError
-from lumen.language.commands import Look, Posture, Rest, Say, Stop
+from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Walk
 from lumen.ports import RobotCommand
 from lumen.robots.executor import Executor
 
@@ -125,3 +125,72 @@ def test_a_fall_fails_all() -> None:
         ("error.command.a", {"reason": "the robot fell"}),
         ("error.command.b", {"reason": "the robot fell"}),
     ]
+
+
+class Endless(Fake):
+    """Moves until it is ended."""
+
+    def __init__(self, command: RobotCommand, now: float) -> None:
+        super().__init__(command, now, 0.5)
+        self.until = now + 1.0 if isinstance(command, Walk) else 1e9
+
+
+def walking() -> Executor:
+    def begin(command: RobotCommand, now: float) -> Endless:
+        if command == Move(9.0):
+            raise RobotError("too fast")
+        return Endless(command, now)
+
+    return Executor(begin, lambda c: frozenset(() if isinstance(c, Stop) else {"legs"}))
+
+
+def test_a_move_goes_on_from_another_one_without_a_stop() -> None:
+    ex = walking()
+    ex.start("a", Move(0.1))
+    ex.advance(0.0)
+    ex.start("b", Move(0.2))
+    assert names(ex.advance(1.0)) == ["done.command.a"]
+    assert ex.owner("legs") == "b"
+    assert ex.begun() == ["a", "b"]
+
+
+def test_a_move_that_is_refused_leaves_the_one_before_going() -> None:
+    ex = walking()
+    ex.start("a", Move(0.1))
+    ex.advance(0.0)
+    ex.start("b", Move(9.0))
+    assert names(ex.advance(1.0)) == ["error.command.b"]
+    assert ex.owner("legs") == "a"
+
+
+@pytest.mark.parametrize("command", [Walk(0.1), Posture("Stand")])
+def test_what_wants_the_legs_ends_a_move_for_it_would_wait_for_ever(command: RobotCommand) -> None:
+    ex = walking()
+    ex.start("a", Move(0.1))
+    ex.advance(0.0)
+    ex.start("b", command)
+    assert names(ex.advance(0.4)) == []
+    assert names(ex.advance(0.5)) == ["done.command.a"]
+    assert ex.owner("legs") == "b"
+
+
+def test_no_move_comes_before_what_waits_for_the_legs_already() -> None:
+    ex = walking()
+    ex.start("walk", Walk(0.1))
+    ex.advance(0.0)
+    ex.start("move", Move(0.1))
+    ex.start("stand", Posture("Stand"))
+    assert names(ex.advance(0.5)) == ["cancelled.command.move"]
+    ex.start("again", Move(0.1))
+    ex.advance(1.0)
+    assert ex.owner("legs") == "stand"
+
+
+def test_stop_walk_ends_a_move_whatever_came_between() -> None:
+    ex = walking()
+    ex.start("a", Move(0.1))
+    ex.advance(0.0)
+    ex.start("s", Stop("walk"))
+    ex.start("b", Move(0.1))
+    assert names([*ex.advance(0.5), *ex.advance(0.6)]) == ["cancelled.command.a", "done.command.s"]
+    assert ex.owner("legs") == "b"

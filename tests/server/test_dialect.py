@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.errors import RobotError
-from lumen.language.commands import Language, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Language, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.motions import Motion
 from lumen.ports import Aim, Perform
 from lumen.robots.dialect import command_from
@@ -30,6 +30,8 @@ def order(method: str, /, **parameter: Any) -> dict[str, Any]:
         (order("moveInit"), Posture("StandInit")),
         (order("moveTo", x=0.2, y=0, tetha=0), Walk(0.2, 0.0, 0.0)),
         (order("moveto", x=0.2, theta=1), Walk(0.2, 0.0, 1.0)),
+        (order("move", x=0.1, y=-0.02, tetha=0.3), Move(0.1, -0.02, 0.3)),
+        (order("moveToward", x=0.5, theta=-7), Move(0.065 / 0.45 / 2, 0.0, -0.25 / 0.45)),
         (order("goToPosture", postureName="Stand", speed=0.8), Posture("Stand", 0.8)),
         (order("gotoposture", postureName="crouch"), Posture("Crouch", 0.5)),
         (order("setAngles", jointNames=["HeadYaw", "HeadPitch"], angles=[0.5, -0.1], speed=0.2),

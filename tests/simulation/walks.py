@@ -10,7 +10,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from lumen.interpreters.gait import Pose, middle
+from lumen.interpreters.gait import SIDES, Feet, Pose, Side, middle
 from lumen.language.commands import Walk
 from lumen.language.events import Event
 from lumen.language.robots import Body
@@ -78,14 +78,19 @@ def any_robot(body: Body, seed: int, posture: str = "Stand") -> SimulatedRobot:
     return robot
 
 
-def truth(robot: SimulatedRobot) -> Pose:
-    """Where the robot really stands, between its feet, from where it began."""
-    feet = {}
-    for side in ("L", "R"):
+def feet(robot: SimulatedRobot) -> Feet:
+    """Where both feet really stand, from where the robot began."""
+    found: dict[Side, Pose] = {}
+    for side in SIDES:
         site = robot.world.data.site(f"nao/{side}Sole")
         axes = site.xmat.reshape(3, 3)
-        feet[side] = Pose(site.xpos[0] - START[0], site.xpos[1] - START[1], atan2(axes[1, 0], axes[0, 0]))
-    return middle(feet)
+        found[side] = Pose(site.xpos[0] - START[0], site.xpos[1] - START[1], atan2(axes[1, 0], axes[0, 0]))
+    return found
+
+
+def truth(robot: SimulatedRobot) -> Pose:
+    """Where the robot really stands, between its feet, from where it began."""
+    return middle(feet(robot))
 
 
 @dataclass

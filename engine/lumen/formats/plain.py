@@ -20,7 +20,7 @@ from lumen.language.actions import (
     Value,
     Wait,
 )
-from lumen.language.commands import Language, Look, Play, Posture, Rest, Stop, Track, Wake, Walk
+from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
 
 
 def plain_block(steps: Iterable[Step]) -> list[dict[str, Any]]:
@@ -72,6 +72,8 @@ def plain_action(action: Action) -> dict[str, Any]:
             return {"posture": {"name": name, "speed": speed}}
         case Walk(x, y, theta):
             return {"walk": {"x": x, "y": y, "theta": theta}}
+        case Move(vx, vy, vtheta):
+            return {"walk": {"vx": vx, "vy": vy, "vtheta": vtheta}}
         case Look(yaw, pitch):
             return {"look": {"yaw": yaw, "pitch": pitch}}
         case Track(controller, on):

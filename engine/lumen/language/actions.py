@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Union  # a recursive alias needs it: `|` does not take names in quotes
 
-from lumen.language.commands import Language, Look, Play, Posture, Rest, Stop, Track, Wake, Walk
+from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
 from lumen.language.diagnostics import Path
 
 
@@ -111,7 +111,7 @@ class Parallel:
 
 Action = (
     SayText | PublishBody | Assign | Raise | Send | CancelSend | Wait | LogText | If | Parallel
-    | Play | Posture | Walk | Look | Track | Stop | Rest | Wake | Language
+    | Play | Posture | Walk | Move | Look | Track | Stop | Rest | Wake | Language
 )  # fmt: skip
 
 

@@ -43,6 +43,18 @@ class Walk:
 
 
 @dataclass(frozen=True, slots=True)
+class Move:
+    """Walk on: `vx` forward, `vy` to the left [m/s], `vtheta` to the left [rad/s].
+
+    It ends where something stops it, or where another command wants the legs; another `Move` goes on from it.
+    """
+
+    vx: float = 0.0
+    vy: float = 0.0
+    vtheta: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Look:
     """Turn the head: `yaw` to the left, `pitch` down [rad], as NAO counts them."""
 
@@ -97,7 +109,7 @@ class Log:
     text: str
 
 
-BodyCommand = Say | Play | Posture | Walk | Look | Track | Stop | Rest | Wake | Language
+BodyCommand = Say | Play | Posture | Walk | Move | Look | Track | Stop | Rest | Wake | Language
 """What a robot performs, or the parts of the runtime that move it."""
 
 

@@ -18,7 +18,7 @@ from lumen.language.actions import (
     Template,
     Wait,
 )
-from lumen.language.commands import Language, Look, Play, Posture, Rest, Stop, Track, Wake, Walk
+from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
 from lumen.language.diagnostics import Path
 from lumen.loading.expressions import Expressions
 from lumen.loading.numbers import finite
@@ -99,6 +99,9 @@ class Actions:
                 return Play(body)
             case "posture":
                 return Posture(body) if isinstance(body, str) else Posture(body["name"], body.get("speed", 0.5))
+            case "walk" if body.keys() & {"vx", "vy", "vtheta"}:
+                vx, vy = (body.get(k, 0.0) * self.length for k in ("vx", "vy"))
+                return Move(vx, vy, body.get("vtheta", 0.0) * self.angle)
             case "walk":
                 x, y = (body.get(k, 0.0) * self.length for k in ("x", "y"))
                 return Walk(x, y, body.get("theta", 0.0) * self.angle)

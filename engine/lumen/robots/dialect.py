@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, get_args
 
 from lumen.errors import RobotError
-from lumen.language.commands import Channel, Language, Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Channel, Language, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, RobotCommand
@@ -159,6 +159,14 @@ class _Order:
     def hand(self, opening: float) -> Aim:
         return self.aim({self.joint(self.text("handname")): opening})
 
+    def move_toward(self) -> Move:
+        """NAOqi has the speeds as fractions of the greatest."""
+        from lumen.interpreters.gait import Pace, fastest  # with numpy: only where somebody walks like this
+
+        given = self.number("x", 0.0), self.number("y", 0.0), self.turn()
+        parts = [min(max(part, -1.0), 1.0) * most for part, most in zip(given, fastest(Pace()), strict=True)]
+        return Move(*parts)
+
     def stop(self) -> Stop:
         """`what` is one of walk, play and say, or all."""
         what = self.text("what", "all").lower()
@@ -185,6 +193,8 @@ _METHODS: Mapping[str, Callable[[_Order], RobotCommand | Language]] = {
     "stopmove": lambda order: Stop(),
     "moveinit": lambda order: Posture("StandInit"),
     "moveto": lambda order: Walk(order.number("x", 0.0), order.number("y", 0.0), order.turn()),
+    "move": lambda order: Move(order.number("x", 0.0), order.number("y", 0.0), order.turn()),
+    "movetoward": _Order.move_toward,
     "gotoposture": _Order.posture,
     "setangles": _Order.set_angles,
     "changeangle": _Order.change_angles,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from lumen.errors import RobotError
-from lumen.language.commands import Channel, Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Channel, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.events import Event
 from lumen.ports import Perform, RobotCommand
 
@@ -20,8 +20,8 @@ HEAD, ARMS, LEGS, VOICE, LEDS = PARTS = ("head", "arms", "legs", "voice", "leds"
 REMEMBERED = 1_000
 """Of how many commands that began it is known at most, where nobody asks."""
 
-_RANK = {Stop: 0, Rest: 0, Wake: 1, Posture: 1, Walk: 1, Perform: 2, Say: 2, Look: 3}
-_CHANNELS: dict[Channel, tuple[type, ...]] = {"walk": (Walk,), "play": (Perform,), "say": (Say,)}
+_RANK = {Stop: 0, Rest: 0, Wake: 1, Posture: 1, Walk: 1, Perform: 2, Move: 2, Say: 2, Look: 3}
+_CHANNELS: dict[Channel, tuple[type, ...]] = {"walk": (Walk, Move), "play": (Perform,), "say": (Say,)}
 
 
 class Activity(Protocol):
@@ -43,6 +43,12 @@ class _Task:
     parts: frozenset[str]
     activity: Activity | None = None
     cancelled: bool = False
+    displaced: bool = False
+
+    @property
+    def going(self) -> bool:
+        """Whether it is under way and nobody has ended it."""
+        return self.activity is not None and not self.cancelled
 
     @property
     def rank(self) -> int:
@@ -87,6 +93,7 @@ class Executor:
             self._cancel(ended)
         elif isinstance(command, Rest):
             self._cancel([t for t in self._tasks if not isinstance(t.command, Stop | Rest)])
+        self._displace(task)
         self._tasks.append(task)
         self._tasks.sort(key=lambda t: t.rank)
 
@@ -131,21 +138,40 @@ class Executor:
                 self._end("error", task, {"reason": str(error)})
             else:
                 if finished:
-                    self._end("cancelled" if task.cancelled else "done", task)
+                    self._end("cancelled" if task.cancelled and not task.displaced else "done", task)
 
     def _admit(self, now: float) -> None:
         """Begin what can; a command that waits keeps its parts from those behind it."""
         taken: set[str] = set().union(*(t.parts for t in self._tasks if t.activity))
         for task in self._tasks[:]:
             if task.activity is None:
-                if taken.isdisjoint(task.parts):
+                before = self._before(task)
+                if before or taken.isdisjoint(task.parts):
                     try:
                         task.activity = self._begin(task.command, now)
                     except RobotError as error:
                         self._end("error", task, {"reason": str(error)})
                         continue
                     self._begun.append(task.id)
+                    if before:
+                        self._end("done", before)
                 taken |= task.parts
+
+    def _before(self, task: _Task) -> _Task | None:
+        """The move that this one goes on from, without a stop in between."""
+        moving = isinstance(task.command, Move)
+        return next((t for t in self._tasks if moving and isinstance(t.command, Move) and t.going), None)
+
+    def _displace(self, task: _Task) -> None:
+        """End the moves that would keep this command waiting for ever: they have no end of their own."""
+        if not isinstance(task.command, Move):
+            endless = (t for t in self._tasks if isinstance(t.command, Move) and not t.parts.isdisjoint(task.parts))
+            for move in list(endless):
+                if move.going:
+                    move.displaced = True
+                    self._cancel([move])
+                elif move.activity is None:
+                    self._end("cancelled", move)
 
     def _cancel(self, tasks: Iterable[_Task]) -> None:
         for task in tasks:

@@ -2,7 +2,7 @@
 
 from typing import assert_never
 
-from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, RobotCommand
@@ -20,7 +20,7 @@ def parts(command: RobotCommand, body: Body) -> frozenset[str]:
             return _of_motion(motion, body)
         case Posture() | Rest() | Wake():
             return _BODY
-        case Walk():
+        case Walk() | Move():
             return frozenset((LEGS,))
         case Look():
             return frozenset((HEAD,))

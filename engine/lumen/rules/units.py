@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import pi
 from typing import Any
 
-from lumen.language.commands import Look, Walk
+from lumen.language.commands import Look, Move, Walk
 from lumen.language.diagnostics import Path
 from lumen.language.machines import Machine
 from lumen.language.projects import Stage
@@ -18,12 +18,15 @@ from lumen.rules.walk import sites
 FAR = 20.0
 """No walk at an exhibition is longer [m]."""
 
+ROUNDING = 1.05
+"""How far a speed may lie above the greatest: people round."""
+
 _PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for digits in (2, 3, 4))
 """Parts of a half turn as people write them in radians."""
 
 
 def check(draft: Draft) -> None:
-    """Report angles in radians among degrees, turns of many rounds, and walks that leave the stage by far."""
+    """Report angles in radians among degrees, turns of many rounds, walks that leave the stage by far or run."""
     for name in draft.motions:
         _radians(draft.report("motions", name))
     stage = draft.settings.stage if draft.settings else None
@@ -73,6 +76,8 @@ def _actions(machine: Machine, report: Report, body: Body | None, stage: Stage |
             case Look(yaw, pitch):
                 for key, joint, value in (("yaw", "HeadYaw", yaw), ("pitch", "HeadPitch", pitch)):
                     _look(report, (*where, "look", key), joint, value, angle, body)
+            case Move():
+                _move(report, (*where, "walk"), site.step.action, angle, length)
             case Walk(x, y, theta):
                 if abs(theta) > 2 * pi + 0.01:
                     _turned(report, (*where, "walk", "theta"), theta, angle)
@@ -96,6 +101,26 @@ def _turned(report: Report, path: Path, theta: float, unit: str) -> None:
     message = f"{theta / ANGLES[unit]:g} {unit} is {abs(theta) / (2 * pi):.1f} times around"
     hint = "write `units: {angle: deg}` at the top: this file counts in radians" if unit == "rad" else "turn once"
     find(report, "wrong-unit", path, message, hint)
+
+
+def _move(report: Report, path: Path, move: Move, angle: str, length: str) -> None:
+    from lumen.interpreters.gait import Pace, fastest  # takes 0.1 s, with numpy: only where somebody walks on
+
+    most = fastest(Pace())
+    for key, value, limit, unit, size in (
+        ("vx", move.vx, most.x, length, LENGTHS[length]),
+        ("vy", move.vy, most.y, length, LENGTHS[length]),
+        ("vtheta", move.vtheta, most.theta, angle, ANGLES[angle]),
+    ):
+        if abs(value) > limit * ROUNDING:
+            message = f"the robot does not walk at {value / size:g} {unit}/s: {limit / size:.2g} {unit}/s at most"
+            find(
+                report,
+                "wrong-unit",
+                (*path, key),
+                message,
+                "write a smaller speed: it would only walk as fast as it can",
+            )
 
 
 def _walk(report: Report, path: Path, value: float, unit: str, room: tuple[float, float] | None) -> None:

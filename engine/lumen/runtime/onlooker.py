@@ -8,6 +8,7 @@ from lumen.language.commands import (
     Command,
     Language,
     Look,
+    Move,
     Play,
     Posture,
     Publish,
@@ -27,7 +28,7 @@ from lumen.runtime.trace import KEY, ROUTE
 WAITING = 10_000
 
 _VERBS: Mapping[str, type] = {
-    kind.__name__.lower(): kind for kind in (Say, Play, Posture, Walk, Look, Track, Stop, Rest, Wake, Language)
+    kind.__name__.lower(): kind for kind in (Say, Play, Posture, Walk, Move, Look, Track, Stop, Rest, Wake, Language)
 }
 
 

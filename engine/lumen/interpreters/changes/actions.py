@@ -20,7 +20,7 @@ from lumen.language.actions import (
     Step,
     Wait,
 )
-from lumen.language.commands import Language, Look, Play, Posture, Rest, Stop, Track, Wake, Walk
+from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
 
 T = TypeVar("T")
 
@@ -105,6 +105,8 @@ def told(action: Action) -> str:
             return f"goes to `{name}` at speed {speed:g}"
         case Walk(x, y, theta):
             return f"walks to x {x:g} m, y {y:g} m, theta {theta:.3g} rad"
+        case Move(vx, vy, vtheta):
+            return f"walks on at x {vx:g} m/s, y {vy:g} m/s, theta {vtheta:.3g} rad/s"
         case Look(yaw, pitch):
             return f"looks to yaw {yaw:.3g} rad, pitch {pitch:.3g} rad"
         case Track(controller, on):

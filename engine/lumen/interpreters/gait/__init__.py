@@ -8,6 +8,7 @@ from lumen.interpreters.gait.gait import CentreOfMass, Gait, Tick
 from lumen.interpreters.gait.legs import JOINTS, SIDES, Side, foot_from
 from lumen.interpreters.gait.pace import GENTLE, Pace
 from lumen.interpreters.gait.poses import Pose
+from lumen.interpreters.gait.velocity import Velocity, fastest
 
 __all__ = [
     "GENTLE",
@@ -21,7 +22,9 @@ __all__ = [
     "Side",
     "Step",
     "Tick",
+    "Velocity",
     "corners",
+    "fastest",
     "foot_from",
     "middle",
 ]

@@ -1,7 +1,7 @@
-"""A walk to a place, tick by tick: planned anew from each foot that has landed."""
+"""A walk to a place, or on and on, tick by tick: planned anew from each foot that has landed."""
 
 from collections.abc import Callable, Mapping
-from math import atan2, hypot
+from math import atan2, hypot, inf
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from lumen.interpreters.gait.pace import Pace
 from lumen.interpreters.gait.pendulum import Pendulum
 from lumen.interpreters.gait.planning import Phase, Planner, between
 from lumen.interpreters.gait.poses import Pose, wrap
+from lumen.interpreters.gait.velocity import Velocity, strides
 
 CentreOfMass = Callable[[Mapping[str, float]], NDArray[np.float64]]
 """The centre of mass (3,) [m] in the torso's frame, of the robot with its legs bent like this [rad]."""
@@ -39,16 +40,22 @@ class Tick(NamedTuple):
 class Gait:
     """Steps until the robot stands at `goal`; `feet` and `goal` stand in the same frame, any frame on the ground.
 
+    Where `goal` is a velocity it steps at that speed until stopped, or until `goal` is no speed at all; `goal` may be
+    changed under way, and the next step that is planned obeys.
+
     `angles` begin the walk: what the legs do on these feet before the first step. Then `tick` says every `dt` [s] what
     they do next, and `heading` is the torso's [rad], as planned. It knows where the feet are from the legs' measured
     angles, and from the torso's measured heading whether the bearing foot slipped around.
     """
 
-    def __init__(self, feet: Feet, goal: Pose, com: CentreOfMass, pace: Pace | None = None, dt: float = 0.01) -> None:
-        self.feet, self.goal, self.pace, self.steps = feet, goal, pace or Pace(), 0
+    def __init__(
+        self, feet: Feet, goal: Pose | Velocity, com: CentreOfMass, pace: Pace | None = None, dt: float = 0.01
+    ) -> None:
+        self.goal: Pose | Velocity = goal
+        self.feet, self.pace, self.steps = feet, pace or Pace(), 0
         self._com = com
-        self._side = first_side(goal.seen_from(middle(feet)))
-        self._most = 2 * len(self.coming) + _MORE
+        self._side = first_side(goal.seen_from(middle(feet)) if isinstance(goal, Pose) else Pose(*goal))
+        self._most = 2 * len(self.coming) + _MORE if isinstance(goal, Pose) else inf
         self._stopping = False
         self._north: float | None = None
         self._mass = self._dcm = self._zmp = between(feet, self.pace)
@@ -62,13 +69,18 @@ class Gait:
 
     @property
     def left(self) -> tuple[float, float]:
-        """How far the robot believes to be from its goal [m], [rad]."""
+        """How far the robot believes to be from its goal [m], [rad]; nothing where that is no place."""
+        if isinstance(self.goal, Velocity):
+            return 0.0, 0.0
         way = self.goal.seen_from(middle(self.feet))
         return hypot(way.x, way.y), abs(way.theta)
 
     @property
     def coming(self) -> list[Step]:
-        """The steps that are left, as planned now."""
+        """The steps that are left, as planned now; of a walk that goes on and on, the next one and one that ends it."""
+        if isinstance(self.goal, Velocity):
+            step = strides(self.feet, self.goal, self._side, self.pace, 1)[0]
+            return [step, self._beside(step.pose, other(step.side))]
         return footsteps(self.feet, self.goal, self._side, self.pace)
 
     def tick(self, measured: Mapping[str, float], heading: float) -> Tick | None:
@@ -137,9 +149,12 @@ class Gait:
         return self.feet[bearing].theta - atan2(turned[1, 0], turned[0, 0])
 
     def _arrived(self, feet: Feet) -> bool:
-        way, seen = self.goal.seen_from(middle(feet)), feet["L"].seen_from(feet["R"])
+        seen = feet["L"].seen_from(feet["R"])
         together = (seen.x, seen.y - self.pace.apart, seen.theta)
         side_by_side = all(abs(a) < b for a, b in zip(together, _SIDE_BY_SIDE, strict=True))
+        if isinstance(self.goal, Velocity):
+            return side_by_side and not any(self.goal)
+        way = self.goal.seen_from(middle(feet))
         return hypot(way.x, way.y) < NEAR and abs(way.theta) < STRAIGHT and side_by_side
 
     def _step(self, *, standing: bool) -> Phase:
@@ -152,13 +167,18 @@ class Gait:
         """The next steps; one alone is the last."""
         if self._stopping:
             return [self._closing()]
+        if isinstance(self.goal, Velocity) and any(self.goal):
+            return strides(self.feet, self.goal, self._side, self.pace, _FORESIGHT)
         steps = self.coming[:_FORESIGHT]
         ends = self.steps >= self._most or self._arrived({**self.feet, self._side: steps[0].pose})
         return steps[:1] if ends else steps
 
     def _closing(self) -> Step:
         """The foot that comes next, beside the other one."""
-        return Step(self._side, self.feet[other(self._side)].then(Pose(0.0, sign(self._side) * self.pace.apart)))
+        return self._beside(self.feet[other(self._side)], self._side)
+
+    def _beside(self, bearing: Pose, side: Side) -> Step:
+        return Step(side, bearing.then(Pose(0.0, sign(side) * self.pace.apart)))
 
     def _stand(self, feet: Mapping[Side, Placed]) -> Stance:
         """The joints that bring the centre of mass where the plan wants it."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any, assert_never
 
-from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.ports import Aim, Battery, Joints, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.motions import data_of
 
@@ -20,6 +20,8 @@ def body_of(command: RobotCommand) -> dict[str, Any]:
             return _body("posture", "goToPosture", postureName=name, speed=speed)
         case Walk(x, y, theta):
             return _body("motion", "moveTo", x=x, y=y, tetha=theta)
+        case Move(vx, vy, vtheta):
+            return _body("motion", "move", x=vx, y=vy, tetha=vtheta)
         case Look(yaw, pitch):
             return _body("motion", "look", yaw=yaw, pitch=pitch)
         case Aim(angles, speed):

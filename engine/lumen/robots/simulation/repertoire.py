@@ -18,6 +18,7 @@ from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.passage import Stance, Way, lying
 from lumen.robots.simulation.performance import Performance, Speech
 from lumen.robots.simulation.transition import Transition
+from lumen.robots.simulation.voice import Silence, Voice
 from lumen.robots.simulation.walking import Walker
 from lumen.robots.simulation.world import World
 
@@ -53,6 +54,7 @@ class Repertoire:
         self._way: Way | None = None
         self.playing: Performance | None = None
         self.awake, self.fallen = True, False
+        self.voice: Voice = Silence()
 
     @property
     def upright(self) -> bool:
@@ -72,8 +74,8 @@ class Repertoire:
         if not isinstance(command, Say | Rest | Wake | Posture):
             self._ready()
         match command:
-            case Say(text):
-                return Speech(self._lights, text, now)
+            case Say(text, language):
+                return Speech(self._lights, self.voice, text, language, now)
             case Perform():
                 return self._perform(command, now)
             case Posture(name, speed):
@@ -87,7 +89,9 @@ class Repertoire:
             case Walk() | Move():
                 if not self.upright:
                     raise RobotError(f"the robot is in {self._stance.posture}: send it to Stand first")
-                return self._walker.begin(command, now) if isinstance(command, Walk) else self._walker.move(command, now)
+                return (
+                    self._walker.begin(command, now) if isinstance(command, Walk) else self._walker.move(command, now)
+                )
             case Stop() | Aim():
                 raise RobotError(f"{type(command).__name__} does not last")
             case _:

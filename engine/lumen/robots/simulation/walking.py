@@ -1,4 +1,4 @@
-"""What the robot does while it walks to a place: NAOqi's `moveTo`."""
+"""What the robot does while it walks, to a place or on and on: NAOqi's `moveTo` and `move`."""
 
 from collections.abc import Callable, Mapping
 from math import isfinite
@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotError
-from lumen.interpreters.gait import GENTLE, JOINTS, SIDES, Gait, Pose, middle
-from lumen.language.commands import Walk
+from lumen.interpreters.gait import GENTLE, JOINTS, SIDES, Gait, Pose, Velocity, middle
+from lumen.language.commands import Move, Walk
 from lumen.robots.simulation.anatomy import Anatomy
 from lumen.robots.simulation.balance import Balance
 from lumen.robots.simulation.hazards import Hazards
@@ -59,6 +59,7 @@ class Walker:
         legs = {side + name for side in SIDES for name in JOINTS}
         self._legs = [(name, i) for name, i in motors.index.items() if name in legs]
         self._others = [name for name in motors.names if name not in legs]
+        self._walking: Walking | None = None
 
     def begin(self, command: Walk, now: float) -> "Walking":
         """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""
@@ -67,12 +68,29 @@ class Walker:
             raise RobotError(f"there is no way to ({x}, {y}, {theta})")
         if abs(complex(x, y)) > FARTHEST:
             raise RobotError(f"({x:g}, {y:g}) is too far: a walk goes {FARTHEST:g} m at most")
+        return self._set_out(Pose(x, y, theta), now)
+
+    def move(self, command: Move, now: float) -> "Walking":
+        """The walk at that speed under way; one that goes on already goes on like this.
+
+        Raises RobotError, and changes nothing, for one that must not begin.
+        """
+        velocity = Velocity(command.vx, command.vy, command.vtheta)
+        if not all(map(isfinite, velocity)):
+            raise RobotError(f"there is no walking at ({velocity.x}, {velocity.y}, {velocity.theta})")
+        if self._walking and self._walking.steer(velocity, now):
+            return self._walking
+        return self._set_out(velocity, now)
+
+    def _set_out(self, way: Pose | Velocity, now: float) -> "Walking":
         if reason := self.hazards.danger():
             raise RobotError(f"{reason}: the robot did not set out")
         feet = self.whereabouts.feel(self.measured())
-        gait = Gait(feet, middle(feet).then(Pose(x, y, theta)), self._centre_of_mass, GENTLE if self._hot() else None)
+        goal = way if isinstance(way, Velocity) else middle(feet).then(way)
+        gait = Gait(feet, goal, self._centre_of_mass, GENTLE if self._hot() else None)
         self.whereabouts.check(gait.coming)
-        return Walking(self, gait, now)
+        self._walking = Walking(self, gait, now)
+        return self._walking
 
     def measured(self) -> dict[str, float]:
         """Where the encoders say the legs' joints are [rad]."""
@@ -103,7 +121,15 @@ class Walking:
         self._look = now + LOOK_EVERY
         self._landed = 0
         self._reason = ""
-        self._cancelled = False
+        self._cancelled = self._over = False
+
+    def steer(self, velocity: Velocity, now: float) -> bool:
+        """Go on at that speed; false for a walk that goes to a place, ends, or did not live until now."""
+        alive = self._now == now and not self._cancelled and not self._over
+        goes_on = alive and isinstance(self._gait.goal, Velocity)
+        if goes_on:
+            self._gait.goal = velocity
+        return goes_on
 
     def advance(self, now: float) -> bool:
         self._now = now
@@ -147,13 +173,15 @@ class Walking:
         if self._gait.steps > self._landed and not self._reason:
             self._landed = self._gait.steps
             try:
-                self._walker.whereabouts.check(self._gait.coming, DRIFT)
+                drift = 0.0 if isinstance(self._gait.goal, Velocity) else DRIFT
+                self._walker.whereabouts.check(self._gait.coming, drift)
             except RobotError as error:
                 self._reason = str(error)
         if self._reason:
             self.cancel()
 
     def _end(self) -> bool:
+        self._over = True
         self._walker.whereabouts.land(self._gait.feet)
         if self._reason:
             raise RobotError(f"{self._reason}: the walk was ended")

@@ -1,0 +1,114 @@
+"""Walking on and on, with legs that do exactly what they are told: the plan alone."""
+
+from collections.abc import Mapping
+from math import hypot
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from lumen.interpreters.gait import GENTLE, Gait, Pace, Pose, Velocity, fastest, middle
+from lumen.interpreters.gait.footsteps import NARROWEST, WIDEST
+from lumen.interpreters.gait.legs import other, sign
+from lumen.interpreters.gait.velocity import strides
+from tests.gait.test_gait import JOINTS, LIMIT, START
+
+PACE = Pace()
+STEP = PACE.double + PACE.single
+
+
+def mass(legs: Mapping[str, float]) -> NDArray[np.float64]:
+    return np.array([0.01, 0.0, -0.05])
+
+
+class Legs:
+    """Do what the gait says; no joint turns faster than it can."""
+
+    def __init__(self, gait: Gait) -> None:
+        self.gait, self.angles = gait, dict(gait.angles)
+
+    def tick(self) -> bool:
+        tick = self.gait.tick(self.angles, self.gait.heading)
+        if tick is None:
+            return False
+        for name, angle in tick.angles.items():
+            assert abs(angle - self.angles[name]) <= JOINTS[name].speed * 0.01
+        self.angles = dict(tick.angles)
+        return True
+
+    def walk(self, ticks: int) -> None:
+        """Let it walk for so many ticks of 0.01 s."""
+        assert all(self.tick() for _ in range(ticks))
+
+    def end(self) -> int:
+        """How many ticks it takes to its end."""
+        return next(ticks for ticks in range(LIMIT) if not self.tick())
+
+
+VELOCITIES = [(0.1, 0, 0), (-0.1, 0, 0), (0, 0.05, 0), (0, -0.05, 0), (0, 0, 0.4), (0, 0, -0.4), (0.05, 0.02, 0.1)]
+
+
+@pytest.mark.parametrize("velocity", VELOCITIES, ids=str)
+def test_it_goes_as_fast_as_it_is_told(velocity: tuple[float, float, float]) -> None:
+    """Measured over ten steps from the second on: first the weight has to shift."""
+    gait = Gait(START, Velocity(*velocity), mass)
+    legs = Legs(gait)
+    legs.walk(36 + 4 * 45)
+    start, steps = middle(gait.feet), gait.steps
+    legs.walk(10 * 45)
+    assert gait.steps == steps + 10
+    part, body = Pose(), Pose(*(v * STEP for v in velocity))
+    for _ in range(10):
+        part = part.then(body)
+    assert tuple(middle(gait.feet).seen_from(start)) == pytest.approx(tuple(part), abs=0.02)
+
+
+def test_no_speed_at_all_ends_it_with_the_feet_together() -> None:
+    gait = Gait(START, Velocity(0.1, 0.0, 0.2), mass)
+    legs = Legs(gait)
+    legs.walk(250)
+    gait.goal = Velocity()
+    assert legs.end() < 200
+    assert gait.feet["L"].seen_from(gait.feet["R"]) == pytest.approx((0, 0.1, 0), abs=0.015)
+
+
+def test_from_standing_no_speed_moves_nothing() -> None:
+    gait = Gait(START, Velocity(), mass)
+    assert Legs(gait).end() < 60
+    assert gait.steps == 0
+
+
+@pytest.mark.parametrize("moment", range(1, 320, 24))
+def test_stopped_at_any_moment_it_ends_within_a_second(moment: int) -> None:
+    gait = Gait(START, Velocity(0.1, 0.03, 0.2), mass)
+    legs = Legs(gait)
+    legs.walk(moment)
+    gait.stop()
+    assert legs.end() <= 100
+    assert gait.feet["L"].seen_from(gait.feet["R"]) == pytest.approx((0, 0.1, 0), abs=1e-6)
+
+
+speeds = st.floats(-100, 100)
+
+
+@given(speeds, speeds, speeds, st.sampled_from("LR"), st.sampled_from([PACE, GENTLE]))
+def test_whatever_is_asked_feet_neither_touch_nor_stride_too_far(
+    x: float, y: float, theta: float, first: str, pace: Pace
+) -> None:
+    bearing = START
+    for side, pose in strides(START, Velocity(x, y, theta), first, pace, 8):
+        seen = pose.seen_from(bearing[other(side)])
+        assert NARROWEST - 1e-9 <= sign(side) * seen.y <= WIDEST + 1e-9
+        assert abs(seen.x) <= pace.forward + pace.apart * pace.turn
+        assert abs(seen.theta) <= pace.turn + 1e-9
+        bearing = {**bearing, side: pose}
+
+
+def test_what_is_too_fast_keeps_its_way() -> None:
+    slow = Velocity(10.0, 0.0, -20.0).within(PACE)
+    most = fastest(PACE)
+    assert slow.x / slow.theta == pytest.approx(-0.5)
+    assert hypot(slow.x / most.x, slow.theta / most.theta) == pytest.approx(1.0)
+    assert Velocity(0.01, 0.0, 0.0).within(PACE) == (0.01, 0.0, 0.0)
