@@ -1,0 +1,163 @@
+"""What Lumen Server does while the robot dances: the rate and the worst gap of each sense, and how soon it answers.
+
+    python benchmarks/server.py [--bus amqp://USER:PASSWORD@HOST/] [--robot simulation|recording]
+
+The robot is a process of its own (`lumen run --only robot`), this one a module on the same broker: a private one,
+unless one is named. Gaps are told in periods of the route, once as the robot has them, once as the messages arrive
+here. An image's way is from when it was taken to when it is here, beside the fastest of all. As in the paper's Fig. 10
+and 11; its server executed commands on one thread, so that a dance delayed every later one by its 13 s.
+"""
+
+import argparse
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+
+import lumen
+from lumen.bus import Bus, Message, connect
+from lumen.language.projects import Project
+from lumen.ports import Sense
+
+ROOT = Path(__file__).parents[1]
+LIMIT = 1.5
+"""The worst gap that is well, in periods."""
+
+
+class Ear:
+    """Hears the senses and the reports, each with when it came [s]."""
+
+    def __init__(self, bus: Bus) -> None:
+        self.senses: dict[str, list[tuple[float, float]]] = defaultdict(list)
+        self.reports: dict[tuple[str, str], float] = {}
+        self.changed = threading.Condition()
+        bus.subscribe("avatar.NAO.data.*", self._sense)
+        bus.subscribe("avatar.NAO.event.command", self._report)
+
+    def _sense(self, message: Message) -> None:
+        with self.changed:
+            self.senses[message.key.rpartition(".")[2]].append((time.monotonic(), float(message.body["time"])))
+            self.changed.notify_all()
+
+    def _report(self, message: Message) -> None:
+        with self.changed:
+            self.reports.setdefault((message.body["id"], message.body["state"]), time.monotonic())
+            self.changed.notify_all()
+
+    def wait(self, id: str, state: str, patience: float = 60.0) -> float:
+        """When that command came to that state [s]."""
+        with self.changed:
+            if not self.changed.wait_for(lambda: (id, state) in self.reports, patience):
+                raise SystemExit(f"the robot did not say within {patience:g} s that `{id}` is {state}")
+        return self.reports[id, state]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--bus", metavar="URL")
+    parser.add_argument("--robot", choices=("simulation", "recording"), default="simulation")
+    options = parser.parse_args()
+    project = lumen.load(ROOT)
+    with broker(options.bus) as url, robot(url, options.robot):
+        bus = connect(url)
+        ear = Ear(bus)
+        began, ended, answers = dance(bus, ear)
+        bus.close()
+    print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
+    print(f"robot: {options.robot}; a dance of {ended - began:.1f} s, over RabbitMQ\n")
+    well = table(project, ear, began, ended)
+    print(f"\n{len(answers)} commands during the dance, until the robot has said that it has them:")
+    print(f"  median {1000 * statistics.median(answers):.1f} ms, worst {1000 * max(answers):.1f} ms")
+    return 0 if well else 1
+
+
+def dance(bus: Bus, ear: Ear) -> tuple[float, float, list[float]]:
+    """Let it dance; when that began and ended [s], and how long each other command waited for its answer [s]."""
+    order(bus, "wake", "wakeUp")
+    ear.wait("wake", "finished")
+    order(bus, "dance", "dance")
+    began = ear.wait("dance", "started")
+    answers, number = [], 0
+    while ("dance", "finished") not in ear.reports:
+        number += 1
+        sent = order(bus, f"say{number}", "say", text="Yes")
+        answers.append(ear.wait(f"say{number}", "accepted") - sent)
+        with ear.changed:
+            ear.changed.wait_for(lambda: ("dance", "finished") in ear.reports, 1.0)
+    return began, ear.reports["dance", "finished"], answers
+
+
+def order(bus: Bus, id: str, method: str, **parameter: object) -> float:
+    """Send a command; when [s]."""
+    sent = time.monotonic()
+    bus.publish("avatar.NAO.command", {"id": id, "type": "motion", "method": method, "parameter": parameter})
+    return sent
+
+
+def table(project: Project, ear: Ear, began: float, ended: float) -> bool:
+    """Print what came of each sense between those times; whether every gap was well."""
+    print(f"{'sense':10}{'period':>9}{'messages':>10}{'rate':>10}{'worst gap':>12}{'… on arrival':>14}")
+    well = True
+    for sense in Sense:
+        period = project.routes[sense].every or 0.1
+        heard = [(at, made) for at, made in ear.senses[sense] if began <= at <= ended]
+        if len(heard) < 3:
+            print(f"{sense:10}{1000 * period:6.0f} ms{len(heard):10}   too few to tell")
+            well &= sense is Sense.BATTERY or sense is Sense.IMAGE
+            continue
+        made, came = worst([m for _, m in heard]) / period, worst([at for at, _ in heard]) / period
+        rate = (len(heard) - 1) / (heard[-1][0] - heard[0][0])
+        print(f"{sense:10}{1000 * period:6.0f} ms{len(heard):10}{rate:7.1f} Hz{made:10.2f} p{came:12.2f} p")
+        well &= max(made, came) <= LIMIT
+    images = [at - made for at, made in ear.senses[Sense.IMAGE] if began <= at <= ended]
+    if images:
+        way = [1000 * (late - min(images)) for late in images]
+        print("\nan image's way here, beyond the fastest:", end=" ")
+        print(f"median {statistics.median(way):.0f} ms, worst {max(way):.0f} ms")
+    return well
+
+
+def worst(times: list[float]) -> float:
+    return max(after - before for before, after in pairwise(times))
+
+
+@contextmanager
+def robot(url: str, kind: str) -> Iterator[None]:
+    """The robot in a process of its own, once it is there."""
+    line = [sys.executable, "-m", "lumen", "run", str(ROOT), "--only", "robot", "--robot", kind, "--bus", url]
+    with subprocess.Popen(line, stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True) as process:
+        assert process.stdout
+        print(process.stdout.readline(), end="")
+        try:
+            yield
+        finally:
+            process.terminate()
+
+
+@contextmanager
+def broker(url: str | None) -> Iterator[str]:
+    """The address of the broker that is named, else of a private one."""
+    if url:
+        yield url
+        return
+    sys.path.insert(0, str(ROOT))
+    from tests.rabbitmq import RabbitMQ
+
+    own = RabbitMQ()
+    own.start()
+    try:
+        yield own.url
+    finally:
+        own.stop()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
