@@ -13,6 +13,7 @@ from lumen.runtime.tracking import Following
 
 ROBOTS = ("simulation", "recording", "remote", "none")
 SPEEDS = ("1", "4", "max")
+VOICES = ("none", "espeak")
 
 
 @dataclass(frozen=True)

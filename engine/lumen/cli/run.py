@@ -4,10 +4,11 @@ import argparse
 import os
 import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from lumen.cli.apart.choosing import parts_of
-from lumen.cli.cast import ROBOTS, SPEEDS, cast
+from lumen.cli.cast import ROBOTS, SPEEDS, VOICES, Cast, cast
 from lumen.cli.choosing import home_of, stories_of
 from lumen.cli.performance import Performance
 from lumen.cli.premises import Premises
@@ -38,6 +39,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--for", dest="period", metavar="60s", help="end after so much simulated time")
     add("--language", metavar="LANG", help="which language it speaks first")
     add("--video", metavar="FILE.mp4", type=Path, help="write a film of the run (simulation, needs OpenGL)")
+    add("--voice", choices=VOICES, default="none", help="let espeak-ng say the simulated robot's texts (default: none)")
+    add("--sound", metavar="FILE.wav", type=Path, help="with --voice: write what is said instead of playing it")
     add("--reload", choices=MODES, default="auto", help="take saved files while it runs, or wait for `lumen reload`")
     add("--last-good", action="store_true", help="where the files have errors, start with the last that had none")
     add("--fresh", action="store_true", help="begin anew, even where the last run ended without notice")
@@ -68,10 +71,24 @@ def _run(options: argparse.Namespace, root: Path, premises: Premises, parts: tup
 
         return start(options, project, story, parts, url, premises, period, language)
     video = film_path(options.video, options.robot)
-    performance = Performance(project, cast(options.robot, project, options.speed, story), url, story, premises)
+    chosen = cast(options.robot, project, options.speed, story)
+    silence = _voice(options, chosen, language or project.languages[0])
+    performance = Performance(project, chosen, url, story, premises)
     signal.signal(signal.SIGINT, lambda *_: performance.interrupt())
     signal.signal(signal.SIGTERM, lambda *_: performance.interrupt(2, leave=True))
-    return performance.run(options.speed, period, language, video, mode=options.reload, fresh=options.fresh)
+    try:
+        return performance.run(options.speed, period, language, video, mode=options.reload, fresh=options.fresh)
+    finally:
+        silence()
+
+
+def _voice(options: argparse.Namespace, chosen: Cast, language: str) -> Callable[[], None]:
+    """Give the robot the voice that the flags ask for; what ends it. Raises UsageError or ModuleError."""
+    if options.voice == "none" and not options.sound:
+        return lambda: None
+    from lumen.cli.voice import voiced  # nobody else needs espeak-ng
+
+    return voiced(chosen, options.voice, options.sound, language)
 
 
 def _load(root: Path, premises: Premises, *, last_good: bool) -> Project:

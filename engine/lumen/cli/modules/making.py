@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.language.modules import EYES, MEMORY, MODULES
+from lumen.language.modules import EYES, MEMORY, MODULES, VOICE
 from lumen.language.projects import Project
 from lumen.modules.module import Module
 from lumen.ports import Bus
@@ -25,4 +25,8 @@ def make(name: str, project: Project, bus: Bus, tell: Callable[[str], None], fol
         from lumen.modules.eyes.eyes import FILE as FACES
 
         return Eyes(project, bus, tell, folder and folder / FACES)
+    if name == VOICE:
+        from lumen.modules.voice import Voice
+
+        return Voice(project, bus, tell)
     raise UsageError(f"no module `{name}`: there are {', '.join(MODULES)}")

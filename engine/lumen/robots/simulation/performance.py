@@ -10,12 +10,10 @@ from lumen.robots.cues import Notice, Prompter
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.transition import Transition
+from lumen.robots.simulation.voice import Voice
 
 APPROACH, RECOVERY = 1.2, 0.8
 """How long it takes to the posture that a motion begins in, and back to it from a cancelled one [s]."""
-
-PAUSE, PER_CHARACTER = 0.4, 0.06
-"""How long a text takes to say [s], and each of its characters."""
 
 _NEAR = 0.05
 
@@ -91,20 +89,24 @@ class Performance:
 
 
 class Speech:
-    """Time, as much as a text takes to say; the robot's ears glow meanwhile."""
+    """Saying a text; the robot's ears glow meanwhile."""
 
-    def __init__(self, lights: Lights, text: str, now: float) -> None:
-        self._lights, self._until = lights, now + PAUSE + PER_CHARACTER * len(text)
+    def __init__(self, lights: Lights, voice: Voice, text: str, language: str, now: float) -> None:
+        self._lights, self._voice, self._now = lights, voice, now
+        self._until = now + voice.begin(text, language, now)
         lights.speak(True)
 
     def advance(self, now: float) -> bool:
+        self._now = now
         if now < self._until:
             return False
+        self._voice.end(now)
         self._lights.speak(False)
         return True
 
     def cancel(self) -> None:
         self._until = 0.0
+        self._voice.end(self._now)
 
 
 def _check(motors: Motors, motion: Motion) -> None:

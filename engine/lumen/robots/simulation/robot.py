@@ -28,6 +28,7 @@ from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.repertoire import Repertoire
 from lumen.robots.simulation.sonar import Sonars
 from lumen.robots.simulation.steering import Steering
+from lumen.robots.simulation.voice import Voice
 from lumen.robots.simulation.walking import Walker
 from lumen.robots.simulation.whereabouts import Whereabouts
 from lumen.robots.simulation.world import FALLEN, PERIOD, World
@@ -107,6 +108,10 @@ class SimulatedRobot:
     def awake(self) -> bool:
         """Whether the motors are on."""
         return self._repertoire.awake
+
+    def speak_with(self, voice: Voice) -> None:
+        """Say texts with this voice from now on, as long as it takes."""
+        self._repertoire.voice = voice
 
     def advance(self, dt: float) -> None:
         """Live `dt` [s] of physics, in whole control periods: what is left over is lived next time."""

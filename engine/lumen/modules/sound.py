@@ -1,0 +1,82 @@
+"""Sound as the bodies of 2015 carry it: WAV in base64, one channel of 16 bits."""
+
+import base64
+import binascii
+import io
+import wave
+from pathlib import Path
+from typing import IO, NamedTuple
+
+from lumen.errors import ModuleError
+
+LONGEST = 120.0
+"""How long a sound in a message may be [s]: nobody fills the memory."""
+
+
+class Sound(NamedTuple):
+    """Samples of 16 bits, little-endian, one channel, `rate` of them a second."""
+
+    rate: int
+    samples: bytes
+
+    @property
+    def duration(self) -> float:
+        """How long it takes [s]."""
+        return len(self.samples) / (2 * self.rate)
+
+    def until(self, length: float) -> "Sound":
+        """Its beginning, of this length [s] at most."""
+        return Sound(self.rate, self.samples[: 2 * round(max(length, 0.0) * self.rate)])
+
+    def text(self) -> str:
+        """A WAV in base64."""
+        data = io.BytesIO()
+        _write(data, self)
+        return base64.b64encode(data.getvalue()).decode("ascii")
+
+
+def sound_of(text: object) -> Sound:
+    """The sound in a WAV in base64. Raises ModuleError for what is none, or not of the kind that is understood."""
+    if not isinstance(text, str):
+        raise ModuleError("a sound is a WAV in base64, and a text")
+    try:
+        data = base64.b64decode(text.partition("base64,")[2] or text, validate=True)
+    except (binascii.Error, ValueError):
+        raise ModuleError("a sound is no base64: it is not listened to") from None
+    return wav(data)
+
+
+def wav(data: bytes) -> Sound:
+    """The sound in a WAV file's bytes. Raises ModuleError for what is none, or not of the kind that is understood."""
+    try:
+        with wave.open(io.BytesIO(data)) as file:
+            channels, width, rate = file.getnchannels(), file.getsampwidth(), file.getframerate()
+            kind = f"{channels} channel{'s' * (channels != 1)}, {8 * width} bits, {rate} Hz"
+            if channels != 1 or width != 2 or not 8_000 <= rate <= 48_000:
+                raise ModuleError(f"a sound has {kind}; one channel, 16 bits and 8,000 to 48,000 Hz are understood")
+            samples = file.readframes(round(LONGEST * rate) + 1)
+    except (wave.Error, EOFError, OSError):
+        raise ModuleError("a sound is no WAV, or of a kind that is not understood: it is not listened to") from None
+    found = Sound(rate, samples[: len(samples) // 2 * 2])
+    if not samples:
+        raise ModuleError("a sound is empty: it is not listened to")
+    if found.duration > LONGEST:
+        raise ModuleError(f"a sound is longer than {LONGEST:g} s: it is not listened to")
+    return found
+
+
+def save(file: Path, sound: Sound) -> None:
+    """Write a WAV file. Raises ModuleError where it can't be."""
+    try:
+        with file.open("wb") as opened:
+            _write(opened, sound)
+    except OSError as error:
+        raise ModuleError(f"{file} can't be written: {error.strerror}") from None
+
+
+def _write(where: IO[bytes], sound: Sound) -> None:
+    with wave.open(where, "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(sound.rate)
+        file.writeframes(sound.samples)

@@ -1,0 +1,69 @@
+"""espeak-ng through its C interface (`speak_lib.h`): from a text to samples, without a sound device."""
+
+import ctypes
+import ctypes.util
+import threading
+from functools import cache
+from typing import Any
+
+from lumen.errors import ModuleError
+from lumen.modules.sound import Sound
+
+INSTALL = "pip install 'lumen-robot[voice]', or install the package espeak-ng"
+LONGEST = 1_000
+"""Characters of a text; the rest is not said."""
+
+_SYNCHRONOUS, _DONT_EXIT, _UTF8, _CHARACTERS = 2, 0x8000, 1, 1
+
+_Callback = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctypes.c_int, ctypes.c_void_p)
+
+
+class Espeak:
+    """The library, of which there is one in a process: `espeak()` gives it. Safe from any thread."""
+
+    def __init__(self, library: str, data: str | None) -> None:
+        try:
+            self._library = ctypes.CDLL(library)
+        except OSError as error:
+            raise ModuleError(f"espeak-ng can't be loaded ({error}): {INSTALL}") from None
+        self._lock = threading.Lock()
+        self._parts: list[bytes] = []
+        self._heard = _Callback(self._hear)
+        self.rate = self._library.espeak_Initialize(_SYNCHRONOUS, 0, data and data.encode(), _DONT_EXIT)
+        if self.rate <= 0:
+            raise ModuleError(f"espeak-ng can't read its data in {data or 'its usual folder'}: {INSTALL}")
+        self._library.espeak_SetSynthCallback(self._heard)
+        self._library.espeak_Synth.argtypes = [
+            ctypes.c_char_p, ctypes.c_size_t, ctypes.c_uint, ctypes.c_int, ctypes.c_uint, ctypes.c_uint,
+            ctypes.c_void_p, ctypes.c_void_p,
+        ]  # fmt: skip
+
+    def speak(self, text: str, language: str = "en") -> Sound:
+        """The text in that language. Raises ModuleError for a language that it has no voice for."""
+        said = "".join(sign if sign.isprintable() else " " for sign in text[:LONGEST])
+        data = said.encode("utf-8", "replace") + b"\0"
+        with self._lock:
+            if self._library.espeak_SetVoiceByName((language or "en").lower().encode()):
+                raise ModuleError(f"espeak-ng has no voice for the language `{language}`")
+            self._parts.clear()
+            if self._library.espeak_Synth(data, len(data), 0, _CHARACTERS, 0, _UTF8, None, None):
+                raise ModuleError("espeak-ng could not speak a text")
+            return Sound(self.rate, b"".join(self._parts))
+
+    def _hear(self, samples: Any, count: int, _: Any) -> int:
+        if samples and count > 0:
+            self._parts.append(ctypes.string_at(samples, 2 * count))
+        return 0
+
+
+@cache
+def espeak() -> Espeak:
+    """The library of the wheel `espeakng-loader`, else of this system. Raises ModuleError where there is none."""
+    try:
+        import espeakng_loader
+    except ImportError:
+        found = ctypes.util.find_library("espeak-ng")
+        if found is None:
+            raise ModuleError(f"there is no espeak-ng: {INSTALL}") from None
+        return Espeak(found, None)
+    return Espeak(espeakng_loader.get_library_path(), espeakng_loader.get_data_path())

@@ -1,0 +1,37 @@
+"""The text-to-speech module: texts come in, sounds go out."""
+
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+
+from lumen.errors import ModuleError
+from lumen.language.modules import VOICE
+from lumen.language.projects import Project
+from lumen.modules.module import Handler, Module
+from lumen.modules.voice.espeak import espeak
+from lumen.ports import Bus, Message
+
+
+class Voice(Module):
+    """Answers each text of `lumen.audio.text.stream` with its sound. Raises ModuleError where there is no espeak-ng."""
+
+    name = VOICE
+
+    def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None]) -> None:
+        super().__init__(project, bus, tell)
+        self._espeak = espeak()
+
+    def hears(self) -> Mapping[str, Handler]:
+        return {"text_stream": self._text}
+
+    def _text(self, message: Message) -> None:
+        match message.body:
+            case {"text": str(text), **rest}:
+                pass
+            case _:
+                raise ModuleError(f"a body with a `text` is expected on {message.key}")
+        sound = self._espeak.speak(text, str(rest.get("language") or self.project.languages[0]))
+        date = datetime.now(UTC).isoformat(timespec="seconds")
+        body = {"name": str(rest.get("name", "")), "sound": sound.text(), "date": date}
+        self.publish("text_to_speech", body)
+        self.reply(message, body)
+        self.well()

@@ -1,0 +1,145 @@
+"""Speech as sound: by espeak-ng, on the bus and from the simulated robot."""
+
+import wave
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lumen.cli.cast import Cast
+from lumen.cli.main import main
+from lumen.cli.voice import Speaker, voiced
+from lumen.clocks.simulated import SimulatedClock
+from lumen.errors import ModuleError, UsageError
+from lumen.language.commands import Say
+from lumen.language.projects import Project
+from lumen.modules.sound import Sound, sound_of, wav
+from lumen.modules.voice import Espeak, Voice, espeak
+from lumen.robots.none import NoRobot
+from lumen.robots.simulation import SimulatedRobot
+from tests.modules.conftest import Stand
+
+Make = Callable[..., Stand]
+STREAM, SPOKEN = "lumen.audio.text.stream", "lumen.audio.text.to.speech"
+
+
+def loud(sound: Sound, begin: float, end: float) -> bool:
+    """Whether anything is to be heard between these times [s]."""
+    part = sound.samples[2 * round(begin * sound.rate) : 2 * round(end * sound.rate)]
+    return any(part)
+
+
+def test_says_a_text_and_a_longer_one_for_longer() -> None:
+    short, long = espeak().speak("Good morning!"), espeak().speak("Good morning! Welcome to the exhibition.")
+    assert 0.4 < short.duration < long.duration < 6.0
+    assert loud(short, 0.0, short.duration)
+    assert wav(_file(short)) == short
+
+
+def test_each_language_sounds_different() -> None:
+    text = "1920, 1959, 2015"
+    english, indonesian = espeak().speak(text, "en"), espeak().speak(text, "id")
+    assert abs(english.duration - indonesian.duration) > 0.1
+    with pytest.raises(ModuleError, match="espeak-ng has no voice for the language `xx`"):
+        espeak().speak("Hello", "xx")
+    assert espeak().speak(text, "id").duration == pytest.approx(indonesian.duration, abs=0.01)
+
+
+@pytest.mark.parametrize("text", ["", " ", "\x00\x1b[2J", "[[h@l'oU]] <speak>", "é" * 3_000, "\ud800", "'; rm -rf /"])
+def test_takes_any_text(text: str) -> None:
+    assert espeak().speak(text).duration < 180.0
+
+
+def test_no_espeak_is_one_line() -> None:
+    with pytest.raises(ModuleError, match=r"espeak-ng can't be loaded \(.*\): pip install 'lumen-robot\[voice\]'"):
+        Espeak("libnowhere.so", None)
+
+
+def test_answers_texts_on_the_bus(stand: Make) -> None:
+    here = stand()
+    here.add(Voice(here.project, here.bus, here.told.append))
+    spoken = here.listen(SPOKEN)
+    here.bus.publish(STREAM, {"name": "NAO", "text": "Selamat pagi", "date": "2015-05-20", "language": "id"})
+    (body,) = spoken.wait(1)
+    assert body["name"] == "NAO"
+    length = espeak().speak("Selamat pagi", "id").duration
+    assert sound_of(body["sound"]).duration == pytest.approx(length, abs=0.01)
+
+
+def test_a_language_without_a_voice_is_told_once(stand: Make) -> None:
+    here = stand()
+    here.add(Voice(here.project, here.bus, here.told.append))
+    spoken = here.listen(SPOKEN)
+    for _ in range(3):
+        here.bus.publish(STREAM, {"text": "hello", "language": "xx"})
+    here.bus.publish(STREAM, {"text": "hello"})
+    spoken.wait(1)
+    assert here.told == ["espeak-ng has no voice for the language `xx`"]
+
+
+@pytest.fixture
+def robot(project: Project) -> SimulatedRobot:
+    return SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
+
+
+def test_the_simulated_robot_takes_as_long_as_its_voice(robot: SimulatedRobot, tmp_path: Path) -> None:
+    file = tmp_path / "said.wav"
+    silence = voiced(Cast(robot, SimulatedClock(robot.advance, None), robot), "espeak", file, "en")
+    robot.advance(1.0)
+    robot.start("c1", Say("Good morning!", "en"))
+    robot.advance(4.0)
+    robot.start("c2", Say("A long sentence that nobody hears to its end, because it is cancelled before.", "en"))
+    robot.advance(1.0)
+    robot.cancel("c2")
+    robot.advance(2.0)
+    done, cancelled = (event for event in robot.poll() if ".command." in event.name)
+    length = espeak().speak("Good morning!").duration
+    assert (done.name, cancelled.name) == ("done.command.c1", "cancelled.command.c2")
+    assert done.at == pytest.approx(1.0 + length, abs=0.03)
+    silence()
+    sound = wav(file.read_bytes())
+    assert not loud(sound, 0.0, 0.9)
+    assert loud(sound, 1.0, 1.0 + length)
+    assert not loud(sound, 1.1 + length, 4.9)
+    assert sound.duration == pytest.approx(6.0, abs=0.05)
+
+
+def test_a_language_that_espeak_lacks_is_spoken_in_the_first(tmp_path: Path) -> None:
+    speaker = Speaker("id", tmp_path / "a.wav")
+    length = espeak().speak("Selamat pagi", "id").duration
+    assert speaker.begin("Selamat pagi", "xx", 0.0) == pytest.approx(length, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("flags", "said"),
+    [
+        (["--sound", "a.wav"], "say --voice espeak, too"),
+        (["--voice", "espeak", "--robot", "recording"], "leave out --robot"),
+        (["--voice", "espeak", "--sound", "nowhere/a.wav"], "name a .wav file in a folder that is there"),
+        (["--voice", "espeak", "--sound", "a.mp3"], "name a .wav file"),
+    ],
+)
+def test_flags_that_do_not_go_together(flags: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", *flags, "--for", "0.1s", "--speed", "max"]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_robot_without_a_voice_to_give(tmp_path: Path) -> None:
+    chosen = Cast(NoRobot(), SimulatedClock(lambda _: None, None), None)
+    with pytest.raises(UsageError, match="gives the simulated robot a voice"):
+        voiced(chosen, "espeak", tmp_path / "a.wav", "en")
+
+
+def _file(sound: Sound) -> bytes:
+    import base64
+
+    return base64.b64decode(sound.text())
+
+
+def test_its_files_are_what_every_player_reads(tmp_path: Path) -> None:
+    speaker = Speaker("en", tmp_path / "a.wav")
+    speaker.begin("Good morning!", "en", 0.5)
+    speaker.close()
+    with wave.open(str(tmp_path / "a.wav")) as file:
+        assert (file.getnchannels(), file.getsampwidth(), file.getframerate()) == (1, 2, espeak().rate)
+        assert file.getnframes() / file.getframerate() > 0.9
