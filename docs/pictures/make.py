@@ -1,15 +1,18 @@
 """Makes every picture of the documentation from the shipped project, at honest physics.
 
-    python docs/pictures/make.py [tour] [head] [motions] [walk] [postures]
+    python docs/pictures/make.py [tour] [head] [motions] [walk] [postures] [fuzzy] [loop]
 
 `tour` is the README's picture, mid-dance in the shipped story. `head` is the paper's Fig. 13 and 14: the top camera's
 image when the visitor's face is first seen, and once the head has turned to it; a cross marks the image's centre, a
 ring the face. `motions` is a strip of each motion. `walk` is a strip of `walk: {x: 0.2}`,
-`postures` one of each way down to the floor and up again.
+`postures` one of each way down to the floor and up again. `fuzzy` draws the head controller, one evaluation of it, and
+the paper's erratum against it; `loop` the closed loop, and prints its numbers.
 """
 
 import argparse
+import io
 import math
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -20,6 +23,8 @@ import lumen
 from lumen.cli.cast import Cast
 from lumen.cli.show import Show
 from lumen.clocks.simulated import SimulatedClock
+from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
+from lumen.fuzzy import Controller
 from lumen.language.commands import Posture, Walk
 from lumen.language.projects import Project
 from lumen.ports import Image as Frame
@@ -159,7 +164,31 @@ def perform(robot: SimulatedRobot, command: Posture) -> None:
         robot.advance(0.1)
 
 
-PICTURES = {"tour": tour, "head": head, "motions": motions, "walk": walk, "postures": postures}
+def fuzzy(project: Project) -> None:
+    """The shipped controller, what it says of a face on the left, and the tables as printed beside it."""
+    head = Controller.load(Path(project.root) / "fuzzy/head.yaml")
+    printed = Controller.load(Path(project.root) / "examples/erratum/fuzzy/head.yaml")
+    at = explained_sheet(head, head.explain({"FaceXLoc": 80.0, "FaceYLoc": 120.0}))
+    versus = curves_sheet("Tables 1 and 2", {"as printed": printed, "put right": head})
+    for name, sheet in (("head", controller_sheet(head)), ("head_at", at), ("erratum", versus)):
+        drawn = Image.open(io.BytesIO(draw(sheet, ".png"))).convert("RGB").quantize(32)
+        drawn.save(HERE / f"fuzzy_{name}.png", optimize=True)
+
+
+def loop(project: Project) -> None:
+    script = Path(project.root) / "benchmarks" / "head.py"
+    subprocess.run([sys.executable, script, "--plot", HERE / "head_loop.png"], check=True)
+
+
+PICTURES = {
+    "fuzzy": fuzzy,
+    "loop": loop,
+    "tour": tour,
+    "head": head,
+    "motions": motions,
+    "walk": walk,
+    "postures": postures,
+}
 
 
 def main() -> None:

@@ -1,0 +1,105 @@
+"""How the head follows a face: prints the table of docs/head.md, for a kinematic head and under physics.
+
+    python benchmarks/head.py [--plot FILE.png]
+
+The head begins 15 deg beside the face in yaw and 8 deg in pitch; images are taken every `tick`, known `latency` later.
+Overshoot is a part of the way there, settled is the time after which it stays within 0.5 deg of the face, rest is how
+far beside it stands in the end; each is the worse of yaw and pitch. The walk is somebody who passes 1.5 m ahead at
+0.5 m/s: how far from the middle of the image their face is at most, as a part of half the image (1 is its edge).
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Iterator
+from itertools import product
+from math import degrees
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+sys.path[:0] = [str(ROOT), str(ROOT / "engine")]
+
+from tests.fuzzy import closed_loop, physical_loop  # noqa: E402
+from tests.fuzzy.closed_loop import Run, off_by  # noqa: E402
+from tests.fuzzy.nao import TOP  # noqa: E402
+
+import lumen  # noqa: E402
+from lumen.formats.plots import Axis, Line, Mark, Panel, Sheet, draw  # noqa: E402
+from lumen.interpreters.projection import Vector, centring  # noqa: E402
+from lumen.language.projects import Project  # noqa: E402
+from lumen.language.stories import Visitor  # noqa: E402
+
+LATENCIES, TICKS, OFF = (0.0, 0.1, 0.2), (0.033, 0.1), (15.0, 8.0)
+FACE: Vector = (1.5, 0.2, 0.5)
+DURATION = 4.0
+Loop = Callable[[float, float], tuple[Run, Run]]
+"""By latency and tick: the run to a face that stands, with poses relative to the goal, and the one past a walker."""
+
+
+def kinematic(project: Project) -> Loop:
+    head, goal = project.controllers["head"], centring(FACE, TOP)
+
+    def loop(latency: float, tick: float) -> tuple[Run, Run]:
+        still = closed_loop.run(head, lambda now: FACE, off_by(FACE, *OFF), latency=latency, tick=tick)
+        still.poses[:] = [(t, yaw - goal[0], pitch - goal[1]) for t, yaw, pitch in still.poses]
+        start = centring(_passing(0.0), TOP)
+        return still, closed_loop.run(head, _passing, start, latency=latency, tick=tick)
+
+    return loop
+
+
+def _passing(now: float) -> Vector:
+    return 1.5, -1.0 + 0.5 * now, 0.5
+
+
+def physical(project: Project) -> Loop:
+    def loop(latency: float, tick: float) -> tuple[Run, Run]:
+        still = physical_loop.run(project, lambda now: Visitor(), OFF, latency=latency, tick=tick)
+        walk = physical_loop.run(project, lambda now: Visitor(1.5, -1.0 + 0.5 * now), latency=latency, tick=tick)
+        return still, walk
+
+    return loop
+
+
+def row(still: Run, walk: Run) -> Iterator[str]:
+    yield f"{100 * max(still.overshoot(axis, 0.0) for axis in (0, 1)):.1f} %"
+    yield f"{max(still.settled(axis, 0.0) for axis in (0, 1)):.2f} s"
+    yield f"{degrees(max(abs(still.poses[-1][1 + axis]) for axis in (0, 1))):.2f} deg"
+    yield f"{walk.farthest():.2f}"
+
+
+def sheet(found: dict[tuple[str, float, float], Run]) -> Sheet:
+    """A panel for each loop and axis: how far beside the face the head looks, by time, a line for each latency."""
+    panels = []
+    for (loop, tick), (axis, name) in product((("kinematic", 0.1), ("physics", 0.1)), enumerate(("yaw", "pitch"))):
+        lines = []
+        for style, latency in enumerate(LATENCIES):
+            poses = found[loop, latency, tick].poses
+            points = tuple(degrees(pose[1 + axis]) for pose in poses)
+            lines.append(Line(tuple(pose[0] for pose in poses), points, f"{1000 * latency:.0f} ms late", style))
+        marks = (Mark(0.5, level=True), Mark(-0.5, level=True))
+        y = Axis("beside the face [deg]")
+        panels.append(Panel(f"{name}, {loop}", Axis("time [s]", 0.0, DURATION), y, tuple(lines), marks))
+    return Sheet("The head turns to a face, an image every 100 ms", tuple(panels), 2, "Level lines: 0.5 deg.")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="write the curves there, .png or .svg")
+    options = parser.parse_args()
+    project = lumen.load(ROOT)
+    found: dict[tuple[str, float, float], Run] = {}
+    print("| loop | latency | tick | overshoot | settled | rest | walk |\n| --- | --- | --- | --- | --- | --- | --- |")
+    for (name, loop), latency, tick in product(
+        (("kinematic", kinematic(project)), ("physics", physical(project))), LATENCIES, TICKS
+    ):
+        still, walk = loop(latency, tick)
+        found[name, latency, tick] = still
+        cells = (name, f"{1000 * latency:.0f} ms", f"{1000 * tick:.0f} ms", *row(still, walk))
+        print(f"| {' | '.join(cells)} |", flush=True)
+    if options.plot:
+        options.plot.write_bytes(draw(sheet(found), options.plot.suffix))
+        print(f"wrote {options.plot}")
+
+
+if __name__ == "__main__":
+    main()

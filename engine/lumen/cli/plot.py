@@ -1,0 +1,73 @@
+"""`lumen plot`: a controller or a motion as a picture."""
+
+import argparse
+from pathlib import Path
+
+import lumen
+from lumen.errors import UsageError
+from lumen.formats.plots import ENDINGS, Sheet, controller_sheet, draw, explained_sheet, motion_sheet
+from lumen.fuzzy import Controller
+from lumen.language.diagnostics import did_you_mean
+from lumen.loading.packaged import find_project
+from lumen.motion import Motion
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Draw a fuzzy controller: the memberships of its variables and what its outputs do over its inputs; with --at,"
+        " how its rules fire there and what comes of it. Or a motion: each joint by time, within its limits."
+    )
+    parser.add_argument("file", metavar="FILE", help="fuzzy/NAME.yaml or motions/NAME.yaml")
+    parser.add_argument("--at", metavar="INPUT=VALUE", nargs="+", default=[], help="a value for each input")
+    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="a .png or .svg; default: NAME.png, here")
+
+
+def run(options: argparse.Namespace) -> int:
+    path = _found(options.file)
+    output = options.output or Path(f"{path.stem}.png")
+    if (ending := output.suffix.lower()) not in ENDINGS:
+        raise UsageError(f"can't draw {output}: the name has to end in {' or '.join(ENDINGS)}")
+    if not output.parent.is_dir():
+        raise UsageError(f"can't write {output}: there is no folder {output.parent}")
+    sheet = _motion(path, options.at) if path.absolute().parent.name == "motions" else _controller(path, options.at)
+    content = draw(sheet, ending)
+    try:
+        output.write_bytes(content)
+    except OSError as error:
+        raise UsageError(f"can't write {output}: {(error.strerror or str(error)).lower()}") from None
+    print(f"wrote {output}")
+    return 0
+
+
+def _found(name: str) -> Path:
+    """The file, here or in the project around us."""
+    root = find_project()
+    for path in (Path(name), root / name):
+        if path.is_file():
+            return path
+    there = [
+        str(p.relative_to(root)) for folder in ("fuzzy", "motions") for p in sorted((root / folder).glob("*.yaml"))
+    ]
+    raise UsageError(f"no file {name}: {did_you_mean(name, there, 'there are')}")
+
+
+def _controller(path: Path, at: list[str]) -> Sheet:
+    controller = Controller.load(path)
+    if not at:
+        return controller_sheet(controller)
+    return explained_sheet(controller, controller.explain(dict(map(_given, at))))
+
+
+def _given(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        raise UsageError(f"`--at {text}` is no input with a number: write it like FaceXLoc=80") from None
+
+
+def _motion(path: Path, at: list[str]) -> Sheet:
+    if at:
+        raise UsageError(f"--at is for controllers, and {path} is a motion")
+    home = path.absolute().parent.parent
+    return motion_sheet(Motion.load(path), lumen.load(home if (home / "lumen.yaml").is_file() else None).body)

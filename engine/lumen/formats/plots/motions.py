@@ -1,0 +1,35 @@
+"""A motion as a sheet: for each joint its angle by time, its keys, and the limits that it must keep."""
+
+from math import degrees
+
+from lumen.formats.plots.sheet import Axis, Line, Mark, Panel, Sheet
+from lumen.interpreters.trajectory import Track, Trajectory
+from lumen.language.motions import Motion
+from lumen.language.robots import Body
+
+POINTS = 201
+
+
+def motion_sheet(motion: Motion, body: Body) -> Sheet:
+    """A panel for each joint, in the body's order; angles in degrees, hands from 0 to 1."""
+    tracks = sorted(Trajectory(motion).tracks, key=lambda track: _place(body, track.joint))
+    title = f"Motion {motion.name}, {motion.duration:g} s"
+    panels = tuple(_panel(motion, body, track) for track in tracks)
+    return Sheet(title, panels, min(4, max(1, len(tracks))), "Dots: the keys. Level lines: the joint's limits.")
+
+
+def _panel(motion: Motion, body: Body, track: Track) -> Panel:
+    joint = None if track.joint in body.hands else body.joints.get(track.joint)
+    scale = degrees if joint else float
+    xs = tuple(motion.duration * i / (POINTS - 1) for i in range(POINTS))
+    curve = Line(xs, tuple(scale(track.at(x)) for x in xs))
+    keys = motion.tracks[track.joint]
+    dots = Line(tuple(key.time for key in keys), tuple(scale(key.angle) for key in keys), points=True)
+    limits = (Mark(degrees(joint.minimum), level=True), Mark(degrees(joint.maximum), level=True)) if joint else ()
+    y = Axis("angle [deg]") if joint else Axis("open", -0.05, 1.05)
+    return Panel(track.joint, Axis("time [s]", 0.0, motion.duration), y, (curve, dots), limits)
+
+
+def _place(body: Body, joint: str) -> tuple[int, str]:
+    names = list(body.joints)
+    return (names.index(joint) if joint in names else len(names), joint)
