@@ -5,23 +5,28 @@ BIN := .venv/bin
 STORY ?= visitor
 SPEED ?= 4
 
-.PHONY: help run test soak check packages clean
+.PHONY: help run test soak broker check packages clean
 
 help:
 	@echo "make run      a visitor meets the simulated robot (STORY=visitor, SPEED=1|4|max)"
 	@echo "make test     everything, under 10 minutes"
+	@echo "make broker   a private RabbitMQ on loopback, installed where it is missing"
 	@echo "make check    style, types and floors only"
 	@echo "make soak     the long tests in full"
 
 run: .venv/run
 	@$(BIN)/lumen run --story $(STORY) --speed $(SPEED)
 
-test: packages check .cache/scion .cache/sarif .cache/xstate
+test: packages check .cache/scion .cache/sarif .cache/xstate .cache/asyncapi .cache/node_modules/amqplib
 	@$(BIN)/lumen lint --strict
 	@$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not soak"
 
 soak: packages check
 	@$(BIN)/python -m pytest -m soak -s
+
+broker: .venv/test
+	@echo rabbitmq-server | sh scripts/packages.sh /dev/stdin
+	@$(BIN)/python -m tests.rabbitmq
 
 check: .venv/test
 	@$(BIN)/ruff check .
@@ -40,6 +45,16 @@ packages:
 .cache/xstate: scripts/xstate.sh
 	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
 	@sh scripts/xstate.sh
+	@touch $@
+
+.cache/asyncapi: scripts/asyncapi.sh
+	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
+	@sh scripts/asyncapi.sh
+	@touch $@
+
+.cache/node_modules/amqplib: scripts/amqplib.sh
+	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
+	@sh scripts/amqplib.sh
 	@touch $@
 
 .cache/sarif: scripts/sarif-schema.sh

@@ -1,6 +1,7 @@
 """A private RabbitMQ for the tests: on loopback only, as whoever runs them, gone when they end.
 
-`broker` is one for the whole session; a test that kills its broker makes one of its own with `RabbitMQ()`.
+`broker` is one for the whole session; a test that kills its broker makes one of its own with `RabbitMQ()`. As a program
+(`make broker`) it is one for whoever develops a module, until Ctrl-C.
 """
 
 import atexit
@@ -193,3 +194,25 @@ def _speaks_amqp(port: int) -> bool:
             return connection.recv(4) == b"AMQP"
     except OSError:
         return False
+
+
+def serve() -> None:
+    """Run a broker until Ctrl-C, and say how it is reached."""
+    rabbitmq = RabbitMQ()
+    print("starting RabbitMQ …", flush=True)
+    rabbitmq.start()
+    try:
+        print(
+            f"A private RabbitMQ listens on loopback, until Ctrl-C. Type, in another terminal:\n\n"
+            f"    export LUMEN_BUS={rabbitmq.url}\n    lumen run\n",
+            flush=True,
+        )
+        signal.pause()
+    except KeyboardInterrupt:
+        print("stopping it …", flush=True)
+    finally:
+        rabbitmq.stop()
+
+
+if __name__ == "__main__":
+    serve()

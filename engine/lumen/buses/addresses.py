@@ -128,7 +128,8 @@ def _credentials(file: str) -> Any:
 
 def _causes(error: BaseException) -> Iterator[BaseException]:
     """The error and what pika packed into it, the innermost first."""
-    inner: list[Any] = [*error.args, getattr(error, "exception", None), error.__cause__]
+    packed = [getattr(error, "exception", None), *getattr(error, "exceptions", ())]
+    inner: list[Any] = [*error.args, *packed, error.__cause__]
     for item in inner:
         if isinstance(item, BaseException):
             yield from _causes(item)

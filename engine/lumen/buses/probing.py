@@ -30,14 +30,14 @@ class Probe:
     def __init__(self, url: str) -> None:
         self.address = Address(url)
         try:
-            flow = Flow(self.address.parameters)
-            self.product, self.version = (_text(flow.server.get(name)) for name in ("product", "version"))
-            server = flow.server
-            flow.close()
-            self.address.check_version(server)
             self._connection = pika.BlockingConnection(self.address.parameters)
+            flow = Flow(self.address.parameters)
         except (AMQPError, OSError) as error:
             raise self.address.explain(error) from error
+        self.product, self.version = (_text(flow.server.get(name)) for name in ("product", "version"))
+        server = flow.server
+        flow.close()
+        self.address.check_version(server)
 
     def reading(self, key: str) -> str:
         """Why we may not read what is sent under this key; empty where we may."""

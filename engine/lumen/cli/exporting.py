@@ -11,6 +11,7 @@ from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
+from lumen.formats.asyncapi import write_asyncapi
 from lumen.formats.dot import dot
 from lumen.formats.findings import Placing
 from lumen.formats.fll import write_fll
@@ -35,11 +36,12 @@ WRITERS: Mapping[str, Writer] = {
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Write a behaviour as SCXML, as an XState configuration, or as a diagram for Mermaid or Graphviz; or a fuzzy"
-        " controller in FuzzyLite Language. What the format can't say is listed, with its line; then the exit code is"
-        " 1, and the rest is written all the same."
+        "Write a behaviour as SCXML, as an XState configuration, or as a diagram for Mermaid or Graphviz; a fuzzy"
+        " controller in FuzzyLite Language; or all routes and bodies as an AsyncAPI document. What the format can't say"
+        " is listed, with its line; then the exit code is 1, and the rest is written all the same."
     )
-    parser.add_argument("target", metavar="FORMAT", choices=(*WRITERS, "fll"), help=" | ".join((*WRITERS, "fll")))
+    targets = (*WRITERS, "fll", "asyncapi")
+    parser.add_argument("target", metavar="FORMAT", choices=targets, help=" | ".join(targets))
     which = "of a behaviour (default: the one that runs), or of a controller (default: the only one)"
     parser.add_argument("behavior", nargs="?", metavar="NAME", help=which)
     parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
@@ -50,6 +52,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """0 where everything could be said, 1 where something is left out."""
     project = lumen.load(options.project)
+    if options.target == "asyncapi":
+        write_result(write_asyncapi(project), options.output)
+        return 0
     if options.target == "fll":
         return _written(*_controller(project, options), options)
     name = options.behavior or project.behavior

@@ -1,0 +1,115 @@
+"""A project's routes as an AsyncAPI 3 document: what a module may send, what it may hear, and how each is carried."""
+
+from collections.abc import Iterator
+from typing import Any
+from urllib.parse import urlsplit
+
+import yaml
+
+from lumen.language.projects import Project
+from lumen.language.routes import Carried, Direction, Route
+
+VERSION = "3.0.0"
+BINDING = "0.3.0"
+EXCHANGE = "amq.topic"
+CARRIED = {
+    Carried.TELEMETRY: "Telemetry: the newest wins.",
+    Carried.COMMAND: "A command: done within its time to live, or not at all.",
+    Carried.STOP: "A stop: a command that waits behind nothing.",
+    Carried.JOURNAL: "A journal: nothing of it is lost.",
+}
+
+
+def write_asyncapi(project: Project) -> str:
+    """The document as YAML; `send` and `receive` are what Lumen does, so that a module does the other."""
+    return yaml.safe_dump(document(project), sort_keys=False, allow_unicode=True, width=120)
+
+
+def document(project: Project) -> dict[str, Any]:
+    """The document as plain data."""
+    routes = project.routes.values()
+    return {
+        "asyncapi": VERSION,
+        "info": {
+            "title": project.name,
+            "version": "1.0.0",
+            "description": "Messages of an exhibition: what Lumen sends and receives, from its lumen.yaml.",
+        },
+        "defaultContentType": "application/json",
+        "servers": {"broker": _server(project.bus)},
+        "channels": {route.name: _channel(route, project.robot) for route in routes},
+        "operations": {route.name: _operation(route) for route in routes},
+        "components": {
+            "messages": {route.name: _message(route, project) for route in routes},
+            "schemas": {
+                name: _schema(schema, f"#/components/schemas/{name}")
+                for name, schema in project.messages.items()
+                if any(route.schema == name for route in routes)
+            },
+        },
+    }
+
+
+def _server(url: str) -> dict[str, Any]:
+    """Where the broker is, without who may use it."""
+    parts = urlsplit(url if url.startswith("amqp") else "amqp://localhost:5672/")
+    host = f"{parts.hostname or 'localhost'}:{parts.port or (5671 if parts.scheme == 'amqps' else 5672)}"
+    return {"host": host, "protocol": parts.scheme, "protocolVersion": "0.9.1"}
+
+
+def _channel(route: Route, robot: str) -> dict[str, Any]:
+    channel: dict[str, Any] = {
+        "address": route.key,
+        "messages": {route.name: {"$ref": f"#/components/messages/{route.name}"}},
+        "bindings": {
+            "amqp": {
+                "is": "routingKey",
+                "exchange": {"name": EXCHANGE, "type": "topic", "durable": True, "autoDelete": False, "vhost": "/"},
+                "bindingVersion": BINDING,
+            }
+        },
+    }
+    if "{robot}" in route.key:
+        channel["parameters"] = {"robot": {"description": "The robot's name", "default": robot}}
+    return channel
+
+
+def _operation(route: Route) -> dict[str, Any]:
+    amqp: dict[str, Any] = {"deliveryMode": 2 if route.must_arrive else 1, "mandatory": route.must_arrive}
+    if route.lifetime is not None:
+        amqp["expiration"] = round(1000 * route.lifetime)
+    return {
+        "action": "receive" if route.direction is Direction.IN else "send",
+        "channel": {"$ref": f"#/channels/{route.name}"},
+        "description": " ".join(_carrying(route)),
+        "bindings": {"amqp": {**amqp, "bindingVersion": BINDING}},
+    }
+
+
+def _carrying(route: Route) -> Iterator[str]:
+    yield CARRIED[route.carried]
+    if route.every is not None:
+        yield f"Every {route.every:g} s."
+    if route.keep is not None:
+        yield f"At most {route.keep} wait."
+    if route.event:
+        yield f"Becomes the event `{route.event}`."
+
+
+def _message(route: Route, project: Project) -> dict[str, Any]:
+    schema = project.messages.get(route.schema)
+    title = str(schema.get("title", route.name)) if schema else route.name
+    payload = {"$ref": f"#/components/schemas/{route.schema}"} if schema else {}
+    return {"name": route.name, "title": title, "contentType": "application/json", "payload": payload}
+
+
+def _schema(data: Any, at: str) -> Any:
+    """A message schema at its place in the document: its references lead there, and it names no dialect of its own."""
+    if isinstance(data, list):
+        return [_schema(item, at) for item in data]
+    if not isinstance(data, dict):
+        return data
+    moved = {key: _schema(value, at) for key, value in data.items() if key not in ("$schema", "$id")}
+    if isinstance(reference := moved.get("$ref"), str) and reference.startswith("#"):
+        moved["$ref"] = at + reference[1:]
+    return moved

@@ -1,0 +1,78 @@
+"""The modules in examples/modules/ run as they stand, against a real broker."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from lumen.bus import Bus, connect
+from tests.exhibits import project
+from tests.rabbitmq import RabbitMQ
+from tests.waiting import Collector
+
+pytestmark = pytest.mark.xdist_group("rabbitmq")
+
+ROOT = Path(__file__).parents[2]
+MODULES = ROOT / "examples/modules"
+
+
+@contextmanager
+def running(*command: str, url: str) -> Iterator["subprocess.Popen[str]"]:
+    environment = {**os.environ, "LUMEN_BUS": url}
+    pipe = subprocess.PIPE
+    process = subprocess.Popen(command, env=environment, text=True, stdin=pipe, stdout=pipe, stderr=subprocess.STDOUT)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.fixture
+def bus(broker: RabbitMQ) -> Iterator[Bus]:
+    """An exhibition's own handle, on which bodies are checked."""
+    bus = connect(broker.url, project())
+    yield bus
+    bus.close()
+
+
+def test_the_greeter_greets_once_for_each_who_comes_near(broker: RabbitMQ, bus: Bus) -> None:
+    commands, far, near = Collector(), {"leftSensor": 2.0, "rightSensor": 2.0}, {"leftSensor": 0.5, "rightSensor": 2.0}
+    bus.subscribe("avatar.NAO.command", commands)
+    with running(sys.executable, str(MODULES / "greeter.py"), url=broker.url) as process:
+        assert process.stdout
+        assert process.stdout.readline() == "listening\n"
+        for body in (far, near, near, far, near):
+            bus.publish("avatar.NAO.data.sonar", body)
+        commands.wait(2)
+    assert [c["parameter"]["text"] for c in commands.bodies] == ["Hello there!"] * 2
+    assert all(message.reply_to for message in commands.messages)
+
+
+def test_the_listener_in_javascript_says_and_hears(broker: RabbitMQ, bus: Bus, tmp_path: Path) -> None:
+    assert (ROOT / ".cache/node_modules/amqplib").is_dir(), "fetch it with `make .cache/node_modules/amqplib`"
+    shutil.copy(MODULES / "listener.mjs", tmp_path)
+    (tmp_path / "node_modules").symlink_to(ROOT / ".cache/node_modules")
+    heard = Collector()
+    bus.subscribe("lumen.audio.speech.recognition", heard)
+    with running("node", str(tmp_path / "listener.mjs"), url=broker.url) as process:
+        assert process.stdin
+        assert process.stdout
+        assert process.stdout.readline() == "listening\n"
+        process.stdin.write("what can you do\n")
+        process.stdin.flush()
+        assert heard.wait(1)[0]["result"] == "what can you do"
+        bus.publish("lumen.audio.text.stream", {"name": "Lumen", "text": "I can dance.", "date": "x"})
+        assert process.stdout.readline() == "Lumen: I can dance.\n"
+
+
+@pytest.mark.parametrize("module", sorted(MODULES.glob("*.[mp]*")), ids=lambda path: path.name)
+def test_a_module_is_twenty_lines(module: Path) -> None:
+    code = module.read_text().split('"""')[-1] if module.suffix == ".py" else module.read_text()
+    lines = [line for line in code.splitlines() if line.strip() and not line.startswith("//")]
+    assert len(lines) <= 20

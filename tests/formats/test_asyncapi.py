@@ -1,0 +1,72 @@
+"""What we write as AsyncAPI is right by AsyncAPI's own parser, and says all that the routes do."""
+
+import json
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from jsonschema import Draft202012Validator
+
+from lumen.cli.main import main
+from lumen.formats.asyncapi import write_asyncapi
+from lumen.language.projects import Project
+from tests.exhibits import project
+
+ROOT = Path(__file__).parents[2]
+
+
+def parsed(*projects: Project) -> list[dict[str, Any]]:
+    """What the parser makes of their documents."""
+    assert (ROOT / ".cache/asyncapi").is_dir(), "fetch it with `make .cache/asyncapi`"
+    texts = json.dumps([write_asyncapi(project) for project in projects])
+    script = ROOT / "tests/formats/asyncapi.cjs"
+    done = subprocess.run(["node", script], input=texts, capture_output=True, text=True, timeout=120, check=True)
+    return list(json.loads(done.stdout))
+
+
+def with_face(schema: dict[str, Any]) -> Project:
+    """The shipped project with another schema for faces, and few other routes."""
+    before = project()
+    routes = {name: before.routes[name] for name in ("face", "command")}
+    return replace(before, routes=routes, messages={**before.messages, "face.detection": schema})
+
+
+def test_asyncapis_own_parser_finds_the_shipped_routes_and_nothing_wrong() -> None:
+    """And it finds what is wrong, and follows references in a schema to where it stands in the document."""
+    points = {"$defs": {"point": {"type": "number"}}, "type": "array", "items": {"$ref": "#/$defs/point"}}
+    shipped, pointed, wrong = parsed(project(), with_face(points), with_face({"type": "numbr"}))
+    routes = project().routes
+    assert shipped["errors"] == []
+    assert shipped["channels"] == {name: route.key for name, route in routes.items()}
+    assert shipped["actions"] == {n: "receive" if r.direction == "in" else "send" for n, r in routes.items()}
+    assert pointed["errors"] == []
+    assert pointed["payloads"]["face"][0]["items"]["type"] == "number"
+    assert wrong["errors"]
+
+
+def test_a_body_is_judged_by_the_document_as_by_the_project() -> None:
+    document = yaml.safe_load(write_asyncapi(project()))
+    for name, route in project().routes.items():
+        payload = document["components"]["messages"][name]["payload"]
+        if not route.schema:
+            assert payload == {}
+            continue
+        schema = {"$ref": payload["$ref"], "components": document["components"]}
+        for body in ({}, [], {"x": 1, "y": 2}, {"method": "rest"}, {"x": "left", "y": 1}):
+            assert Draft202012Validator(schema).is_valid(body) == Draft202012Validator(
+                project().messages[route.schema]
+            ).is_valid(body)
+
+
+def test_no_password_gets_into_the_document() -> None:
+    text = write_asyncapi(replace(project(), bus="amqps://lumen:secret@broker.hall/"))
+    assert "secret" not in text
+    assert "broker.hall:5671" in text
+
+
+def test_the_command_writes_it(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert main(["export", "asyncapi", "-o", str(tmp_path / "lumen.yaml"), "--project", str(ROOT)]) == 0
+    assert yaml.safe_load((tmp_path / "lumen.yaml").read_text())["asyncapi"] == "3.0.0"
