@@ -108,7 +108,7 @@ def test_a_robot_that_is_killed_and_started_again(troupe: Troupe, start: Start) 
     start("robot")
     troupe.until(lambda: {"offer", "watching"} <= brain.states)
     troupe.until(lambda: visitor.process.over, 120.0)
-    assert "Ada" in str(brain.brain and brain.brain.show.exhibition.runtime.snapshot.context) or visitor.process.failed
+    assert not visitor.process.failed
 
 
 @pytest.mark.soak

@@ -52,7 +52,7 @@ steps:
   - expect: {state: offer}
   - says: dance
   - expect: {state: dance}
-  - expect: {state: offer, within: 60s}
+  - expect: {state: offer, within: 10min}
   - says: No, that is all
   - expect: {state: goodbye, context: {visitor: Ada}}
   - visitor: leaves

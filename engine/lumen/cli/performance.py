@@ -4,6 +4,7 @@ import math
 import time
 from pathlib import Path
 
+from lumen.cli.apart.claiming import claim, presence_of
 from lumen.cli.cast import Cast
 from lumen.cli.main import STARTED
 from lumen.cli.modules.inside import join
@@ -21,6 +22,7 @@ from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
 from lumen.loading.packaged import shipped_root
 from lumen.robots.broadcast import Count
 from lumen.runtime.home import home_of
+from lumen.runtime.presence import BRAIN, MOTION, ROBOT, Presence
 
 FAREWELL = 5.0
 """How long it goes on after whoever typed has left [s]."""
@@ -60,6 +62,8 @@ class Performance:
         """Perform until the story ends, the period [s] is over, the visitor has left or the operator ends it."""
         show, now = self._show, 0.0
         try:
+            if not self._url.startswith("memory:"):
+                self._claim()
             if video:
                 film(show, video)
             self._settle(mode)
@@ -76,6 +80,24 @@ class Performance:
             show.close()
         self._premises.close(forget=not self._leaving)
         return self._summary(now, took, video)
+
+    def _claim(self) -> None:
+        """Be the robot and its brain on that broker. Raises UsageError where somebody else is."""
+        show = self._show
+        presence = presence_of(show.exhibition.project, show.bus, (ROBOT, BRAIN, MOTION), self._said)
+        show.closing.insert(0, presence.close)
+        claim(presence)
+        show.exhibition.parts.append(lambda now: self._meet(presence))
+
+    def _said(self) -> dict[str, str]:
+        """What it says of itself to the others on the broker."""
+        return {"bundle": self._show.exhibition.project.hash}
+
+    def _meet(self, presence: Presence) -> None:
+        """Say that we are here; who has just come is told where the behaviour stands."""
+        presence.tick()
+        if presence.came:
+            self._show.trace.standing(self._show.exhibition.runtime.snapshot)
 
     def _settle(self, mode: str) -> None:
         """Be found by other terminals, and take saved files."""

@@ -5,23 +5,18 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
 from lumen.buses.validated import ValidatedBus
+from lumen.cli.apart.claiming import CLAIM, refuse
 from lumen.cli.apart.part import Part
 from lumen.cli.main import STARTED
 from lumen.cli.performance import clock_time
 from lumen.cli.settled import settled
 from lumen.errors import UsageError
-from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.ports import Clock
 from lumen.robots.ways import COMMAND, key_of
 from lumen.runtime.exhibition import TICK
-from lumen.runtime.presence import BRAIN, MOTION, ROBOT, Presence, told
+from lumen.runtime.presence import ROBOT, Presence, told
 from lumen.runtime.trace import KEY
-
-CLAIM = 0.8
-"""How long a process asks whether somebody is already what it wants to be [s]."""
-ALONE = (ROBOT, BRAIN, MOTION, *MODULES)
-"""Of these there is one for each robot; visitors may be many."""
 
 
 class Process:
@@ -117,12 +112,7 @@ class Process:
 
     def _claim(self) -> None:
         """Be what we want to be, unless another process is. Raises UsageError there."""
-        for part in ALONE:
-            if part in self._presence.parts and (rival := self._presence.rival(part)):
-                raise UsageError(
-                    f"{told(rival)} is the {part} of {self._project.robot} on this bus already:"
-                    " end it first, or give this project's robot another name"
-                )
+        refuse(self._presence)
         if time.monotonic() - self._asked < CLAIM:
             return
         self._presence.settle()

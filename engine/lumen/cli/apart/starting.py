@@ -2,7 +2,6 @@
 
 import argparse
 import signal
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from lumen.bus import connect
 from lumen.buses.validated import ValidatedBus, validated
 from lumen.cli.apart.brain import BrainPart
 from lumen.cli.apart.bundles import Bundles
+from lumen.cli.apart.claiming import presence_of
 from lumen.cli.apart.module import ModulePart
 from lumen.cli.apart.motion import MotionPart
 from lumen.cli.apart.part import Part
@@ -27,7 +27,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.runtime.home import home_of
-from lumen.runtime.presence import BRAIN, KEY, MOTION, ROBOT, ROUTE, VISITOR, Presence
+from lumen.runtime.presence import BRAIN, MOTION, ROBOT, VISITOR
 
 
 def start(
@@ -47,6 +47,10 @@ def start(
     clock: Clock = chosen.clock if chosen else RealClock(speed=speed)
     bus = validated(connect(url), project)
     process, brain = assembled(options, project, story, parts, (bus, url), premises, language, clock, chosen)
+    if chosen and (options.voice != "none" or options.sound):
+        from lumen.cli.voice import voiced  # nobody else needs espeak-ng
+
+        process.closing.append(voiced(chosen, options.voice, options.sound, language or project.languages[0]))
     signal.signal(signal.SIGINT, lambda *_: process.interrupt())
     signal.signal(signal.SIGTERM, lambda *_: process.interrupt(2, leave=True))
     code = process.run(period)
@@ -78,9 +82,7 @@ def assembled(
         follows = robot.follows if robot else ""
         return {"bundle": bundle.hash, "speed": float(options.speed), "follows": follows}
 
-    row = project.routes.get(ROUTE)
-    key = row.key_for(project.robot) if row else KEY
-    presence = Presence(bus, project.robot, names, key=key, clock=time.monotonic, more=said)
+    presence = presence_of(project, bus, tuple(names), said)
     transcript = Transcript(clock.now, lambda: (brain.project if brain else running[0]).machine)
     if chosen:
         parts.append(robot := RobotPart(project, bus, chosen, presence, transcript))

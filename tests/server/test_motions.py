@@ -1,0 +1,66 @@
+"""Motions as data: what is sent is what is played, and nothing else is played."""
+
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.errors import RobotError
+from lumen.language.projects import Project
+from lumen.robots.motions import LONGEST, data_of, motion_from
+from tests.tour.names import ROOT
+
+
+@pytest.fixture(scope="module")
+def project() -> Project:
+    return lumen.load(ROOT)
+
+
+def test_what_arrives_is_the_motion_that_was_sent(project: Project) -> None:
+    for motion in project.motions.values():
+        found = motion_from(data_of(motion), project.body)
+        assert (found.tracks, found.duration, found.start, found.end) == (
+            motion.tracks,
+            motion.duration,
+            motion.start,
+            motion.end,
+        )
+        assert [(c.time, c.kind, c.value) for c in found.cues] == [(c.time, c.kind, c.value) for c in motion.cues]
+
+
+GOOD: dict[str, Any] = {"name": "nod", "duration": 1.0, "tracks": {"HeadPitch": [[0.5, 0.1], [1.0, 0.0]]}}
+
+
+def test_a_key_needs_no_more_than_time_and_angle(project: Project) -> None:
+    assert [key.time for key in motion_from(GOOD, project.body).tracks["HeadPitch"]] == [0.5, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"tracks": {"Tail": [[1.0, 0.0]]}}, "no joint `Tail`"),
+        ({"tracks": {"HeadPitch": [[1.0, 9.0]]}}, "`HeadPitch` reaches from"),
+        ({"tracks": {"HeadPitch": [[1.0, "up"]]}}, "has to be a number"),
+        ({"tracks": {"HeadPitch": [[1.0, float("nan")]]}}, "has to be a number"),
+        ({"tracks": {"HeadPitch": [[0.0, 0.1]]}}, "times above 0 that increase"),
+        ({"tracks": {"HeadPitch": [[1.0, 0.1], [1.0, 0.2]]}}, "times above 0 that increase"),
+        ({"tracks": {"HeadPitch": []}}, "times above 0 that increase"),
+        ({"tracks": {"HeadPitch": [[1.0, 0.1, "magic"]]}}, "can't be moved by `magic`"),
+        ({"tracks": {"HeadPitch": [[1.0, 0.1, "linear", 1.0]]}}, "a key of `HeadPitch` is a list"),
+        ({"tracks": {"HeadPitch": [[i + 1.0, 0.0] for i in range(20_001)]}}, "more than 20,000"),
+        ({"tracks": []}, "needs a `name`"),
+        ({"duration": LONGEST + 1}, "may take from 0 to 600 s"),
+        ({"duration": None}, "has to be a number"),
+        ({"start": "Handstand"}, "no posture `Handstand`"),
+        ({"cues": [[1.0, "leds"]]}, "a cue of `nod`"),
+        ({"origin": 3}, "the `origin` of `nod`"),
+    ],
+)
+def test_what_is_no_motion_of_this_body_is_refused(project: Project, change: dict[str, Any], words: str) -> None:
+    with pytest.raises(RobotError, match=words.replace("(", r"\(")):
+        motion_from({**GOOD, **change}, project.body)
+
+
+def test_what_is_no_object_is_refused(project: Project) -> None:
+    with pytest.raises(RobotError, match="has to be an object"):
+        motion_from("dance", project.body)
