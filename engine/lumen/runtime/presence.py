@@ -100,8 +100,10 @@ class Presence:
 
     def rival(self, part: str) -> Peer | None:
         """Another process that is the same part, and was there before, or asks at the same time and is the first."""
+        if self.settled:
+            return None
         for peer in self.peers():
-            earlier = peer.state == HERE or (peer.state == ASKS and peer.session < self.session)
+            earlier = peer.state == HERE or peer.session < self.session
             if part in peer.parts and earlier:
                 return peer
         return None
