@@ -49,13 +49,22 @@ class Ultrasound:
 
 
 @dataclass(frozen=True, slots=True)
+class Link:
+    """A link's mass [kg], centre of mass [m], inertia about it (xx, yy, zz, xy, xz, yz) [kg m^2], in the joint's axes."""
+
+    mass: float
+    centre: tuple[float, ...]
+    inertia: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Body:
     """A robot model: `models/NAME.yaml` beside its MJCF.
 
     `joints` keeps the robot's own order of names. `parts` maps head, arms, legs to joint names. `postures` maps a
     posture to angles [rad] of every joint. `shared` maps a joint to the one whose motor moves it too; `hands` are the
     joints that open (0..1) rather than turn. `passages` are the motions from one posture (`start`) to another (`end`)
-    where a straight way would fall.
+    where a straight way would fall. `links` are those that differ from the MJCF.
     """
 
     name: str
@@ -70,3 +79,4 @@ class Body:
     hands: tuple[str, ...] = ()
     sonar: Ultrasound | None = None
     passages: tuple[Motion, ...] = ()
+    links: Mapping[str, Link] = field(default_factory=dict)

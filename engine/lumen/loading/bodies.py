@@ -1,12 +1,13 @@
 """The description of a robot's body, `models/NAME.yaml`, from its plain data to a `Body`."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 from math import inf, isfinite
 from typing import Any
 
 from lumen.language.diagnostics import Path, did_you_mean
-from lumen.language.robots import Body, Camera, CoupledLimit, Joint, Ultrasound
+from lumen.language.robots import Body, Camera, CoupledLimit, Joint, Link, Ultrasound
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES, LENGTHS
 
@@ -18,10 +19,27 @@ SLACK = 2e-3
 
 
 def build_body(data: Any, report: Report, *, name: str) -> Body | None:
-    """The body that the data of `models/NAME.yaml` describes, None where it has no joints or no camera."""
+    """The body that the data of `models/NAME.yaml` describes, None where it has no joints or no camera.
+
+    One that is like another waits for that: `build_likes`.
+    """
     if not isinstance(data, Mapping) or not data.get("joints") or "camera" not in data:
         return None
     return _Builder(data, report).body(name)
+
+
+def build_likes(bodies: Mapping[str, Body], sources: Mapping[str, tuple[Any, Report]]) -> dict[str, Body]:
+    """All these bodies, and those that are like one of them; `sources` are the data and report of each file."""
+    found = dict(bodies)
+    for name, (data, report) in sources.items():
+        if not isinstance(data, Mapping) or "like" not in data:
+            continue
+        if data["like"] in bodies:
+            found[name] = _Builder({"joints": {}, **data}, report).like(bodies[data["like"]], name)
+        elif data["like"] not in sources or "like" in (sources[data["like"]][0] or ()):
+            hint = did_you_mean(data["like"], bodies, "there are")
+            report("unknown-model", ("like",), f"there is no model `{data['like']}` to be like", hint=hint)
+    return found
 
 
 class _Builder:
@@ -49,7 +67,22 @@ class _Builder:
             shared=self.shared(),
             hands=self.hands,
             sonar=self.sonar(data.get("sonar")),
+            links={n: self.link(spec) for n, spec in (data.get("links") or {}).items()},
         )
+
+    def like(self, other: Body, name: str) -> Body:
+        """That body, with what stands in this file."""
+        data = self.data
+        return replace(
+            other,
+            name=data.get("name", name),
+            camera=self.camera(data["camera"]) if "camera" in data else other.camera,
+            sonar=self.sonar(data["sonar"]) if "sonar" in data else other.sonar,
+            links={**other.links, **{n: self.link(spec) for n, spec in (data.get("links") or {}).items()}},
+        )
+
+    def link(self, spec: Mapping[str, Any]) -> Link:
+        return Link(spec["mass"], tuple(c * self.length for c in spec["centre"]), tuple(spec["inertia"]))
 
     def unit(self, name: str) -> float:
         """What one of the file's units of this joint is in [rad]; the opening of a hand stays as it is."""
@@ -140,7 +173,7 @@ class _Builder:
         if not (isfinite(angle) and joint.minimum - SLACK <= angle <= joint.maximum + SLACK):
             message = f"`{name}` can't stand at {value}"
             hint = f"it moves between {joint.minimum / unit:.6g} and {joint.maximum / unit:.6g}"
-            self.report("angle-out-of-range", path, message, hint=hint)
+            self.report("angle-out-of-range", path, message, hint=hint, root=f"the range of `{name}` in models/")
         return min(max(angle, joint.minimum), joint.maximum)
 
     def camera(self, spec: Mapping[str, Any]) -> Camera:

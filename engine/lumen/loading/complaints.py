@@ -41,7 +41,7 @@ def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
     elif keyword in ("additionalProperties", "unevaluatedProperties"):
         yield from _unknown_keys(error, path, root)
     elif keyword == "required":
-        yield _missing(error, path)
+        yield _missing(error, path, error.schema if path else root)
     elif keyword == "dependentRequired":
         yield from _dependents(error, path)
     elif error.schema == {"minProperties": 1, "maxProperties": 1} or keyword == "maxProperties":
@@ -55,9 +55,10 @@ def _spared(path: Path) -> Path | None:
     return path or None
 
 
-def _missing(error: Error, path: Path) -> Complaint:
+def _missing(error: Error, path: Path, schema: Any) -> Complaint:
+    """A key that is not there, told in the words of that schema, which describes it."""
     missing = next(key for key in error.validator_value if key not in error.instance and f"'{key}'" in error.message)
-    hint = describe(_property(error.schema, missing)) or f"write `{missing}:` here"
+    hint = describe(_property(schema, missing)) or f"write `{missing}:` here"
     message = f"{node(path)} needs the key `{missing}`"
     return Complaint("missing-key", (*path, missing), message, hint, path, _spared(path), missing=missing)
 

@@ -10,7 +10,7 @@ from lumen.language.machines import Machine
 from lumen.language.motions import Motion
 from lumen.language.projects import Project
 from lumen.loading.behaviors import build_machine
-from lumen.loading.bodies import build_body
+from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import Draft
 from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_files
@@ -46,7 +46,7 @@ def draft(files: Mapping[str, bytes]) -> Draft:
         found.say("missing-file", MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
     elif (main := _read(found, MAIN_FILE, content, "lumen")) is not None:
         found.settings = _built(main[1], lambda: build_settings(*main))
-    found.bodies = _each(sources["models"], build_body)
+    found.bodies = build_likes(_each(sources["models"], build_body), sources["models"])
     found.behaviors = _each(sources["behaviors"], lambda *a, name: build_machine(*a, name=name, into=Machine))
     found.behaviors = link(
         found.behaviors, {n: found.report("behaviors", n) for n in found.behaviors}, found.names["behaviors"]

@@ -18,6 +18,9 @@ class Anatomy:
         try:
             spec = mujoco.MjSpec.from_file(str(models / body.mjcf))
             spec.compiler.discardvisual = True
+            for name, link in body.links.items():
+                differs = spec.body(name)
+                differs.mass, differs.ipos, differs.fullinertia = link.mass, link.centre, link.inertia
             self._model: mujoco.MjModel = spec.compile()
         except ValueError as error:
             raise RobotError(f"{body.mjcf} is not MJCF: {' '.join(str(error).split())}") from error

@@ -1,6 +1,7 @@
 """The robot in its hall, as one dm_control model."""
 
 from dataclasses import dataclass
+from math import degrees
 from pathlib import Path
 
 from dm_control import mjcf
@@ -39,6 +40,7 @@ def load(body: Body, models: Path, hall: str, variation: Variation | None = None
     _complain(hall, lacks_of_hall(world))
     stage = world.find("site", STAGE)
     robot.model = ROBOT
+    _differ(robot, body)
     stage.attach(robot).add("freejoint")
     if variation:
         _vary(world, variation)
@@ -67,6 +69,15 @@ def _read(path: Path) -> mjcf.RootElement:
     except Exception as error:  # the parser raises whatever it stumbles over
         reason = " ".join(str(error).split())
         raise RobotError(f"{path.name} is not MJCF: {reason}") from error
+
+
+def _differ(robot: mjcf.RootElement, body: Body) -> None:
+    """Give the robot the links and the camera of this body: several are written in one MJCF."""
+    for name, link in body.links.items():
+        inertial = robot.find("body", name).inertial
+        inertial.mass, inertial.pos, inertial.fullinertia = link.mass, link.centre, link.inertia
+    for camera in robot.find_all("camera"):
+        camera.fovy = degrees(body.camera.vertical_fov)
 
 
 def _vary(world: mjcf.RootElement, variation: Variation) -> None:

@@ -25,6 +25,7 @@ def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
     needs = [*_ROBOT, *(_EARS if body.sonar else ())]
     needs += [("joint", name) for name in dict.fromkeys((*JOINTS, *body.joints))]
     needs += [("actuator", name) for name in driven]
+    needs += [("body", name) for name in body.links]
     return list(_lacks(robot, needs))
 
 
