@@ -1,10 +1,14 @@
 """What is wrong in somebody's file, where, and what would be right."""
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from enum import StrEnum
 from typing import Any, NamedTuple, Protocol
+
+MANY = 8
+"""Findings from which on what they have in common is wrong, and not each of them."""
 
 MAX_RELATED = 5
 """How many places of one cause are shown beside the first."""
@@ -51,7 +55,8 @@ class Related(NamedTuple):
 class Diagnostic:
     """One finding: a stable code, a message in the user's words, the place, and a hint at what would be right.
 
-    `cause` names the one mistake that several findings come from, where there can be several: see `gathered`.
+    `cause` names the one mistake that several findings come from, where there can be several, and `root` what is
+    wrong in their place where there are many: see `gathered`.
     """
 
     code: str
@@ -61,6 +66,7 @@ class Diagnostic:
     severity: Severity = Severity.ERROR
     related: tuple[Related, ...] = ()
     cause: str = field(default="", compare=False, repr=False)
+    root: str = field(default="", compare=False, repr=False)
 
     def __str__(self) -> str:
         hint = f" ({self.hint})" if self.hint else ""
@@ -93,26 +99,32 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 def gathered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     """The findings sorted by file and line; of those with the same cause only the first, the others related to it.
 
-    A story tells of what a behaviour has: what is wrong in both is wrong in the behaviour.
+    A story tells of what a behaviour has: what is wrong in both is wrong in the behaviour. And where MANY findings have
+    the same root, or one of them has it for its cause, the root is wrong, and not each of them.
     """
+    several = list(dict.fromkeys(diagnostics))
+    causes, roots = {d.cause for d in several}, Counter(d.root for d in several)
     found: dict[str, list[Diagnostic]] = {}
-    for diagnostic in dict.fromkeys(diagnostics):
-        found.setdefault(diagnostic.cause or f"{len(found)}:", []).append(diagnostic)
-    return sorted(map(_joined, found.values()), key=_order)
+    for diagnostic in several:
+        rooted = diagnostic.root if diagnostic.root in causes or roots[diagnostic.root] >= MANY else ""
+        found.setdefault(rooted or diagnostic.cause or f"{len(found)}:", []).append(diagnostic)
+    return sorted((_joined(group, cause, len(group) >= MANY) for cause, group in found.items()), key=_order)
 
 
 def _order(diagnostic: Diagnostic) -> tuple[Place, str, str]:
     return diagnostic.place, diagnostic.code, diagnostic.message
 
 
-def _joined(findings: list[Diagnostic]) -> Diagnostic:
+def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
     """The first of these, the others as places related to it; those beyond MAX_RELATED are counted."""
     if len(findings) == 1:
         return findings[0]
-    first, *others = sorted(findings, key=lambda d: ("/stories/" in d.place.file, _order(d)))
+    first, *others = sorted(findings, key=lambda d: (d.cause != cause, "/stories/" in d.place.file, _order(d)))
     shown = [Related(d.place, d.message if d.message != first.message else "and here") for d in others[:MAX_RELATED]]
     if left := len(others) - len(shown):
         shown[-1] = Related(shown[-1].place, f"and here, and in {left} more")
+    if many and first.cause != cause == first.root:
+        first = replace(first, hint=f"look first at {cause}: it is in the way in {len(findings)} places")
     return replace(first, related=(*first.related, *shown))
 
 

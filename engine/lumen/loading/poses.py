@@ -113,14 +113,16 @@ class PoseReader:
             return True
         low, high = (round(limit / self.factor, 4) for limit in (joint.minimum, joint.maximum))
         hint = f"it goes from {low:g} to {high:g} {self.unit}"
-        cause = ""
-        if self.unit == "rad" and abs(value) > 2 * pi and self._fits(name, value * ANGLES["deg"]):
+        cause, root = "", f"the range of `{name}` in models/"
+        if self.unit == "rad" and self._fits(name, value * ANGLES["deg"]):
+            root = f"`units` in {self.report.document.file}"
+            cause = root if abs(value) > 2 * pi else ""
+        if cause:
             hint = f"write `units: {{angle: deg}}` at the top if these are degrees; {hint}"
-            cause = f"{self.report.document.file} radians"
         elif mirrored_joint(name)[0] != name and self._fits(name, -value * self.factor):
             hint = f"left and right turn opposite ways: write {-value:g} if that is meant; {hint}"
         message = f"`{name}` can't go to {value:g} {self.unit}"
-        self.report("angle-out-of-range", path, message, hint=hint, cause=cause)
+        self.report("angle-out-of-range", path, message, hint=hint, cause=cause, root=root)
         return False
 
     def _fits(self, name: str, angle: float) -> bool:

@@ -111,6 +111,7 @@ class Report:
         severity: Severity = Severity.ERROR,
         related: Iterable[tuple[Path, str]] = (),
         cause: str = "",
+        root: str = "",
     ) -> None:
         """Report what is wrong with the node at `path`; `related` are nodes of the same document.
 
@@ -119,7 +120,7 @@ class Report:
         if not self.follows(code, message):
             place = self.document.place(path, key=key)
             others = tuple(Related(self.document.place(where, key=True), what) for where, what in related)
-            self.diagnostics.append(Diagnostic(code, message, place, hint, severity, others, cause))
+            self.diagnostics.append(Diagnostic(code, message, place, hint, severity, others, cause, root))
 
     def broken(self, path: Path) -> bool:
         """Whether the node at `path`, one above it or one in it, was pruned."""

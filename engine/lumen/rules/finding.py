@@ -19,10 +19,11 @@ def find(
     key: bool = False,
     related: Iterable[tuple[Path, str]] = (),
     cause: str = "",
+    root: str = "",
 ) -> None:
     """Report a finding of that code, as bad as `CODES` says."""
     severity = CODES[code].severity
-    report(code, path, message, hint=hint, key=key, severity=severity, related=related, cause=cause)
+    report(code, path, message, hint=hint, key=key, severity=severity, related=related, cause=cause, root=root)
 
 
 def first(report: Report, *paths: Path) -> Path:

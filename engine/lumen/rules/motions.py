@@ -48,7 +48,15 @@ def _too_fast(report: Report, excess: Excess, unit: str, body: Body) -> None:
     message = f"`{excess.joint}` would have to move at {value:g}{what} to get here in time, and {limit:g} is its most"
     percent = ceil(100 * (excess.value / excess.limit - 1))
     cause = f"{report.document.file} {value:g} {limit:g}"  # of the left and of the right, wherever the pose stands
-    find(report, "too-fast", excess.key.where, message, f"give it {percent} % more time", cause=cause)
+    find(
+        report,
+        "too-fast",
+        excess.key.where,
+        message,
+        f"give it {percent} % more time",
+        cause=cause,
+        root=f"the speed of `{excess.joint}` in models/",
+    )
 
 
 def _too_far(report: Report, excess: Excess, unit: str, body: Body) -> None:
@@ -57,7 +65,15 @@ def _too_far(report: Report, excess: Excess, unit: str, body: Body) -> None:
     coupled = [c.on for c in body.coupled if c.joint == excess.joint]
     hint = f"how far it can go depends on `{coupled[0]}`" if coupled else "bring the handles nearer to the key"
     cause = f"{report.document.file} {message}"
-    find(report, "angle-out-of-range", excess.key.where, message, hint, cause=cause)
+    find(
+        report,
+        "angle-out-of-range",
+        excess.key.where,
+        message,
+        hint,
+        cause=cause,
+        root=f"the range of `{excess.joint}` in models/",
+    )
 
 
 def _shown(excess: Excess, unit: str, body: Body) -> tuple[float, float]:
