@@ -39,6 +39,7 @@ class Server:
     have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
     one seed says the same things in the same order; `settle` waits until they have. `date` is what images are dated;
     `clock` [s] tells how long a command has waited: time as modules live through it, whatever the robot's clock says.
+    `told` hears of each command that the robot is given from the bus.
     """
 
     def __init__(
@@ -49,8 +50,9 @@ class Server:
         *,
         date: Callable[[], str] = _date,
         clock: Callable[[], float] = time.monotonic,
+        told: Callable[[RobotCommand], None] = lambda _: None,
     ) -> None:
-        self._robot, self._bus = robot, bus
+        self._robot, self._bus, self._told = robot, bus, told
         self._frames, self._date = count(), date
         self._project = project
         self._routes: dict[Sense, Route] = {}
@@ -58,7 +60,7 @@ class Server:
         self._broadcasts: dict[Sense, Broadcast] = {}
         self._leaving: list[Handed] = []
         self._listen(project)
-        self._orders = Orders(project, robot, bus, clock, self.begins)
+        self._orders = Orders(project, robot, bus, clock, self._given)
         self._closed = False
 
     @property
@@ -126,6 +128,10 @@ class Server:
         ended = [b.close(deadline - time.monotonic()) for b in self._broadcasts.values()]
         if not all(ended):
             _log.warning("a sense still works %g s after it was told to end", CLOSING)
+
+    def _given(self, command: RobotCommand) -> None:
+        self._told(command)
+        self.begins(command)
 
     def _tell(self, route: str, body: dict[str, Any]) -> None:
         try:

@@ -8,10 +8,11 @@ from lumen.cli.apart.guard import Guard
 from lumen.cli.cast import Cast
 from lumen.cli.performance import told_count
 from lumen.cli.transcript import Transcript
-from lumen.language.commands import Rest
+from lumen.language.commands import Rest, Start
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
+from lumen.ports import Aim, Perform, RobotCommand
 from lumen.robots.remote import Host
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.presence import ROBOT, Presence
@@ -41,7 +42,7 @@ class RobotPart:
 
     def begin(self, now: float) -> None:
         chosen = self._chosen
-        self._host = Host(self._project, chosen.robot, self._bus, chosen.hall)
+        self._host = Host(self._project, chosen.robot, self._bus, chosen.hall, self._given)
         self._guard = Guard(chosen.robot, self._presence, self._host.notice, self._say, time.monotonic)
         if chosen.hall:
             self._faces = FaceDetector(self._project, chosen.hall, self._bus)
@@ -53,7 +54,9 @@ class RobotPart:
             self._faces.tick(now)
         self._guard.tick(now)
         for event in self._host.tick(now):
-            self._transcript.answered(event)
+            kind, separator, _ = event.name.partition(".command.")
+            if kind == "error" or not separator:
+                self._transcript.answered(event)
 
     def use(self, project: Project) -> None:
         self._project = project
@@ -78,6 +81,16 @@ class RobotPart:
         if self._host:
             self._host.close()
         self._chosen.robot.close()
+
+    def _given(self, command: RobotCommand) -> None:
+        """A line for each command that it is given."""
+        match command:
+            case Perform(motion):
+                self._say(f"plays {motion.name}")
+            case Aim():
+                pass
+            case _:
+                self._transcript.performing(Start("", command), self._chosen.clock.now())
 
     def _say(self, text: str) -> None:
         self._transcript.line("robot", text)

@@ -11,7 +11,7 @@ from lumen.errors import BusError, LumenError
 from lumen.language.events import ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.ports import Bus, Hall, Message, Robot
+from lumen.ports import Bus, Hall, Message, Robot, RobotCommand
 from lumen.robots.server import Server
 from lumen.robots.ways import HALL, SEEN, key_of, tell
 
@@ -26,10 +26,18 @@ class Host:
     """Lumen Server for a robot, and for the hall around it where it is simulated.
 
     Whoever owns the clock calls `tick`; what the robot answered and noticed since is told to everybody, and returned.
+    `told` hears of each command that the robot is given.
     """
 
-    def __init__(self, project: Project, robot: Robot, bus: Bus, hall: Hall | None = None) -> None:
-        self.server = Server(project, robot, bus)
+    def __init__(
+        self,
+        project: Project,
+        robot: Robot,
+        bus: Bus,
+        hall: Hall | None = None,
+        told: Callable[[RobotCommand], None] = lambda _: None,
+    ) -> None:
+        self.server = Server(project, robot, bus, told=told)
         self._robot, self._bus, self._hall, self._project = robot, bus, hall, project
         self._deeds: deque[Message] = deque(maxlen=1_000)
         self._seen: object = ()
