@@ -32,7 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "--only",
         metavar="PARTS",
-        help="one process of several: robot, brain, motion, visitor, memory, with commas between them",
+        help="one process of several: robot, brain, motion, visitor, memory, eyes, ears, voice, social, with commas between them",
     )
     add("--speed", choices=SPEEDS, default="1", help="simulated time, times real time (default: 1)")
     add("--bus", metavar="URL", help="memory:// or amqp://user:password@host/ (default: LUMEN_BUS, then lumen.yaml's)")

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.language.modules import EYES, MEMORY, MODULES, VOICE
+from lumen.language.modules import EARS, EYES, MEMORY, MODULES, SOCIAL, VOICE
 from lumen.language.projects import Project
 from lumen.modules.module import Module
 from lumen.ports import Bus
@@ -29,4 +29,13 @@ def make(name: str, project: Project, bus: Bus, tell: Callable[[str], None], fol
         from lumen.modules.voice import Voice
 
         return Voice(project, bus, tell)
+    if name == EARS:
+        from lumen.modules.ears import Ears
+
+        return Ears(project, bus, tell)
+    if name == SOCIAL:
+        from lumen.modules.social import FILE as POSTS
+        from lumen.modules.social import Social
+
+        return Social(project, bus, tell, folder and folder / POSTS)
     raise UsageError(f"no module `{name}`: there are {', '.join(MODULES)}")

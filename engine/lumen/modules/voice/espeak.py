@@ -10,10 +10,11 @@ from lumen.errors import ModuleError
 from lumen.modules.sound import Sound
 
 INSTALL = "pip install 'lumen-robot[voice]', or install the package espeak-ng"
+PACE = 175
 LONGEST = 1_000
 """Characters of a text; the rest is not said."""
 
-_SYNCHRONOUS, _DONT_EXIT, _UTF8, _CHARACTERS = 2, 0x8000, 1, 1
+_SYNCHRONOUS, _DONT_EXIT, _UTF8, _CHARACTERS, _RATE = 2, 0x8000, 1, 1, 1
 
 _Callback = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctypes.c_int, ctypes.c_void_p)
 
@@ -38,13 +39,17 @@ class Espeak:
             ctypes.c_void_p, ctypes.c_void_p,
         ]  # fmt: skip
 
-    def speak(self, text: str, language: str = "en") -> Sound:
-        """The text in that language. Raises ModuleError for a language that it has no voice for."""
+    def speak(self, text: str, language: str = "en", pace: int = PACE) -> Sound:
+        """The text in that language, at `pace` words a minute.
+
+        Raises ModuleError for a language that it has no voice for.
+        """
         said = "".join(sign if sign.isprintable() else " " for sign in text[:LONGEST])
         data = said.encode("utf-8", "replace") + b"\0"
         with self._lock:
             if self._library.espeak_SetVoiceByName((language or "en").lower().encode()):
                 raise ModuleError(f"espeak-ng has no voice for the language `{language}`")
+            self._library.espeak_SetParameter(_RATE, pace, 0)
             self._parts.clear()
             if self._library.espeak_Synth(data, len(data), 0, _CHARACTERS, 0, _UTF8, None, None):
                 raise ModuleError("espeak-ng could not speak a text")

@@ -1,0 +1,56 @@
+"""The stand-in for social media: what would be posted is a line in a file."""
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+
+from lumen.errors import ModuleError
+from lumen.language.modules import SOCIAL
+from lumen.language.projects import Project
+from lumen.modules.module import Handler, Module
+from lumen.ports import Bus, Message
+
+FILE = "posts.jsonl"
+BYTES = 10_000_000
+"""After so much nothing more is written: somebody has to look at it first."""
+
+
+class Social(Module):
+    """Takes posts from `lumen.NAO.social.expression`, and says on `.perception` that they were taken.
+
+    `file` gets a line of JSON for each, None keeps nothing. Another module in its place would post them.
+    """
+
+    name = SOCIAL
+
+    def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None], file: Path | None) -> None:
+        super().__init__(project, bus, tell)
+        self._file = file
+
+    def hears(self) -> Mapping[str, Handler]:
+        return {"social_expression": self._post}
+
+    def _post(self, message: Message) -> None:
+        match message.body:
+            case {"text": str(text)} if text.strip():
+                pass
+            case _:
+                raise ModuleError(f"a body with a `text` is expected on {message.key}: nothing is posted")
+        date = datetime.now(UTC).isoformat(timespec="seconds")
+        self._write(json.dumps({"date": date, **message.body}, ensure_ascii=False))
+        self.publish("social_perception", {"kind": "posted", "text": text, "date": date})
+        self.well()
+
+    def _write(self, line: str) -> None:
+        if self._file is None:
+            return
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            with open(os.open(self._file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "ab") as file:
+                if file.tell() > BYTES:
+                    raise ModuleError(f"{self._file} is full: move it away, and the next posts are kept again")
+                file.write(line.encode("utf-8", "replace") + b"\n")
+        except OSError as error:
+            raise ModuleError(f"{self._file} can't be written: {error.strerror}") from None
