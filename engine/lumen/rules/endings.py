@@ -8,12 +8,16 @@ _LACKS = {
     "done.do": "it has no `do`",
     "error.do": "it has no `do`",
 }
+_ANSWERS = ("done.command", "error.command", "cancelled.command")
+"""What the robot says of commands: it goes to the `do` that waits for it, or nowhere, and never to a transition."""
 
 
 def ending_fault(machine: Machine, descriptor: str) -> str:
     """Why a descriptor can't be heard: a hint where it names nothing that could end; else empty."""
     words = descriptor.removesuffix(".*").split(".")
     family, name = ".".join(words[:2]), ".".join(words[2:])
+    if family in _ANSWERS:
+        return "what became of a command is for the `do` that gave it: write `onDone` or `onError` into its state"
     able = _able(machine, family)
     if not name or able is None or any(_begins(name, other) for other in able):
         return ""
