@@ -15,7 +15,7 @@ from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, RobotCommand
 from lumen.robots.remote import Host
 from lumen.runtime.perception import FaceDetector
-from lumen.runtime.presence import ROBOT, Presence
+from lumen.runtime.presence import BRAIN, ROBOT, Presence
 
 
 class RobotPart:
@@ -50,12 +50,13 @@ class RobotPart:
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         assert self._host
         assert self._guard
-        if self._faces and not self._presence.find(EYES):
+        if self._faces:
+            self._faces.quiet = self._presence.find(EYES) is not None
             self._faces.tick(now)
         self._guard.tick(now)
         for event in self._host.tick(now):
             kind, separator, _ = event.name.partition(".command.")
-            if kind == "error" or not separator:
+            if BRAIN not in self._presence.parts and (kind == "error" or not separator):
                 self._transcript.answered(event)
 
     def use(self, project: Project) -> None:
@@ -83,7 +84,9 @@ class RobotPart:
         self._chosen.robot.close()
 
     def _given(self, command: RobotCommand) -> None:
-        """A line for each command that it is given."""
+        """A line for each command that it is given, where no brain in this process has told of it."""
+        if BRAIN in self._presence.parts:
+            return
         match command:
             case Perform(motion):
                 self._say(f"plays {motion.name}")

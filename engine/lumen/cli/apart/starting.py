@@ -96,7 +96,7 @@ def assembled(
         )  # fmt: skip
         parts.append(brain)
     if VISITOR in names:
-        parts.append(VisitorPart(project, bus, transcript, story))
+        parts.append(VisitorPart(project, bus, transcript, story, telling=BRAIN not in names))
     tell = transcript.line
     parts += [ModulePart(n, project, bus, tell, home_of(premises.root)) for n in names if n in MODULES]
     process = Process(project, bus, url.rpartition("@")[2], clock, presence, parts, float(options.speed))

@@ -20,12 +20,17 @@ from lumen.runtime.visitor import Walker
 
 
 class VisitorPart:
-    """Walks, speaks and touches in a hall that is simulated elsewhere, as a story says or as is typed."""
+    """Walks, speaks and touches in a hall that is simulated elsewhere, as a story says or as is typed.
+
+    `telling` is whether what they see is told here, where no brain in this process does.
+    """
 
     name = VISITOR
     needs: tuple[str, ...] = (ROBOT, BRAIN)
 
-    def __init__(self, project: Project, bus: ValidatedBus, transcript: Transcript, story: Story | None) -> None:
+    def __init__(
+        self, project: Project, bus: ValidatedBus, transcript: Transcript, story: Story | None, *, telling: bool = True
+    ) -> None:
         self._project, self._transcript, self._story = project, transcript, story
         self._hall = RemoteHall(project, bus)
         self._walker = Walker(project, self._hall, bus)
@@ -33,7 +38,8 @@ class VisitorPart:
         self._player: StoryPlayer | None = None
         self._typed: TypedSpeech | None = None
         self._now = 0.0
-        self._onlooker.watchers.append(self)
+        if telling:
+            self._onlooker.watchers.append(self)
 
     @property
     def over(self) -> bool:
@@ -61,8 +67,9 @@ class VisitorPart:
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self._now = now
-        for change in changes:
-            self._transcript.line("others", change.name)
+        if self in self._onlooker.watchers:
+            for change in changes:
+                self._transcript.line("others", change.name)
         self._onlooker.tick(now)
         self._walker.tick(now)
         if self._player:
@@ -94,7 +101,8 @@ class VisitorPart:
         if self._player:
             early = "ended before the story did" if not self._player.finished else "all well"
             print(f"  the story: {self._player.failure or early}")
-        print(f"  {len(log.states)} states, {log.said} texts, motions: {', '.join(log.played) or 'none'}")
+        if self in self._onlooker.watchers:
+            print(f"  {len(log.states)} states, {log.said} texts, motions: {', '.join(log.played) or 'none'}")
 
     def close(self) -> None:
         self._onlooker.close()
