@@ -25,8 +25,14 @@ READY = 60.0
 HASHING = "rabbit_password_hashing_sha256"
 
 
-USERS = {"guest": (".*", ".*"), "visual": (r"^lumen\.visual\.", r"^avatar\.")}
+USERS = {
+    "guest": (".*", ".*"),
+    "visual": (r"^lumen\.visual\.", r"^avatar\."),
+    "eyes": (r"^lumen\.visual\.", r"^avatar\.NAO\.data\.image$"),
+}
 """Who may use the broker: which keys of `amq.topic` each may write, and which read."""
+RIGHTS = {"eyes": ("^amq\\.gen", "^(amq\\.topic|amq\\.gen|amq\\.default)", "^(amq\\.topic|amq\\.gen)")}
+"""What a user may configure, write and read, where that is not everything: as docs/broker.md has it for a module."""
 
 NOWHERE = {
     "vhost": "/",
@@ -150,13 +156,20 @@ def _definitions(*, nowhere: bool) -> dict[str, object]:
         "users": [
             {"name": user, "password_hash": _hashed(user), "hashing_algorithm": HASHING, "tags": ""} for user in USERS
         ],
-        "permissions": [{"user": user, "vhost": "/", "configure": ".*", "write": ".*", "read": ".*"} for user in USERS],
+        "permissions": [
+            {"user": user, "vhost": "/", **dict(zip(("configure", "write", "read"), _rights(user), strict=True))}
+            for user in USERS
+        ],
         "policies": [NOWHERE] if nowhere else [],
         "topic_permissions": [
             {"user": user, "vhost": "/", "exchange": "amq.topic", "write": write, "read": read}
             for user, (write, read) in USERS.items()
         ],
     }
+
+
+def _rights(user: str) -> tuple[str, str, str]:
+    return RIGHTS.get(user, (".*", ".*", ".*"))
 
 
 def _hashed(password: str) -> str:

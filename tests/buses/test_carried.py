@@ -177,7 +177,6 @@ def test_a_stop_waits_behind_nothing(opened: Open) -> None:
 
     bus.subscribe(slow.key, work)
     bus.subscribe(stop.key, seen)
-    until(lambda: bus._stop.consuming.subscriptions()[0].queue)  # type: ignore[attr-defined]
     sender.publish(slow.key, "dance")
     assert busy.wait(20)
     for _ in range(200):

@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from lumen.bus import BusError, Message, connect
+from lumen.bus import BusError, Message, Refused, connect
 from lumen.buses.local import Door, LocalBus
+from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus
 from tests.waiting import Collector
 
@@ -316,3 +317,34 @@ def test_two_handles_on_one_bus_hear_each_other(another: Connect) -> None:
     one.publish("lumen.shared", "still here")
     assert seen.wait(2) == ["hello", "still here"]
     one.close()
+
+
+def test_who_sends_what_a_handler_refuses_gets_the_reason(bus: Bus) -> None:
+    answers, others = Collector(), Collector()
+
+    def refuse(message: Message) -> None:
+        raise Refused("there is no such dance")
+
+    bus.subscribe("lumen.me", answers)
+    bus.subscribe("avatar.NAO.command", refuse)
+    bus.subscribe("avatar.NAO.command", others)
+    bus.publish("avatar.NAO.command", "waltz", reply_to="lumen.me", correlation_id="42")
+    bus.publish("avatar.NAO.command", "waltz")
+    assert answers.wait(1) == ["message refused: there is no such dance"]
+    assert answers.messages[0].correlation_id == "42"
+    assert others.wait(2) == ["waltz", "waltz"]
+
+
+@pytest.mark.parametrize("carried", Carried)
+def test_however_a_route_is_carried_its_messages_arrive_in_order(another: Connect, carried: Carried) -> None:
+    key = f"lumen.carried.{carried}"
+    routes = {key: Route(key, key, Direction.IN, carried=carried, must_arrive=carried is not Carried.TELEMETRY)}
+    bus, seen = another(), Collector()
+    bus.prepare(routes)
+    bus.carry(routes)
+    undo = bus.subscribe(key, seen)
+    for i in range(200):
+        bus.publish(key, i)
+    assert seen.wait(200) == list(range(200))
+    undo()
+    bus.close()

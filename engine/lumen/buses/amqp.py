@@ -6,6 +6,7 @@ made again, and what waits to be sent waits on. Where a route carries stops, the
 """
 
 import logging
+import threading
 import time
 import uuid
 from collections.abc import Callable, Mapping
@@ -121,7 +122,7 @@ class AmqpBus:
         self._routes: Mapping[str, Route] = {}
         self._name, self._numbers = uuid.uuid4().hex[:12], count(1)
         self._stop: Way | None = None
-        self._watching = False
+        self._watching, self._opening = False, threading.Lock()
         self._way = Way(self._address, self._outage)
         try:
             self._way.open()
@@ -131,9 +132,7 @@ class AmqpBus:
 
     def carry(self, routes: Mapping[str, Route]) -> None:
         self._routes = dict(routes)
-        if self._stop is None and any(route.carried is Carried.STOP for route in routes.values()):
-            self._stop = Way(self._address, self._outage, "stop-")
-            self._stop.begin()
+        self._open_stop(routes)
         if not self._watching:
             self._watching = True
             self._way.consuming.watch(self._way.publishing.stray)
@@ -144,8 +143,10 @@ class AmqpBus:
             way.consuming.carry(routes)
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        coming = {k: r for k, r in routes.items() if r.direction is Direction.IN and r.carried is not Carried.STOP}
-        self._way.consuming.prepare(coming)
+        self._open_stop(routes)
+        for way in self._ways():
+            coming = {k: r for k, r in routes.items() if r.direction is Direction.IN and self._way_of(r) is way}
+            way.consuming.prepare(coming)
 
     def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
         if self._closed:
@@ -192,6 +193,13 @@ class AmqpBus:
         for way in self._ways():
             way.close(deadline)
         self._end(deadline)
+
+    def _open_stop(self, routes: Mapping[str, Route]) -> None:
+        """Stops get a way of their own as soon as there are any; nobody waits for it here."""
+        with self._opening:
+            if self._stop is None and any(route.carried is Carried.STOP for route in routes.values()):
+                self._stop = Way(self._address, self._outage, "stop-")
+                self._stop.begin()
 
     def _ways(self) -> list[Way]:
         return [self._way, *([self._stop] if self._stop else [])]

@@ -172,7 +172,7 @@ class Consuming(Link):
             number = next(n for n in range(len(numbers) + 1) if n not in numbers)
             subscription = Subscription(pattern, handler, route, number)
             self._subscriptions.append(subscription)
-        if not self._later(lambda: self._bind(subscription)):
+        if not self._later(lambda: self._bind(subscription)) and self._epoch:
             subscription.bound.set()
             _log.warning("`%s` is subscribed to as soon as the broker at %s is back", pattern, self.address)
         return subscription

@@ -1,0 +1,184 @@
+"""`lumen topic` and `lumen doctor`, on a broker and through the door of an embedded bus."""
+
+import json
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lumen.bus import Bus, connect
+from lumen.buses.validated import validated
+from lumen.cli.main import main
+from lumen.cli.premises import Premises
+from lumen.language.projects import Project
+from tests.exhibits import project
+from tests.rabbitmq import RabbitMQ
+
+ROOT = Path(__file__).parents[2]
+SONAR = "avatar.NAO.data.sonar"
+
+
+class Exhibition:
+    """A bus on which a robot's senses come, and its commands are answered; `options` lead the commands to it."""
+
+    def __init__(self, bus: Bus, options: list[str]) -> None:
+        self.options, self._bus, self._ending = options, bus, threading.Event()
+        for key in ("avatar.NAO.command", "avatar.NAO.stop"):
+            bus.subscribe(key, lambda message: bus.reply(message, "command finished"))
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def close(self) -> None:
+        self._ending.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        bodies = {
+            SONAR: {"rightSensor": 0.5, "leftSensor": 2.55},
+            "avatar.NAO.data.joint": {"name": ["HeadYaw"], "angle": [0.1], "stiffness": [1]},
+            "avatar.NAO.data.tactile": {"name": ["RightBumper"], "value": [0]},
+            "lumen.note": "a\x1b[31mred",
+        }
+        while not self._ending.wait(0.02):
+            for key, body in bodies.items():
+                self._bus.publish(key, body)
+
+
+@pytest.fixture(params=["embedded", pytest.param("broker", marks=pytest.mark.xdist_group("rabbitmq"))])
+def exhibition(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Exhibition]:
+    monkeypatch.delenv("LUMEN_BUS", raising=False)
+    shown: Project = project()
+    if request.param == "broker":
+        broker: RabbitMQ = request.getfixturevalue("broker")
+        bus: Bus = connect(broker.url, shown)
+        one = Exhibition(bus, ["--bus", broker.url])
+        yield one
+        one.close()
+    else:
+        assert main(["new", str(tmp_path / "hall")]) == 0
+        monkeypatch.chdir(tmp_path / "hall")
+        premises, bus = Premises(tmp_path / "hall"), validated(connect("memory://"), shown)
+        premises.open(bus, "memory://", shown)
+        one = Exhibition(bus, [])
+        yield one
+        one.close()
+        premises.close(forget=True)
+    bus.close()
+
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def run(exhibition: Exhibition, capsys: pytest.CaptureFixture[str]) -> Run:
+    def command(*words: str) -> tuple[int, str, str]:
+        capsys.readouterr()
+        code = main([*words, *exhibition.options])
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return command
+
+
+def test_echo_prints_messages_and_nothing_that_a_terminal_obeys(run: Run) -> None:
+    code, out, _ = run("topic", "echo", "sonar", "--count", "2")
+    assert (code, out) == (0, f'{SONAR}  {{"rightSensor": 0.5, "leftSensor": 2.55}}\n' * 2)
+    assert run("topic", "echo", "lumen.note", "--count", "1")[1] == "lumen.note  a\N{REPLACEMENT CHARACTER}[31mred\n"
+    found = json.loads(run("topic", "echo", SONAR, "--count", "1", "--format", "json")[1])
+    assert found == {
+        "key": SONAR,
+        "body": {"rightSensor": 0.5, "leftSensor": 2.55},
+        "reply_to": "",
+        "correlation_id": "",
+    }
+
+
+def test_list_hz_and_bw_measure(run: Run) -> None:
+    listed = {row["key"]: row for row in _topics(run, "list")}
+    assert listed[SONAR]["messages"] >= 2
+    assert (listed[SONAR]["route"], listed["avatar.NAO.command"]["messages"]) == ("sonar", 0)
+    assert listed["lumen.note"]["route"] == ""
+    (sonar,) = _topics(run, "hz", "sonar")
+    assert 5 < sonar["hz"] < 60
+    assert sonar["longest_gap"] > 0.0
+    (sonar,) = _topics(run, "bw", "sonar")
+    assert sonar["mean_bytes"] == len('{"rightSensor":0.5,"leftSensor":2.55}')
+    assert "nothing came on `lumen.silence`" in run("topic", "hz", "lumen.silence", "--for", "50ms")[1]
+
+
+def _topics(run: Run, *words: str) -> list[dict[str, Any]]:
+    code, out, _ = run("topic", *words, "--for", "500ms", "--format", "json")
+    assert code == 0
+    return list(json.loads(out)["topics"])
+
+
+def test_pub_sends_what_fits_its_route_and_prints_the_answer(run: Run) -> None:
+    rest = '{"type": "motion", "method": "rest"}'
+    assert run("topic", "pub", "command", rest, "--wait", "10s") == (0, "command finished\n", "")
+    assert run("topic", "pub", "lumen.elsewhere", "a text")[0] == 0
+    assert run("topic", "pub", "lumen.elsewhere", "a text", "--wait", "50ms")[0] == 1
+    code, _, err = run("topic", "pub", "face", '{"x": "left", "y": 1}')
+    assert (code, err.count("\n")) == (2, 1)
+    assert "x: 'left' is not of type 'integer'" in err
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["echo", "sonra"], "did you mean `sonar`?"),
+        (["pub", "face"], "write `lumen topic pub KEY BODY`"),
+        (["list", "all"], "write `lumen topic list`"),
+        (["hz", "sonar", "--for", "2"], "write a number and its unit"),
+    ],
+)
+def test_what_can_t_be_is_one_line(capsys: pytest.CaptureFixture[str], words: list[str], says: str) -> None:
+    assert main(["topic", *words, "--bus", "memory://", "--project", str(ROOT)]) == 2
+    err = capsys.readouterr().err
+    assert says in err or "no exhibition" in err
+    assert err.count("\n") == 1
+
+
+def test_the_doctor_finds_what_is_silent(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lumen.cli.doctor.LISTENING", 0.4)
+    code, out, _ = run("doctor")
+    assert code == 1
+    assert "nothing came on `image` in 0.4 s" in out
+    assert "permissions" not in out or "routes may be used as they go" in out
+    found = json.loads(run("doctor", "--format", "json")[1])
+    assert found["ok"] is False
+    assert {"what", "severity", "text"} == set(found["findings"][0])
+
+
+@pytest.mark.xdist_group("rabbitmq")
+def test_the_doctor_finds_what_a_user_may_not(
+    broker: RabbitMQ, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("lumen.cli.doctor.LISTENING", 0.4)
+    assert main(["doctor", "--bus", broker.url_of("eyes"), str(ROOT)]) == 1
+    out = capsys.readouterr().out
+    assert "`command` can't be read: ACCESS_REFUSED" in out
+    assert "`image` can't be sent: ACCESS_REFUSED" in out
+    assert "`face` can't be sent" not in out
+    assert "nobody serves `command` (avatar.NAO.command)" in out
+
+
+@pytest.mark.xdist_group("rabbitmq")
+@pytest.mark.parametrize(
+    ("url", "says"),
+    [
+        ("amqp://127.0.0.1:1/", "no broker listens at 127.0.0.1:1"),
+        ("amqp://guest:secret@127.0.0.1:{port}/", "refuses user `guest`"),
+        ("amqp://guest:guest@127.0.0.1:{port}/nowhere", "virtual host `nowhere`"),
+        ("redis://h/", "`redis://` is no bus"),
+    ],
+)
+@pytest.mark.parametrize("verb", [["doctor"], ["topic", "list"], ["stop"]])
+def test_a_broker_that_can_t_be_used_is_one_line(
+    broker: RabbitMQ, capsys: pytest.CaptureFixture[str], verb: list[str], url: str, says: str
+) -> None:
+    assert main([*verb, "--bus", url.format(port=broker.port)]) == 2
+    said = capsys.readouterr()
+    assert says in said.err
+    assert (said.err.count("\n"), said.out) == (1, "")
