@@ -17,6 +17,7 @@ from lumen.cli.typed import TypedSpeech
 from lumen.cli.why import innermost
 from lumen.language.commands import Rest
 from lumen.language.events import Event
+from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
 from lumen.loading.packaged import shipped_root
@@ -84,7 +85,8 @@ class Performance:
     def _claim(self) -> None:
         """Be the robot and its brain on that broker. Raises UsageError where somebody else is."""
         show = self._show
-        presence = presence_of(show.exhibition.project, show.bus, (ROBOT, BRAIN, MOTION), self._said)
+        here = tuple(name for name, said in show.exhibition.project.modules.items() if said.here)
+        presence = presence_of(show.exhibition.project, show.bus, (ROBOT, BRAIN, MOTION, *here), self._said)
         show.closing.insert(0, presence.close)
         claim(presence)
         show.exhibition.parts.append(lambda now: self._meet(presence))
@@ -94,8 +96,12 @@ class Performance:
         return {"bundle": self._show.exhibition.project.hash}
 
     def _meet(self, presence: Presence) -> None:
-        """Say that we are here; who has just come is told where the behaviour stands."""
-        presence.tick()
+        """Say that we are here; who has just come is told where the behaviour stands, and the behaviour who is lost."""
+        for change in presence.tick():
+            self._show.exhibition.happen(change)
+            self._transcript.line("others", f"{change.name}, after {change.data['seconds']:.1f} s")
+        if self._show.faces and EYES not in presence.parts:
+            self._show.faces.quiet = presence.find(EYES) is not None
         if presence.came:
             self._show.trace.standing(self._show.exhibition.runtime.snapshot)
 

@@ -17,7 +17,8 @@ ROUTE = "face"
 class FaceDetector:
     """Publishes where the visitor's face stands in the camera's image [px], every `period` [s], `latency` [s] late.
 
-    The body is the original's (`x`, `y` as integers) and `time` [s], when the image was taken.
+    The body is the original's (`x`, `y` as integers) and `time` [s], when the image was taken. While it is `quiet`
+    somebody with eyes publishes instead.
     """
 
     def __init__(
@@ -26,7 +27,7 @@ class FaceDetector:
         self._hall, self._bus = hall, bus
         self._period, self._latency = period, latency
         self.camera = project.body.camera
-        self._next, self._closed = 0.0, False
+        self._next, self.quiet = 0.0, False
         self._developing: deque[tuple[float, dict[str, object]]] = deque()
         self.last: tuple[float, float] | None = None
         self.use(project)
@@ -35,10 +36,6 @@ class FaceDetector:
         """Publish on the route of this project from now on; on none where it has none."""
         self._project = project
 
-    def close(self) -> None:
-        """Publish nothing any more: somebody with eyes does."""
-        self._closed = True
-
     def tick(self, now: float) -> None:
         """Look, where it is time to, and publish what has been recognised by now."""
         if ROUTE not in self._project.routes:
@@ -46,7 +43,7 @@ class FaceDetector:
         if now >= self._next:
             self._next = max(self._next + self._period, now)
             self._look(now)
-        if self._closed:
+        if self.quiet:
             self._developing.clear()
         while self._developing and self._developing[0][0] <= now:
             if reason := send(self._bus, self._project, ROUTE, self._developing.popleft()[1]):

@@ -50,7 +50,7 @@ def join(show: Show, folder: Path | None, tell: Tell, *, paced: bool) -> list[Mo
         show.closing.insert(0, module.close)
         if name == EYES:
             if show.faces:
-                show.faces.close()
+                show.faces.quiet = True
             if not paced:
                 show.exhibition.parts.append(lambda now, m=module: m.settle())  # type: ignore[misc]
     troubles = Troubles(project, show.bus, tell, tuple(module.name for module in begun))

@@ -1,0 +1,117 @@
+"""Modules as processes of their own on RabbitMQ: announced, one of each, missed when they are gone, replaceable."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from lumen.bus import Bus, connect
+from lumen.language.projects import Project
+from lumen.runtime.presence import Peer, Presence
+from tests.rabbitmq import RabbitMQ
+from tests.waiting import Collector, until
+
+pytestmark = pytest.mark.xdist_group("rabbitmq")
+
+POSTER = Path(__file__).parents[2] / "examples/modules/poster.py"
+FACT = "lumen.NAO.persistence.fact"
+
+
+@pytest.fixture
+def bus(broker: RabbitMQ, project: Project) -> Iterator[Bus]:
+    bus = connect(broker.url, project)
+    yield bus
+    bus.close()
+
+
+@pytest.fixture
+def brain(bus: Bus) -> Iterator[Presence]:
+    """Somebody who watches over the others, as a brain does."""
+    presence = Presence(bus, "NAO", ("brain",))
+    presence.settle()
+    yield presence
+    presence.close()
+
+
+class Started:
+    """Starts programs on the broker, and ends them."""
+
+    def __init__(self, stack: ExitStack, url: str, home: Path) -> None:
+        self._stack, self._environment = stack, {**os.environ, "LUMEN_BUS": url, "XDG_STATE_HOME": str(home)}
+
+    def __call__(self, *words: str) -> "subprocess.Popen[str]":
+        process = subprocess.Popen(
+            [sys.executable, *words],
+            env=self._environment,
+            text=True,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
+        self._stack.callback(process.communicate)
+        self._stack.callback(process.kill)
+        return process
+
+
+@pytest.fixture
+def start(broker: RabbitMQ, tmp_path: Path) -> Iterator[Started]:
+    with ExitStack() as stack:
+        yield Started(stack, broker.url, tmp_path)
+
+
+def here(presence: Presence, part: str) -> Peer:
+    """Wait until that part is there."""
+    until(lambda: (presence.tick(), presence.find(part))[1] is not None and presence.find(part).state == "here")  # type: ignore[union-attr]
+    found = presence.find(part)
+    assert found
+    return found
+
+
+def test_a_module_is_announced_does_its_work_is_one_and_is_missed(
+    bus: Bus, brain: Presence, start: Started, tmp_path: Path
+) -> None:
+    copy = tmp_path / "project"
+    subprocess.run([sys.executable, "-m", "lumen", "new", str(copy)], check=True, capture_output=True)
+    first = start("-m", "lumen", "run", str(copy), "--only", "memory")
+    assert here(brain, "memory").said["process"] == first.pid
+    answers = Collector()
+    bus.subscribe("lumen.answers", answers)
+    bus.publish("lumen.state", {"robot": "NAO", "time": 1.0, "entered": ["idle"], "context": {"visitor": "Ani"}})
+    bus.publish(FACT, {"method": "list"}, reply_to="lumen.answers")
+    until(lambda: _again(bus, answers))
+    second = start("-m", "lumen", "run", str(copy), "--only", "memory")
+    until(lambda: (brain.tick(), second.poll())[1] is not None)
+    assert second.returncode == 2
+    assert second.stdout
+    assert f"process {first.pid} on " in (said := second.stdout.read())
+    assert "is the memory of NAO on this bus already" in said
+    first.kill()
+    lost: list[str] = []
+    until(lambda: (lost.extend(event.name for event in brain.tick()), lost)[1])
+    assert lost == ["memory.lost"]
+    assert (copy / ".lumen/memory.db").exists()
+
+
+def _again(bus: Bus, answers: Collector) -> bool:
+    """Whether an answer knows the visitor; asks once more where it does not yet."""
+    if not answers.bodies:
+        return False
+    if [visitor["name"] for visitor in answers.bodies[-1]["visitors"]] == ["Ani"]:
+        return True
+    answers.messages.clear()
+    bus.publish(FACT, {"method": "list"}, reply_to="lumen.answers")
+    return False
+
+
+def test_a_module_of_ones_own_takes_the_place_of_one(bus: Bus, brain: Presence, start: Started) -> None:
+    process, perceived = start(str(POSTER)), Collector()
+    bus.subscribe("lumen.NAO.social.perception", perceived)
+    here(brain, "social")
+    bus.publish("lumen.NAO.social.expression", {"text": "Selamat pagi!"})
+    assert perceived.wait(1) == [{"kind": "posted", "text": "Selamat pagi!"}]
+    assert process.stdout
+    assert process.stdout.readline() == "Selamat pagi!\n"
