@@ -205,3 +205,18 @@ def test_a_judge_that_fails_ends_nothing(tmp_path: Path, caplog: pytest.LogCaptu
     assert watcher.results.get(timeout=20.0) == b"good"
     assert "a fault of ours" in caplog.text
     watcher.close()
+
+
+def test_what_takes_long_is_begun_while_the_files_settle(tmp_path: Path) -> None:
+    root, order = fill(tmp_path / "show"), list[str]()
+
+    def judge(saved: Saved) -> Saved:
+        order.append("judged")
+        return saved
+
+    watcher = Watcher(root, read_files(root), judge, quiet=QUIET, noticed=lambda: order.append("noticed"))
+    watcher.start()
+    (root / TOUR).write_text("new", "utf-8")
+    watcher.results.get(timeout=20.0)
+    watcher.close()
+    assert order == ["noticed", "judged"]

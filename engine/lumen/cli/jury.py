@@ -37,6 +37,9 @@ class Here:
     def __init__(self, root: Path) -> None:
         self._root = root
 
+    def begin(self) -> None:
+        """Files will have to be loaded soon."""
+
     def load(self, files: Mapping[str, bytes]) -> Loaded:
         """The project that the files make, None where they have errors, and everything wrong with them."""
         return check_files(self._root, files)
@@ -57,6 +60,11 @@ class Jury:
         self._root = root
         self._child: subprocess.Popen[bytes] | None = None
         self._parts: dict[str, tuple[bytes, Any]] = {}
+
+    def begin(self) -> None:
+        """Begin the process: it takes about as long as files do to settle."""
+        with suppress(OSError):
+            self._running()
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
         try:
@@ -82,6 +90,14 @@ class Jury:
             child.communicate()
 
     def _ask(self, *question: Any) -> Any:
+        child = self._running()
+        assert child.stdin
+        assert child.stdout
+        _write(child.stdin, question)
+        return _read(child.stdout)
+
+    def _running(self) -> "subprocess.Popen[bytes]":
+        """The process, begun anew where there is none; raises OSError where the system has no room for it."""
         if self._child is None or self._child.poll() is not None:
             self.close()
             self._child = subprocess.Popen(
@@ -90,10 +106,7 @@ class Jury:
                 stdout=subprocess.PIPE,
                 start_new_session=True,  # Ctrl-C is not for it
             )
-        assert self._child.stdin
-        assert self._child.stdout
-        _write(self._child.stdin, question)
-        return _read(self._child.stdout)
+        return self._child
 
     def _project(self, parts: Mapping[str, bytes]) -> Project:
         for name, data in parts.items():

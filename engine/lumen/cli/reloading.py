@@ -89,6 +89,7 @@ class Reloading:
             quiet=quiet,
             hints=mode != "off",
             leisure=lambda judged, urgent: self._advise(judge, judged, urgent),
+            noticed=self._court.begin,
         )
         self.probation = Probation(show, self._rolled_back)
         self._undo = self._bus.subscribe(COMMAND, self._came.append)

@@ -46,7 +46,8 @@ class Watcher(Generic[T]):
     The operating system's notice of a saved file is a hint that hurries it; what decides is the content, read at least
     once a second. `files` are those before, `hash` that of the bundle that runs where it is another. `results` yields
     what `judge` makes of each new content, good or bad. `leisure` is then given what was judged, and a function that
-    says whether there is something more urgent. Without `hints` only who asks is served.
+    says whether there is something more urgent. `noticed` is called when a change shows, before it has settled.
+    Without `hints` only who asks is served.
     """
 
     def __init__(
@@ -59,9 +60,10 @@ class Watcher(Generic[T]):
         quiet: float = QUIET,
         hints: bool = True,
         leisure: Callable[[T, Callable[[], bool]], None] = lambda judged, urgent: None,
+        noticed: Callable[[], None] = lambda: None,
     ) -> None:
         self._root, self._files, self._hash = root, files, hash or fingerprint(files)
-        self._judge, self._leisure, self._quiet, self._watching = judge, leisure, quiet, hints
+        self._judge, self._leisure, self._noticed, self._quiet, self._watching = judge, leisure, noticed, quiet, hints
         self._stop, self._hint = threading.Event(), threading.Event()
         self._asked: queue.SimpleQueue[object] = queue.SimpleQueue()
         self.results: queue.SimpleQueue[T] = queue.SimpleQueue()
@@ -99,6 +101,7 @@ class Watcher(Generic[T]):
         files = read_files(self._root)
         new = fingerprint(files) != self._hash
         if new:
+            self._noticed()
             files = self._settled(files)
             new = fingerprint(files) != self._hash
         if self._stop.is_set() or not (new or asked):
