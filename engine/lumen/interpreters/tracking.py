@@ -25,13 +25,13 @@ SWING = 0.5235987755982988
 EARLY = 0.1
 """How far in the future [s] a message may say it was made, as clocks go; farther, it goes by another clock."""
 
-STILL, LITTLE = 0.15, 0.006
+STILL, LITTLE = 0.12, 0.006
 """A joint stands still that for `STILL` [s] has not moved, and not been told to, by more than `LITTLE` [rad]."""
 
 SAG = 0.035
 """How far [rad] weight and friction hold a joint off where it was told to go; farther off, something else does."""
 
-LEARNING = 0.3
+LEARNING = 0.4
 """Which part of a new measurement of that is believed: the head may still be on its way."""
 
 
