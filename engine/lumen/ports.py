@@ -1,7 +1,7 @@
 """What the runtime asks of the world: three seams, and the readings that cross them."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
@@ -36,12 +36,19 @@ class Image:
 
 @dataclass(frozen=True, slots=True)
 class Joints:
-    """Measured angles [rad, hands 0..1] and stiffness [0..1], in the order of `names`."""
+    """Measured angles [rad, hands 0..1] and stiffness [0..1], in the order of `names`.
+
+    What a robot feels of itself besides, where it does: each motor's `temperature` [degrees Celsius] in that order, its
+    inertial unit and the weight on its soles, by ALMemory's names and in its units.
+    """
 
     time: float
     names: tuple[str, ...]
     angles: tuple[float, ...]
     stiffness: tuple[float, ...]
+    temperature: tuple[float, ...] = ()
+    inertial: Mapping[str, float] = field(default_factory=dict)
+    fsr: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,8 +138,8 @@ class Strain(NamedTuple):
     """How a body fares at one moment.
 
     `played` is how far along its motion it is [s], `tilt` how far the torso leans [rad]. `touching` are pairs of its
-    own links that press into each other; `exhausted` the joints whose motors give all they can; `behind` is by how
-    much [rad] joints come late whose motors turn as fast as they can.
+    own links that press into each other; `exhausted` the joints whose motors give all they can; `behind` is how far [rad]
+    joints are from where they are wanted.
     """
 
     played: float

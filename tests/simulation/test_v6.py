@@ -3,10 +3,11 @@
 from dataclasses import replace
 from math import degrees
 
-import lumen
 import mujoco
 import numpy as np
 import pytest
+
+import lumen
 from lumen.language.commands import Walk
 from lumen.language.robots import Body
 from lumen.loading.project import draft, read_files

@@ -1,6 +1,7 @@
 """The five senses as the JSON bodies of 2015, and `time` [s], the robot's clock, which is ours."""
 
 import base64
+from collections.abc import Mapping
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,9 @@ def body_of(reading: Joints | Sonar | Tactile | Battery) -> dict[str, Any]:
     """The body of a reading that is numbers already; angles in [rad], distances in [m], charge in [%]."""
     match reading:
         case Joints(time, names, angles, stiffness):
-            return {"name": list(names), "angle": list(angles), "stiffness": list(stiffness), "time": time}
+            body = {"name": list(names), "angle": list(angles), "stiffness": list(stiffness), "time": time}
+            felt = {"temperature": list(reading.temperature), "inertial": reading.inertial, "fsr": reading.fsr}
+            return body | {name: dict(v) if isinstance(v, Mapping) else v for name, v in felt.items() if v}
         case Sonar(time, left, right):
             return {"rightSensor": right, "leftSensor": left, "time": time}
         case Tactile(time, names, values):

@@ -54,7 +54,8 @@ def reading_of(sense: Sense, body: Any, names: Sequence[str]) -> Reading | None:
                 known, angles = tuple(map(str, body["name"])), tuple(map(float, body["angle"]))
                 stiffness = tuple(map(float, body["stiffness"]))
                 whole = known == tuple(names) and len(angles) == len(stiffness) == len(known)
-                return Joints(time, known, angles, stiffness) if whole else None
+                felt = _felt(body, len(known))
+                return Joints(time, known, angles, stiffness, *felt) if whole else None
             case Sense.SONAR:
                 return Sonar(time, float(body["leftSensor"]), float(body["rightSensor"]))
             case Sense.TACTILE:
@@ -70,6 +71,13 @@ def reading_of(sense: Sense, body: Any, names: Sequence[str]) -> Reading | None:
                 return None
     except (KeyError, TypeError, ValueError, OverflowError):
         return None
+
+
+def _felt(body: Mapping[str, Any], count: int) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
+    """What else the robot feels of itself: motors' temperatures, inertial unit, soles; nothing where nothing is said."""
+    temperature = tuple(map(float, body.get("temperature", ())))
+    inertial, fsr = ({str(k): float(v) for k, v in dict(body.get(name, {})).items()} for name in ("inertial", "fsr"))
+    return temperature if len(temperature) == count else (), inertial, fsr
 
 
 def visitor_body(visitor: Any) -> dict[str, Any]:

@@ -1,5 +1,7 @@
 """What the robot feels of itself: encoders and gyrometer, with their noise."""
 
+from math import atan2, hypot
+
 import numpy as np
 
 from lumen.robots.simulation.limits import Angles
@@ -12,20 +14,33 @@ ENCODER, GYRO = 0.0017, 0.03
 class Instruments:
     """Reads joint angles and turning speeds as the robot's own computer would; the same seed gives the same noise.
 
-    `gyro` is how fast the torso rolls to the right and pitches forward [rad/s], `heading` how far it has turned to the
-    left since the start [rad], both as felt last.
+    `gyro` is how fast the torso rolls to the right and pitches forward [rad/s], `turning` how fast it turns left,
+    `heading` how far it has turned there since the start [rad], all as felt last.
     """
 
     def __init__(self, world: World, noise: float = 0.0, seed: int = 0) -> None:
         self._world, self._level = world, noise
         self._random = np.random.default_rng(seed)
-        self.gyro = 0.0, 0.0
+        self.gyro, self.turning = (0.0, 0.0), 0.0
         self.heading = 0.0
 
     @property
     def up(self) -> tuple[float, float, float]:
         """Where up is, in the torso's axes (forward, left, up), as the inertial unit tells."""
         return self._world.up
+
+    @property
+    def inertial(self) -> dict[str, float]:
+        """The inertial unit as NAOqi names it: angles [rad], speeds [rad/s], accelerations [m/s^2] in the torso's axes.
+
+        X is forward, Y left, Z up; AngleX is roll, AngleY pitch, AngleZ how far the robot has turned since the start.
+        At rest the accelerometer feels the floor push upwards: Z is 9.81.
+        """
+        forward, left, up = self._world.up
+        turning, pushed = (self.gyro[0], self.gyro[1], self.turning), self._world.acceleration
+        angles = atan2(left, up), atan2(-forward, hypot(left, up)), self.heading
+        values = zip(("Angle", "Gyroscope", "Accelerometer"), (angles, turning, pushed), strict=True)
+        return {f"{kind}{axis}": round(v, 4) for kind, three in values for axis, v in zip("XYZ", three, strict=True)}
 
     @property
     def angles(self) -> Angles:
@@ -39,5 +54,5 @@ class Instruments:
         if self._level:
             errors = self._random.normal(0, self._level * GYRO, 3).tolist()
             roll, pitch, yaw = roll + errors[0], pitch + errors[1], yaw + errors[2]
-        self.gyro = roll, pitch
+        self.gyro, self.turning = (roll, pitch), yaw
         self.heading += yaw * PERIOD

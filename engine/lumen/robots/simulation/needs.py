@@ -14,7 +14,8 @@ _LEG = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleR
 JOINTS = (*_HEAD, *(side + name for side in "LR" for name in _LEG))
 """Those that looking, standing and walking name."""
 
-_ROBOT = (("body", "Torso"), ("site", "LSole"), ("site", "RSole"), ("sensor", "gyro"), ("camera", "CameraTop"))
+_ROBOT = (("body", "Torso"), ("site", "LSole"), ("site", "RSole"), ("sensor", "gyro"), ("sensor", "accelerometer"),
+          ("camera", "CameraTop"))  # fmt: skip
 _EARS = (("site", "LSonar"), ("site", "RSonar"))
 _HALL = (("site", "stage"), ("body", "visitor"), ("site", "visitor_face"))
 

@@ -26,6 +26,7 @@ from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.model import Variation
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.repertoire import Repertoire
+from lumen.robots.simulation.soles import Soles
 from lumen.robots.simulation.sonar import Sonars
 from lumen.robots.simulation.steering import Steering
 from lumen.robots.simulation.voice import Voice
@@ -73,6 +74,7 @@ class SimulatedRobot:
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
         self._bumpers = Bumpers(self.world.model, self.world.data)
+        self._scales = Soles(self.world.model, self.world.data)
         self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
         walker = Walker(
             self.motors,
@@ -146,7 +148,9 @@ class SimulatedRobot:
                 return self._camera.image(now)
             case Sense.JOINT:
                 angles, stiffness = self.world.angles.tolist(), self.motors.stiffness.tolist()
-                return Joints(now, self.motors.names, tuple(angles), tuple(stiffness))
+                heat = tuple(self.condition.temperatures.round(1).tolist())
+                felt = heat, self._instruments.inertial, self._scales.weigh()
+                return Joints(now, self.motors.names, tuple(angles), tuple(stiffness), *felt)
             case Sense.SONAR:
                 return Sonar(now, *self._sonars.measure()) if self._sonars else None
             case Sense.TACTILE:

@@ -39,13 +39,16 @@ class World:
         self.torso = self.model.body(f"{ROBOT}/Torso").id
         self._root = self.model.joint(f"{ROBOT}/").qposadr[0]
         self._gyro = self.model.sensor(f"{ROBOT}/gyro").adr[0]
+        self._accelerometer = self.model.sensor(f"{ROBOT}/accelerometer").adr[0]
         self._torso_axes = self.data.xmat[self.torso]
         self._substeps = round(PERIOD / self.model.opt.timestep)
         self._start: NDArray[np.float64] = self.data.qpos[self._root : self._root + 7].copy()
 
     def step(self) -> None:
-        """Live one control period."""
-        self.physics.step(self._substeps)
+        """Live one control period; as dm_control's `step`, it ends with everything known of the new state."""
+        mujoco.mj_step2(self.model, self.data)
+        mujoco.mj_step(self.model, self.data, self._substeps - 1)
+        mujoco.mj_step1(self.model, self.data)
 
     @property
     def angles(self) -> Angles:
@@ -71,6 +74,12 @@ class World:
         """How fast the torso rolls to the right, pitches forward and turns to the left [rad/s]."""
         roll, pitch, yaw = self.data.sensordata[self._gyro : self._gyro + 3].tolist()
         return roll, pitch, yaw
+
+    @property
+    def acceleration(self) -> tuple[float, float, float]:
+        """What the accelerometer feels in the torso's axes: forward, left, up [m/s^2]."""
+        x, y, z = self.data.sensordata[self._accelerometer : self._accelerometer + 3].tolist()
+        return x, y, z
 
     @property
     def up(self) -> tuple[float, float, float]:
