@@ -13,7 +13,7 @@ import pytest
 from lumen.language.commands import Rest
 from lumen.ports import Perform
 from lumen.runtime.keeping import SNAPSHOT
-from tests.processes.troupe import Member, Troupe
+from tests.processes.troupe import Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ
 
 pytestmark = pytest.mark.xdist_group("rabbitmq")
@@ -41,11 +41,6 @@ def start(copy: Path, broker: RabbitMQ) -> Iterator[Start]:
 
 def motions(member: Member) -> list[str]:
     return [command.motion.name for _, command in member.body.performed if isinstance(command, Perform)]
-
-
-def shown(troupe: Troupe, state: str) -> bool:
-    """Whether the behaviour has told that it entered that state."""
-    return any(state in body.get("entered", ()) for body in troupe.trace.bodies)
 
 
 def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_between(
@@ -86,11 +81,14 @@ def test_ctrl_c_ends_each_process_cleanly_and_who_waits_says_for_whom(start: Sta
 
 @pytest.mark.soak
 def test_the_whole_tour_in_four_processes(troupe: Troupe, start: Start) -> None:
-    """Everybody is a process of their own; the tour of `make run` is played to its end."""
+    """Everybody is a process of their own; the tour of `make run` is what it is in one."""
+    expected = alone(troupe.folder, "visitor")
     others = [start("robot"), start("motion"), start("brain", "--story", "visitor")]
     visitor = start("visitor", "--story", "visitor")
     said = visitor.communicate(timeout=300)[0]
     assert visitor.returncode == 0, said
+    troupe.until(lambda: len(deeds(troupe.trace.bodies)) >= len(expected))
+    assert deeds(troupe.trace.bodies) == expected
     for process in others:
         process.send_signal(signal.SIGTERM)
         rest = process.communicate(timeout=20)[0]

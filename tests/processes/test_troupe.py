@@ -1,37 +1,16 @@
 """Robot, brain, motion and visitor apart, on a real broker: what they do is what one process does."""
 
 import time
-from pathlib import Path
 
 import pytest
 
-import lumen
-from lumen.cli.cast import cast
-from lumen.cli.show import Show
 from lumen.errors import UsageError
 from lumen.language.commands import Posture, Rest
 from lumen.ports import Perform
-from tests.processes.troupe import Troupe, deeds
+from tests.processes.troupe import Troupe, alone, deeds
 from tests.relay import Relay
-from tests.waiting import Collector
 
 pytestmark = pytest.mark.xdist_group("rabbitmq")
-
-
-def alone(folder: Path, name: str) -> list[object]:
-    """What the behaviour does in one process."""
-    project = lumen.load(folder)
-    story = project.stories[name]
-    show = Show(project, cast("recording", project, "max", story), story=story)
-    trace = Collector()
-    show.bus.subscribe("lumen.state", trace)
-    show.start()
-    assert show.player
-    while not show.player.finished:
-        show.tick()
-    assert not show.player.failure
-    show.close()
-    return deeds(trace.bodies)
 
 
 def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
@@ -128,3 +107,24 @@ def test_a_network_that_is_cut_for_10_seconds_ends_safely_and_goes_on(troupe: Tr
         member.close()
     troupe.members.clear()
     cable.close()
+
+
+def test_files_that_the_brain_puts_in_force_are_in_force_everywhere(troupe: Troupe) -> None:
+    robot, brain = troupe.play()
+    motion = troupe.join("motion")
+    before = brain.brain.project.hash if brain.brain else ""
+    troupe.until(lambda: brain.brain and brain.brain._motion())
+    file = troupe.folder / "motions" / "photo.yaml"
+    file.write_text(file.read_text("utf-8").replace("description: ", "description: Again, "), "utf-8")
+    tour = troupe.folder / "behaviors" / "tour.yaml"
+    tour.write_text(tour.read_text("utf-8").replace("Welcome to", "Hello at"), "utf-8")
+    troupe.ear.publish("lumen.config.command", {"command": "reload"})
+
+    def bundles() -> set[object]:
+        peers = [member.process._presence.find(part) for member, part in ((brain, "motion"), (brain, "robot"))]
+        return {peer.said["bundle"] for peer in peers if peer}
+
+    troupe.until(lambda: brain.brain and bundles() == {brain.brain.project.hash} and before not in bundles())
+    assert brain.brain
+    assert brain.brain._motion()
+    assert {robot, motion} < set(troupe.members)

@@ -15,6 +15,7 @@ from lumen.cli.apart.brain import BrainPart
 from lumen.cli.apart.starting import assembled
 from lumen.cli.cast import Cast, cast
 from lumen.cli.premises import Premises
+from lumen.cli.show import Show
 from lumen.clocks.real import RealClock
 from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
@@ -139,6 +140,22 @@ class Troupe:
         for member in self.members:
             member.close()
         self.ear.close()
+
+
+def alone(folder: Path, name: str) -> list[object]:
+    """What the behaviour does in one process."""
+    project = lumen.load(folder)
+    story = project.stories[name]
+    show = Show(project, cast("recording", project, "max", story), story=story)
+    trace = Collector()
+    show.bus.subscribe("lumen.state", trace)
+    show.start()
+    assert show.player
+    while not show.player.finished:
+        show.tick()
+    assert not show.player.failure
+    show.close()
+    return deeds(trace.bodies)
 
 
 def deeds(bodies: list[Any], robot: str = "NAO") -> list[Any]:

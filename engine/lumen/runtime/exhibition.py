@@ -40,9 +40,9 @@ class Exhibition:
     """A project on a robot, a bus and a clock.
 
     At each tick: the clock waits, the `parts` live, what happened becomes events, the behaviour steps, its commands are
-    performed; `observers` are told. Where ticks stop for 5 s of the clock the behaviour is told (`brain.lost`). Where a
-    tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle. `tracking` lets controllers
-    follow what is seen; without one that is done here.
+    performed; `observers` are told. Where ticks stop for `patience` [s] of the clock the behaviour is told
+    (`brain.lost`). Where a tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
+    `tracking` lets controllers follow what is seen; without one that is done here.
     """
 
     def __init__(
@@ -59,6 +59,7 @@ class Exhibition:
         self._cues = Cues()
         self._events: list[Event] = []
         self._last = clock.now()
+        self.patience = BRAIN_LOST
 
     @property
     def project(self) -> Project:
@@ -66,12 +67,14 @@ class Exhibition:
 
     def start(self, *, language: str = "", epoch: float = 0.0, context: Mapping[str, Any] | None = None) -> None:
         """Listen, and enter the initial states; `context` gives keys of the context other first values."""
+        self._last = self.clock.now()
         self.inbox.listen(self.project)
         first = self.runtime.start(self._last, language=language, epoch=epoch, context=context)
         self._perform(first, self._last)
 
     def resume(self, resumption: Resumption) -> None:
         """Listen, and go on from where this project's behaviour stood before the engine was away."""
+        self._last = self.clock.now()
         self.inbox.listen(self.project)
         self.runtime.apply(self.project, resumption.snapshot)
         for name in resumption.tracking:
@@ -89,7 +92,7 @@ class Exhibition:
         """Live through one tick; its time [s]."""
         self.clock.wait(self._last + TICK)
         now = self.clock.now()
-        if now - self._last > BRAIN_LOST:
+        if now - self._last > self.patience:
             self._events.append(Event("brain.lost", {"seconds": now - self._last}, now))
         self._last = now
         for part in self.parts:

@@ -54,6 +54,7 @@ class BrainPart:
         mode: str,
         language: str,
         fresh: bool,
+        speed: float,
     ) -> None:
         project = staged(project, story)
         self._bus, self._presence, self._premises, self._transcript = bus, presence, premises, transcript
@@ -63,6 +64,7 @@ class BrainPart:
         self._tracking = Delegating(own, project, bus, self._motion, self.robot.time)
         self.show = Show(project, Cast(self.robot, clock, None, remote=True, tracking=self._tracking), bus, story)
         self.show.using.append(self.robot.use)
+        self.show.exhibition.patience *= speed  # whether it was away is a matter of real time, as for the robot
         self._session, self._lost, self._interrupted = "", False, False
 
     @property

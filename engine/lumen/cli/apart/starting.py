@@ -43,7 +43,7 @@ def start(
     """Run these parts of an exhibition; the exit code. Raises UsageError for options that do not go with that."""
     _check(options, story, parts, url)
     speed = float(options.speed)
-    chosen = cast(options.robot, project, options.speed, story) if ROBOT in parts else None
+    chosen = cast(options.robot, project, options.speed, story, options.robot_url) if ROBOT in parts else None
     clock: Clock = chosen.clock if chosen else RealClock(speed=speed)
     bus = validated(connect(url), project)
     process, brain = assembled(options, project, story, parts, (bus, url), premises, language, clock, chosen)
@@ -92,7 +92,7 @@ def assembled(
         mode = options.reload
         brain = BrainPart(
             project, bus, url, clock, presence, premises, transcript, story,
-            mode=mode, language=language, fresh=options.fresh,
+            mode=mode, language=language, fresh=options.fresh, speed=float(options.speed),
         )  # fmt: skip
         parts.append(brain)
     if VISITOR in names:
