@@ -18,6 +18,7 @@ from lumen.ports import Aim, Battery, Hall, Joints, Perform, Robot, Sense, Sonar
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import Host, RemoteHall, RemoteRobot
 from lumen.robots.simulation import SimulatedRobot
+from tests.naoqi.lockstep import Lockstep
 from tests.tour.names import ROOT
 
 
@@ -61,7 +62,12 @@ class Remote(RemoteRobot):
         self._host.close()
 
 
-ROBOTS: dict[str, Callable[[Project], Body]] = {"simulation": simulated, "recording": recording, "remote": Remote}
+ROBOTS: dict[str, Callable[[Project], Body]] = {
+    "simulation": simulated,
+    "recording": recording,
+    "remote": Remote,
+    "naoqi": Lockstep,
+}
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,9 @@ from lumen.language.stories import Story
 from lumen.ports import Clock, Hall, Robot
 from lumen.runtime.tracking import Following
 
-ROBOTS = ("simulation", "recording", "remote", "none")
+ROBOTS = ("simulation", "naoqi", "recording", "remote", "none")
 SPEEDS = ("1", "4", "max")
+NAO = "nao.local"
 VOICES = ("none", "espeak")
 
 
@@ -32,8 +33,10 @@ class Cast:
     tracking: Following | None = None
 
 
-def cast(kind: str, project: Project, speed: str, story: Story | None = None) -> Cast:
-    """The robot of that name, on its feet."""
+def cast(kind: str, project: Project, speed: str, story: Story | None = None, url: str | None = None) -> Cast:
+    """The robot of that name, on its feet; `url` is where a real one is."""
+    if url and kind != "naoqi":
+        raise UsageError("--robot-url is where a real robot is: say --robot naoqi with it")
     pace = None if speed == "max" else float(speed)
     if kind == "simulation":
         from lumen.robots.simulation import SimulatedRobot, available
@@ -45,6 +48,15 @@ def cast(kind: str, project: Project, speed: str, story: Story | None = None) ->
 
         recording = RecordingRobot(project.body, story.robot if story else None)
         return Cast(recording, SimulatedClock(recording.advance, pace), recording)
+    if kind == "naoqi":
+        from lumen.robots.naoqi import NaoqiRobot, Place
+
+        if speed != "1":
+            raise UsageError("a real robot lives in real time: leave out --speed")
+        if story:
+            raise UsageError("a story needs a visitor of ours in a simulated hall: leave out --robot naoqi")
+        clock = RealClock()
+        return Cast(NaoqiRobot(project.body, url or NAO, clock.now, stage=project.stage), clock, Place())
     if kind == "none":
         from lumen.robots.none import NoRobot
 

@@ -34,6 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="PARTS",
         help="one process of several: robot, brain, motion, visitor, memory, eyes, ears, voice, social, with commas between them",
     )
+    add("--robot-url", metavar="URL", help="where the real one is (--robot naoqi); default: tcp://nao.local:9559")
     add("--speed", choices=SPEEDS, default="1", help="simulated time, times real time (default: 1)")
     add("--bus", metavar="URL", help="memory:// or amqp://user:password@host/ (default: LUMEN_BUS, then lumen.yaml's)")
     add("--for", dest="period", metavar="60s", help="end after so much simulated time")
@@ -71,7 +72,7 @@ def _run(options: argparse.Namespace, root: Path, premises: Premises, parts: tup
 
         return start(options, project, story, parts, url, premises, period, language)
     video = film_path(options.video, options.robot)
-    chosen = cast(options.robot, project, options.speed, story)
+    chosen = cast(options.robot, project, options.speed, story, options.robot_url)
     silence = _voice(options, chosen, language or project.languages[0])
     performance = Performance(project, chosen, url, story, premises)
     signal.signal(signal.SIGINT, lambda *_: performance.interrupt())

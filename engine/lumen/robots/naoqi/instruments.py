@@ -1,0 +1,188 @@
+"""How each sense is asked for: ALMemory's keys, and the camera."""
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+from lumen.errors import RobotError
+from lumen.language.robots import Body
+from lumen.ports import Battery, Image, Joints, Reading, Sense, Sonar, Tactile
+from lumen.robots.naoqi.link import Call, Link
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+NAME = "lumen"
+TOP, RGB = 0, 11
+RESOLUTIONS = {(160, 120): 0, (320, 240): 1, (640, 480): 2, (1280, 960): 3}
+RATE = 15
+"""Images a second."""
+FRAMES = 100
+"""Of how many images the fastest tells how the robot's clock stands to ours."""
+
+_DEVICE = "Device/SubDeviceList/{}/Value"
+TOUCHES = {
+    "RightBumper": ("RFoot/Bumper/Left", "RFoot/Bumper/Right"),
+    "LeftBumper": ("LFoot/Bumper/Left", "LFoot/Bumper/Right"),
+    "ChestButton": ("ChestBoard/Button",),
+    "FrontTactil": ("Head/Touch/Front",),
+    "MiddleTactil": ("Head/Touch/Middle",),
+    "RearTactil": ("Head/Touch/Rear",),
+    "HandRightBack": ("RHand/Touch/Back",),
+    "HandRightLeft": ("RHand/Touch/Left",),
+    "HandRightRight": ("RHand/Touch/Right",),
+    "HandLeftBack": ("LHand/Touch/Back",),
+    "HandLeftLeft": ("LHand/Touch/Left",),
+    "HandLeftRight": ("LHand/Touch/Right",),
+}
+"""The devices behind each tactile sensor: a bumper has two."""
+
+CHARGE, PLUGGED, CHARGING = (
+    _DEVICE.format("Battery/Charge/Sensor"),
+    "BatteryPowerPluggedChanged",
+    "BatteryChargingFlagChanged",
+)
+
+
+def device(name: str) -> str:
+    """ALMemory's key of what a sensor measures."""
+    return _DEVICE.format(f"{name}/Sensor")
+
+
+class Instruments:
+    """Reads a robot's senses; every method waits for NAOqi, and raises RobotError where it can't be read."""
+
+    def __init__(self, link: Link, body: Body, clock: Callable[[], float]) -> None:
+        self._link, self._body, self._clock = link, body, clock
+        self._names = list(body.joints)
+        self._touches = {name: [device(d) for d in TOUCHES[name]] for name in body.tactile if name in TOUCHES}
+        self._handle = ""
+        self._behind: deque[float] = deque(maxlen=FRAMES)
+        self._warm: Call | None = None
+        self._warmed = -inf
+
+    def reader(self, sense: Sense) -> Callable[[], Reading]:
+        readers: dict[Sense, Callable[[], Reading]] = {
+            Sense.IMAGE: self.image, Sense.JOINT: self.joints, Sense.SONAR: self.sonar,
+            Sense.TACTILE: self.tactile, Sense.BATTERY: self.battery,
+        }  # fmt: skip
+        return readers[sense]
+
+    def begin(self) -> None:
+        """Forget what another session was about; what was left over of our own cameras is let go."""
+        self._handle = ""
+        self._behind.clear()
+        if self._link.has("ALVideoDevice"):
+            for handle in self._link.ask("ALVideoDevice", "getSubscribers") or ():
+                if str(handle).startswith(NAME):
+                    self._link.post("ALVideoDevice", "unsubscribe", handle)
+        if self._link.has("ALSonar"):
+            self._link.post("ALSonar", "subscribe", NAME)
+
+    def end(self) -> None:
+        """Let go of camera and sonars."""
+        if self._handle:
+            self._link.post("ALVideoDevice", "unsubscribe", self._handle).wait(0.5)
+        if self._link.has("ALSonar"):
+            self._link.post("ALSonar", "unsubscribe", NAME).wait(0.5)
+
+    def joints(self) -> Joints:
+        now = self._clock()
+        angles = self._numbers(self._link.ask("ALMotion", "getAngles", self._names, True), "getAngles")
+        stiffness = self._numbers(self._link.ask("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
+        return Joints(now, tuple(self._names), angles, stiffness)
+
+    def sonar(self) -> Sonar:
+        if not self._link.has("ALSonar"):
+            raise RobotError("this robot has no ALSonar")
+        now = self._clock()
+        left, right = self._memory([device("US/Left"), device("US/Right")])
+        if not isinstance(left, int | float) or not isinstance(right, int | float):
+            raise RobotError("ALMemory knows of no sonars")
+        return Sonar(now, float(left), float(right))
+
+    def tactile(self) -> Tactile:
+        now = self._clock()
+        found = iter(self._memory([key for keys in self._touches.values() for key in keys]))
+        pressed = {name: sum(bool(next(found)) for _ in keys) > 0 for name, keys in self._touches.items()}
+        return Tactile(now, self._body.tactile, tuple(int(pressed.get(name, False)) for name in self._body.tactile))
+
+    def battery(self) -> Battery:
+        now = self._clock()
+        charge, plugged, charging = self._memory([CHARGE, PLUGGED, CHARGING])
+        if not isinstance(charge, int | float):
+            raise RobotError("ALMemory does not know how full the battery is")
+        percentage = round(100 * min(max(float(charge), 0.0), 1.0))
+        return Battery(now, percentage, plugged=bool(plugged) or bool(charging), charging=bool(charging))
+
+    def image(self) -> Image:
+        """The newest frame of the top camera, at its time on our clock."""
+        handle = self._handle or self._subscribe()
+        try:
+            found = self._link.ask("ALVideoDevice", "getImageRemote", handle)
+            pixels, stamp = self._pixels(found)
+        except RobotError:
+            self._handle = ""
+            raise
+        self._link.post("ALVideoDevice", "releaseImage", handle)
+        self._behind.append(self._clock() - stamp)
+        width, height = self._body.camera.width, self._body.camera.height
+
+        def shaped() -> "NDArray[np.uint8]":
+            import numpy as np
+
+            return np.frombuffer(pixels, np.uint8).reshape(height, width, 3)
+
+        return Image(stamp + min(self._behind), shaped)
+
+    def heat(self, now: float, every: float) -> dict[str, float]:
+        """How hot the motors are [degrees Celsius], once every so many seconds, else nothing; this waits for nobody."""
+        names = [name for name in self._names if name not in self._body.shared]
+        if self._warm is None and now >= self._warmed + every:
+            self._warmed = now
+            self._warm = self._link.post("ALMemory", "getListData", [device(f"{n}/Temperature") for n in names])
+        if self._warm is None or not self._warm.done:
+            return {}
+        call, self._warm = self._warm, None
+        try:
+            found = zip(names, call.result() or (), strict=False)
+        except RobotError:
+            return {}
+        return {name: float(t) for name, t in found if isinstance(t, int | float)}
+
+    def _subscribe(self) -> str:
+        camera = self._body.camera
+        size = (camera.width, camera.height)
+        if size not in RESOLUTIONS:
+            raise RobotError(f"NAO's camera has no images of {size[0]} x {size[1]}")
+        arguments = (NAME, TOP, RESOLUTIONS[size], RGB, RATE)
+        self._handle = str(self._link.ask("ALVideoDevice", "subscribeCamera", *arguments) or "")
+        if not self._handle:
+            raise RobotError("the camera can't be subscribed to: too many others have it")
+        return self._handle
+
+    def _pixels(self, found: Any) -> tuple[bytes, float]:
+        """The bytes of a frame, and its time on the robot's clock [s]."""
+        if not isinstance(found, Sequence) or len(found) < 7:
+            raise RobotError("the camera gave no image: somebody else has unsubscribed it, or it is not there")
+        width, height, layers, _, seconds, microseconds, pixels = found[:7]
+        camera = self._body.camera
+        if (width, height, layers) != (camera.width, camera.height, 3):
+            wanted = f"{camera.width} x {camera.height} x 3"
+            raise RobotError(f"the camera gave an image of {width} x {height} x {layers}, not of {wanted}")
+        if not isinstance(pixels, bytes | bytearray) or len(pixels) != width * height * layers:
+            raise RobotError(f"the camera gave {len(pixels) if pixels else 0} bytes for {width} x {height} x {layers}")
+        return bytes(pixels), float(seconds) + float(microseconds) / 1e6
+
+    def _memory(self, keys: list[str]) -> list[Any]:
+        found = self._link.ask("ALMemory", "getListData", keys)
+        if not isinstance(found, Sequence) or len(found) != len(keys):
+            raise RobotError("ALMemory did not answer for every key")
+        return list(found)
+
+    def _numbers(self, found: Any, method: str) -> tuple[float, ...]:
+        if not isinstance(found, Sequence) or len(found) != len(self._names):
+            raise RobotError(f"ALMotion.{method} did not answer for every joint")
+        return tuple(map(float, found))

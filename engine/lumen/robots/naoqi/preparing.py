@@ -1,0 +1,95 @@
+"""What is settled with NAOqi before the first command, after every connecting."""
+
+import logging
+import re
+from collections.abc import Sequence
+
+from lumen.errors import RobotError
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.robots import Body
+from lumen.robots.naoqi.link import Link
+
+NEEDED = ("ALMotion", "ALRobotPosture", "ALMemory")
+WELCOME = {
+    "ALTextToSpeech": "it will not speak",
+    "ALVideoDevice": "it has no images",
+    "ALSonar": "nothing but its bumpers stops it before a wall",
+    "ALLeds": "its lights stay as they are",
+    "ALAudioPlayer": "it plays no sounds",
+    "ALAutonomousLife": "see that nothing else moves it",
+    "ALSystem": "its version is not known",
+}
+"""Services that a tour can do without, and what is missing then."""
+OLDEST, TESTED = (2, 1), ((2, 1), (2, 8))
+LASTING = 10.0
+"""How long autonomous life may take to end [s]: it lets the robot finish what it does."""
+
+_log = logging.getLogger(__name__)
+
+
+def prepare(link: Link, body: Body, *, again: bool) -> None:
+    """Take the robot over: nothing else moves it, its reflexes are on, and what it did before a break has ended.
+
+    Raises RobotError where it is no robot that this body is of, or its NAOqi is too old.
+    """
+    _find(link)
+    _check_version(link)
+    _check_joints(link, body)
+    if link.has("ALAutonomousLife") and link.ask("ALAutonomousLife", "getState") != "disabled":
+        link.ask("ALAutonomousLife", "setState", "disabled", patience=LASTING)
+    if again:
+        halt(link, list(body.joints))
+    _protect(link)
+
+
+def halt(link: Link, joints: Sequence[str]) -> None:
+    """End what goes on, keeping balance: a walk by its last step, motions where they are, and words."""
+    link.post("ALMotion", "stopMove").wait(2.0)
+    link.post("ALMotion", "killTasksUsingResources", list(joints)).wait(1.0)
+    if link.has("ALTextToSpeech"):
+        link.post("ALTextToSpeech", "stopAll").wait(1.0)
+
+
+def _find(link: Link) -> None:
+    if missing := link.find(NEEDED):
+        raise RobotError(f"at {link.url} there is no {missing[0]}: is NAOqi up yet, and is it a NAO?")
+    for name in link.find(WELCOME):
+        _log.warning("this robot has no %s: %s", name, WELCOME[name])
+
+
+def _check_version(link: Link) -> None:
+    if not link.has("ALSystem"):
+        return
+    text = str(link.ask("ALSystem", "systemVersion"))
+    found = re.match(r"(\d+)\.(\d+)", text)
+    if found is None:
+        _log.warning("the robot says it has NAOqi `%s`, which nobody here knows", text[:40])
+        return
+    version = int(found[1]), int(found[2])
+    if version < OLDEST:
+        raise RobotError(f"the robot has NAOqi {text}: Lumen needs 2.1 or newer")
+    if not TESTED[0] <= version <= TESTED[1]:
+        _log.warning("the robot has NAOqi %s: Lumen was written for 2.1 to 2.8", text)
+
+
+def _check_joints(link: Link, body: Body) -> None:
+    """Raises RobotError where the robot lacks a joint: a body without hands is another model."""
+    names = list(map(str, link.ask("ALMotion", "getBodyNames", "Body")))
+    for joint in body.joints:
+        if joint not in names:
+            raise RobotError(f"this robot has no {joint}, and models/{body.name} has: {did_you_mean(joint, names)}")
+
+
+def _protect(link: Link) -> None:
+    """NAOqi's reflexes on: the fall manager, the distance kept from obstacles, and stiffness that adapts."""
+    for method, *arguments in (
+        ("setFallManagerEnabled", True),
+        ("setExternalCollisionProtectionEnabled", "All", True),
+        ("setSmartStiffnessEnabled", True),
+    ):
+        call = link.post("ALMotion", str(method), *arguments)
+        try:
+            if call.wait(2.0):
+                call.result()
+        except RobotError as error:
+            _log.warning("the reflex %s could not be switched on: %s", method, error)

@@ -1,0 +1,148 @@
+"""A real NAO behind the `Robot` seam."""
+
+import logging
+from collections.abc import Callable, Sequence
+
+from lumen.errors import RobotError
+from lumen.language.events import Event
+from lumen.language.projects import Stage
+from lumen.language.robots import Body
+from lumen.ports import Aim, Battery, Reading, RobotCommand, Sense, Sonar
+from lumen.robots.executor import Executor
+from lumen.robots.naoqi.deeds import Deed
+from lumen.robots.naoqi.ground import Ground
+from lumen.robots.naoqi.instruments import Instruments
+from lumen.robots.naoqi.keeping import Keeper
+from lumen.robots.naoqi.link import Call, Link
+from lumen.robots.naoqi.noticing import FALLEN, FALLING, Condition, Noticing
+from lumen.robots.naoqi.preparing import halt, prepare
+from lumen.robots.naoqi.repertoire import Repertoire
+from lumen.robots.naoqi.senses import PERIODS, Acquiring
+from lumen.robots.parts import part_of, parts
+
+WARM_EVERY = 5.0
+"""How often motors are asked how hot they are [s]."""
+
+_log = logging.getLogger(__name__)
+
+
+class NaoqiRobot:
+    """The NAO at `url`, in real time: `clock` [s] stamps what it answers, notices and senses.
+
+    It is taken over at once: autonomous life ends, its reflexes stay on. Where the connection breaks, all commands have
+    failed, `robot.lost` is noticed, and `robot.back` once it was made again. `stage` bounds where it may walk, from
+    where it stands now. Raises RobotError where there is no robot, or none that this body is of.
+    """
+
+    def __init__(self, body: Body, url: str, clock: Callable[[], float], *, stage: Stage | None = None) -> None:
+        self.body = body
+        self._clock = clock
+        self._link = Link(url, lambda reason: self._keeper.lose(reason))
+        self._noticing = Noticing(body.tactile)
+        self._instruments = Instruments(self._link, body, clock)
+        self._ground = Ground(stage, self._noticing.pressed, self._echo)
+        self._condition = Condition()
+        self._events: list[Event] = []
+        self._repertoire = Repertoire(self._link.post, body, self._ground, self._events.append, clock)
+        self._executor = Executor(self._begin, lambda command: parts(command, body))
+        self._part = part_of(body)
+        self._aimed: Call = Call()
+        self._aim: Aim | None = None
+        self._keeper = Keeper(self._link, self._take_over)
+        self._keeper.open()
+        self._senses = {
+            sense: Acquiring(sense, self._link, self._instruments.reader(sense), PERIODS[sense]) for sense in Sense
+        }
+
+    def start(self, id: str, command: RobotCommand) -> None:
+        if not isinstance(command, Aim):
+            self._executor.start(id, command)
+            return
+        try:
+            self._repertoire.inside(command.angles)
+        except RobotError as error:
+            _log.warning("an aim was refused: %s", error)
+        else:
+            self._aim = command
+            self._turn()
+
+    def cancel(self, id: str) -> None:
+        self._executor.cancel(id)
+
+    def poll(self) -> Sequence[Event]:
+        now = self._clock()
+        self._feel(now)
+        self._turn()
+        answers = self._executor.advance(now)
+        events = [*self._events, *answers]
+        self._events.clear()
+        return events
+
+    def begun(self) -> Sequence[str]:
+        return self._executor.begun()
+
+    def read(self, sense: Sense) -> Reading | None:
+        return self._senses[sense].newest
+
+    def close(self) -> None:
+        """End what the robot does, let go of its senses, and end the threads; it stays as it stands."""
+        self._keeper.close()
+        for sense in self._senses.values():
+            sense.close()
+        if self._link.up:
+            if self._executor.busy:
+                halt(self._link, list(self.body.joints))
+            self._instruments.end()
+        self._link.close()
+
+    def _begin(self, command: RobotCommand, now: float) -> Deed:
+        if not self._link.up:
+            raise RobotError("the connection to the robot is lost")
+        return self._repertoire.begin(command, now)
+
+    def _take_over(self, again: bool) -> None:
+        """Settle with NAOqi what has to be; on whichever thread connects."""
+        prepare(self._link, self.body, again=again)
+        self._noticing.listen(self._link)
+        self._instruments.begin()
+        if not again:
+            self._ground.meet(self._link.ask("ALMotion", "getRobotPosition", True))
+
+    def _feel(self, now: float) -> None:
+        """Take note of what has happened since the last tick."""
+        for name, seconds, reason in self._keeper.changes():
+            if name == "robot.lost":
+                self._executor.fail(f"the robot is lost: {reason}")
+            self._events.append(Event(name, {"seconds": round(seconds, 3)}, now))
+        for name, value in self._noticing.take():
+            if name in self.body.tactile:
+                self._events.append(Event("touched" if value else "released", {"sensor": name}, now))
+            elif value and name in (FALLEN, *FALLING):
+                self._fall(name, now)
+        battery = self.read(Sense.BATTERY)
+        if isinstance(battery, Battery):
+            self._events += self._condition.battery(battery.percentage, now)
+        self._events += self._condition.motors(self._instruments.heat(now, WARM_EVERY), now)
+
+    def _fall(self, name: str, now: float) -> None:
+        """Its commands end as the fall begins; `fallen` is told once it is over."""
+        self._repertoire.fallen = True
+        self._executor.fail("the robot fell")
+        if name == FALLEN:
+            self._events.append(Event("fallen", {}, now))
+
+    def _turn(self) -> None:
+        """Send the newest aim, for the joints that nobody owns, unless NAOqi is still busy with the last."""
+        aim = self._aim
+        if aim is None or not self._aimed.done or self._repertoire.fallen:
+            return
+        self._aim = None
+        free = {n: a for n, a in aim.angles.items() if not self._executor.owner(self._part.get(n, ""))}
+        if free and self._link.up:
+            inside = self._repertoire.inside(free)
+            speed = min(max(aim.speed, 0.01), 1.0)
+            self._aimed = self._link.post("ALMotion", "setAngles", list(inside), list(inside.values()), speed)
+
+    def _echo(self) -> Sonar | None:
+        echo = self._senses[Sense.SONAR].newest
+        return echo if isinstance(echo, Sonar) else None

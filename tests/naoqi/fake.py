@@ -1,0 +1,73 @@
+"""A NAO that is not there: a NAOqi on this machine, served by qi, and the hall around it."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import qi
+
+from lumen.interpreters.projection import seen
+from lumen.language.robots import Body
+from lumen.language.stories import Visitor
+from lumen.robots.naoqi.noticing import event_of
+from lumen.robots.recording import FACE, PODIUM, TORSO
+from tests.naoqi.services import SERVICES, ALMemory, ALSonar, ALVideoDevice, World
+
+
+class FakeNao:
+    """Answers at `url`; `world` is what it is about, `times` lets its time pass. `without` are services it lacks."""
+
+    def __init__(self, body: Body, *, without: Iterable[str] = (), version: str = "2.8.6.23", port: int = 0) -> None:
+        qi.logging.setLevel(qi.logging.FATAL)
+        self.world = World(body)
+        self.world.version = version
+        self.times = self.world.times
+        self.memory = ALMemory(self.world)
+        self.camera = ALVideoDevice(self.world)
+        self._own: dict[type, Any] = {ALMemory: self.memory, ALVideoDevice: self.camera}
+        self._without = tuple(without)
+        self._visitor: Visitor | None = None
+        self._session: Any = None
+        self.told = 0
+        self.open(port)
+
+    def open(self, port: int = 0) -> None:
+        """Come up, on any free port or on this one."""
+        self._session = qi.Session()
+        self._session.listenStandalone(f"tcp://127.0.0.1:{port}")
+        for kind in (*SERVICES, ALSonar):
+            if kind.__name__ not in self._without:
+                made = self._own.get(kind) or (kind() if kind is ALSonar else kind(self.world))  # type: ignore[call-arg]
+                self._session.registerService(kind.__name__, made)
+        self.url = self._session.endpoints()[0]
+
+    @property
+    def port(self) -> int:
+        return int(self.url.rpartition(":")[2])
+
+    def drop(self) -> None:
+        """Be gone, whatever goes on."""
+        self._session.close()
+
+    def close(self) -> None:
+        self.times.close()
+        self._session.close()
+
+    def place(self, visitor: Visitor | None) -> None:
+        self._visitor = visitor
+
+    def face(self) -> tuple[float, float] | None:
+        """Where the visitor's face stands in the top camera's image [px]."""
+        if self._visitor is None:
+            return None
+        angles = self.world.joints.angles()
+        place = (self._visitor.x, self._visitor.y, self._visitor.height * FACE - PODIUM - TORSO)
+        return seen(place, self.world.body.camera, angles["HeadYaw"], angles["HeadPitch"])
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        if pressed != (sensor in self.world.pressed):
+            self.world.pressed ^= {sensor}
+            self.tell(event_of(sensor), 1.0 if pressed else 0.0)
+
+    def tell(self, event: str, value: Any) -> None:
+        """Raise an event of ALMemory."""
+        self.told += self.memory.raised(event, value)

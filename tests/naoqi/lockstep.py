@@ -1,0 +1,50 @@
+"""The adapter and the fake in one virtual time: nothing passes before every answer has arrived."""
+
+import threading
+import time
+
+from lumen.language.projects import Project
+from lumen.language.stories import Visitor
+from lumen.ports import Reading, Sense
+from lumen.robots.naoqi import NaoqiRobot
+from tests.naoqi.fake import FakeNao
+
+DEADLINE = 20.0
+
+
+class Lockstep(NaoqiRobot):
+    """The robot behind the seam, on a fake of its own (`nao`), in a hall; `advance` lets time pass for both."""
+
+    def __init__(self, project: Project, nao: FakeNao | None = None, *, all_fresh: bool = True) -> None:
+        self.nao = nao or FakeNao(project.body)
+        self._fresh = tuple(Sense) if all_fresh else (Sense.JOINT,)
+        super().__init__(project.body, self.nao.url, lambda: self.nao.times.now, stage=project.stage)
+        self.place, self.face = self.nao.place, self.nao.face
+
+    def advance(self, dt: float) -> None:
+        self.settle()
+        self.nao.times.advance(dt)
+        self.settle()
+
+    def settle(self) -> None:
+        """Wait until every call but those that block has been answered, and every event heard."""
+        deadline, pause = time.monotonic() + DEADLINE, threading.Event()
+        while self._link.up and (self._link.pending != self.nao.times.waiting or self._noticing.heard < self.nao.told):
+            assert time.monotonic() < deadline, "the fake robot and the adapter wait for each other"
+            pause.wait(0.0002)
+
+    def read(self, sense: Sense) -> Reading | None:
+        return self._senses[sense].fresh() if sense in self._fresh else super().read(sense)
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        self.nao.touch(sensor, pressed)
+
+    def plug(self, plugged: bool) -> None:
+        self.nao.world.plugged = plugged
+
+    def place(self, visitor: Visitor | None) -> None:  # type: ignore[no-redef]
+        self.nao.place(visitor)
+
+    def close(self) -> None:
+        super().close()
+        self.nao.close()
