@@ -1,10 +1,12 @@
 """What must arrive does, once, whatever befalls the broker and the way to it; and nothing grows meanwhile."""
 
+import logging
 import threading
 import time
 import tracemalloc
 from collections import Counter
 from collections.abc import Iterator
+from typing import Any
 
 import pika
 import pytest
@@ -76,25 +78,49 @@ def arrive_once(effects: Effects, sent: int, timeout: float) -> None:
 
 
 @pytest.mark.usefixtures("no_thread_stays")
-def test_a_broker_that_is_killed_and_started_again_loses_and_doubles_nothing() -> None:
-    broker, effects = RabbitMQ(), Effects()
+def test_a_broker_that_is_killed_and_started_again_loses_and_doubles_nothing(caplog: pytest.LogCaptureFixture) -> None:
+    broker = RabbitMQ()
     broker.start()
     try:
-        reader, sender = opened(broker.url), opened(broker.url)
-        for key in WAYS:
-            reader.subscribe(key, effects)
-        sending = Sending(sender, 0.002)
-        until(lambda: len(effects) > 200)
-        broker.kill()
-        sent = sending.sent
-        until(lambda: sending.sent > sent + 200)
-        broker.start()
-        until(lambda: len(effects) > 2 * sent + 600, 60)
-        arrive_once(effects, sending.end(), 60)
-        sender.close()
-        reader.close()
+        with caplog.at_level(logging.WARNING):
+            live_through_a_power_cut(broker)
     finally:
         broker.stop()
+    said = [record.getMessage() for record in caplog.records]
+    assert sum("is lost: StreamLostError" in text or "is lost: ConnectionClosed" in text for text in said) == 2
+    assert sum(text.startswith("the broker") and text.endswith("is back") for text in said) == 2, (
+        "once for each of the two buses, whatever they are made of"
+    )
+
+
+def live_through_a_power_cut(broker: RabbitMQ) -> None:
+    reader, sender, effects, later = opened(broker.url), opened(broker.url), Effects(), Collector()
+    for key in WAYS:
+        reader.subscribe(key, effects)
+    sending = Sending(sender, 0.01)
+    until(lambda: len(effects) > 100)
+    broker.kill()
+    links = [link for bus in (reader, sender) for link in links_of(bus)]
+    until(lambda: all(link.connection is None for link in links))
+    began = time.monotonic()
+    reader.subscribe("lumen.fault.later", later)
+    sender.publish("lumen.fault.later", "stale", ttl=0.001)
+    assert time.monotonic() - began < 1.0
+    sent = sending.sent
+    until(lambda: sending.sent > sent + 50)
+    broker.start()
+    sent = sending.sent
+    until(lambda: len(effects) > 2 * sent, 60)
+    arrive_once(effects, sending.end(), 60)
+    until(lambda: all(link.connection for link in links))
+    sender.publish("lumen.fault.later", "bound since")
+    assert later.wait(1) == ["bound since"]
+    sender.close()
+    reader.close()
+
+
+def links_of(bus: Any) -> list[Any]:
+    return [bus._way.publishing, bus._way.consuming]
 
 
 def cut_for(seconds: float, broker: RabbitMQ) -> None:
@@ -104,14 +130,14 @@ def cut_for(seconds: float, broker: RabbitMQ) -> None:
     reader, sender = opened(url), opened(url)
     for key in WAYS:
         reader.subscribe(key, effects)
-    sending = Sending(sender, 0.002)
-    until(lambda: len(effects) > 100)
+    sending = Sending(sender, 0.01)
+    until(lambda: len(effects) > 20)
     relay.cut()
     passed = time.monotonic() + seconds
     until(lambda: time.monotonic() > passed, seconds + 5.0)
     relay.mend()
     came = len(effects)
-    until(lambda: len(effects) > came + 200, 60)
+    until(lambda: len(effects) > came + 50, 60)
     arrive_once(effects, sending.end(), 60)
     sender.close()
     reader.close()
