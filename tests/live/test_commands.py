@@ -124,7 +124,8 @@ def test_patience_ends(live: Live) -> None:
 
 def test_what_needs_a_restart_is_named(live: Live) -> None:
     live.edit("stage: {x: [-0.4, 0.4]", "stage: {x: [-0.3, 0.4]", "lumen.yaml")
-    live.until_told("the stage changed: in force from the next start on")
+    live.until_told("the saved files are good: the stage changed: in force from the next start on")
+    assert live.transcript.count("the stage changed") == 1
     assert live.status.bodies[-1]["restart"]
     assert live.show.exhibition.project.stage
     assert live.show.exhibition.project.stage.x == (-0.4, 0.4)

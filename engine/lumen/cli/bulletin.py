@@ -54,16 +54,15 @@ class Bulletin:
             errors = (d for d in self.judged.diagnostics if d.severity is Severity.ERROR)
             yield from map(str, list(errors)[:MOST])
             yield from (f"{told(rehearsal)}" for rehearsal in self.judged.failed)
-        yield from self._verdict()
+        yield from (said := list(self._verdict()))
         yield from self.notes
         if self.verdict in ("applied", "dry run"):
-            yield from self.restart
+            yield from (later for later in self.restart if later not in said[0])
 
     def _verdict(self) -> Iterator[str]:
         match self.verdict:
             case "applied":
-                which = "the files before are in force again" if self.back else "the saved files are in force"
-                yield f"{which}: {self._what()}"
+                yield f"{self._taken()}: {self._what()}"
             case "rolled back":
                 yield f"{self.reason}: back to the files before, revision {self.revision}"
             case "refused":
@@ -78,6 +77,12 @@ class Bulletin:
                 yield f"{self._what()}; {self.reason}"
             case _:
                 yield self.reason
+
+    def _taken(self) -> str:
+        if self.back:
+            return "the files before are in force again"
+        all_later = 0 < len(self.changes) == len(self.restart)
+        return "the saved files are good" if all_later else "the saved files are in force"
 
     def _what(self) -> str:
         return f"{summary(self.changes)} (risk: {risk(self.changes)})"
