@@ -34,17 +34,23 @@ def load(body: Body, models: Path, hall: str, variation: Variation | None = None
 
     Raises RobotError where a file is no MJCF, or lacks what the simulation needs of it: all of that is listed.
     """
-    _complain("the description of the robot's body", lacks_of_body(body))
-    robot, world = _read(models / body.mjcf), _read(models / hall)
-    _complain(body.mjcf, lacks_of_robot(robot, body))
+    robot, world = alone(body, models), _read(models / hall)
     _complain(hall, lacks_of_hall(world))
     stage = world.find("site", STAGE)
-    robot.model = ROBOT
-    _differ(robot, body)
     stage.attach(robot).add("freejoint")
     if variation:
         _vary(world, variation)
     return world
+
+
+def alone(body: Body, models: Path) -> mjcf.RootElement:
+    """The robot without a world and without a free joint, to be attached to one; raises RobotError as `load` does."""
+    _complain("the description of the robot's body", lacks_of_body(body))
+    robot = _read(models / body.mjcf)
+    _complain(body.mjcf, lacks_of_robot(robot, body))
+    robot.model = ROBOT
+    _differ(robot, body)
+    return robot
 
 
 def compiled(world: mjcf.RootElement) -> mjcf.Physics:

@@ -76,11 +76,12 @@ class SimulatedRobot:
         self._bumpers = Bumpers(self.world.model, self.world.data)
         self._scales = Soles(self.world.model, self.world.data)
         self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
+        self._whereabouts = Whereabouts(stage)
         walker = Walker(
             self.motors,
             self._balance,
             self._instruments,
-            Whereabouts(stage),
+            self._whereabouts,
             Anatomy(body, Path(models)),
             Hazards(self._sonars, self._pressed),
             self._free,
@@ -215,6 +216,8 @@ class SimulatedRobot:
         tilt = self.world.tilt
         self._feel_touch()
         upright = self._repertoire.upright
+        if not upright or self.fallen:
+            self._whereabouts.lose()
         self.greatest_tilt = max(self.greatest_tilt, degrees(tilt)) if upright else self.greatest_tilt
         if tilt > FALLEN and upright and not self.fallen:
             self._repertoire.fall()
