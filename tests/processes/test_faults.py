@@ -13,7 +13,7 @@ import pytest
 from lumen.language.commands import Rest
 from lumen.ports import Perform
 from lumen.runtime.keeping import SNAPSHOT
-from tests.processes.troupe import Member, Troupe, alone, deeds
+from tests.processes.troupe import SPEED, Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ
 
 pytestmark = pytest.mark.xdist_group("rabbitmq")
@@ -27,8 +27,8 @@ def start(copy: Path, broker: RabbitMQ) -> Iterator[Start]:
     """Starts `lumen run --only …` in a process of its own."""
     with ExitStack() as stack:
 
-        def run(only: str, *words: str) -> "subprocess.Popen[str]":
-            line = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", "4"]
+        def run(only: str, *words: str, speed: str = SPEED) -> "subprocess.Popen[str]":
+            line = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", speed]
             line += ["--bus", broker.url, "--only", only, *words]
             pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
             process = subprocess.Popen(line, text=True, **pipes)  # type: ignore[call-overload]
@@ -83,9 +83,9 @@ def test_ctrl_c_ends_each_process_cleanly_and_who_waits_says_for_whom(start: Sta
 def test_the_whole_tour_in_four_processes(troupe: Troupe, start: Start) -> None:
     """Everybody is a process of their own; the tour of `make run` is what it is in one."""
     expected = alone(troupe.folder, "visitor")
-    others = [start("robot"), start("motion"), start("brain", "--story", "visitor")]
-    visitor = start("visitor", "--story", "visitor")
-    said = visitor.communicate(timeout=300)[0]
+    others = [start("robot", speed="1"), start("motion", speed="1"), start("brain", "--story", "visitor", speed="1")]
+    visitor = start("visitor", "--story", "visitor", speed="1")
+    said = visitor.communicate(timeout=600)[0]
     assert visitor.returncode == 0, said
     troupe.until(lambda: len(deeds(troupe.trace.bodies)) >= len(expected))
     assert deeds(troupe.trace.bodies) == expected

@@ -36,9 +36,9 @@ steps:
   - says: fine
   - expect: {state: offer}
   - says: A photo, please
-  - expect: {state: offer, played: photo, within: 40s}
+  - expect: {state: offer, played: photo, within: 2min}
   - says: No, that is all
-  - expect: {played: goodbye}
+  - expect: {played: goodbye, within: 1min}
   - visitor: leaves
   - expect: {state: idle}
 """,
