@@ -25,7 +25,7 @@ class World:
         self.calls: list[tuple[float, str, tuple[Any, ...]]] = []
         self.awake, self.family, self.stiffness = True, "Standing", 1.0
         self.position = [0.0, 0.0, 0.0]
-        self.obstacle = False
+        self.obstacle = self.deaf = False
         self.version = "2.8.6.23"
         self.pressed: set[str] = set()
         self.sonar = (2.55, 2.55)
@@ -131,6 +131,8 @@ class ALMotion:
     def stopMove(self) -> Any:
         with self._times.lock:
             self._world.note("stopMove")
+            if self._world.deaf:
+                return self._times.block(1e6).future
             return self._times.block(0.4, self._stopped).future
 
     def _stopped(self) -> None:

@@ -1,0 +1,29 @@
+"""The shipped story on the fake NAO: the same states, words and motions as on the recording robot."""
+
+from dataclasses import replace
+
+import pytest
+
+from lumen.language.projects import Project
+from lumen.robots.recording import RecordingRobot
+from tests.naoqi.lockstep import Lockstep
+from tests.tour.playing import Run, play
+
+
+def played(project: Project, robot: Lockstep | RecordingRobot) -> Run:
+    return play(project, project.stories["visitor"], robot)
+
+
+def test_the_whole_tour_is_the_recording_robots_tour(project: Project) -> None:
+    blind = replace(project, routes={name: route for name, route in project.routes.items() if name != "image"})
+    robot = Lockstep(blind, all_fresh=False)
+    real, recorded = played(blind, robot), played(blind, RecordingRobot(project.body))
+    assert real.failure == ""
+    assert real.errors == []
+    assert real.entered == recorded.entered
+    assert [text for _, text in real.said] == [text for _, text in recorded.said]
+    assert real.played == recorded.played == ["dance", "sing", "photo", "goodbye"]
+    assert real.time == pytest.approx(recorded.time, abs=10.0)
+    world = robot.nao.world
+    assert [said for said, _ in world.called("say")] == [text for _, text in real.said]
+    assert len(world.called("angleInterpolationBezier")) == len(real.played)
