@@ -71,8 +71,8 @@ def test_the_listener_in_javascript_says_and_hears(broker: RabbitMQ, bus: Bus, t
         assert process.stdout.readline() == "Lumen: I can dance.\n"
 
 
-@pytest.mark.parametrize("module", sorted(MODULES.glob("*.[mp]*")), ids=lambda path: path.name)
-def test_a_module_is_twenty_lines(module: Path) -> None:
-    code = module.read_text().split('"""')[-1] if module.suffix == ".py" else module.read_text()
+@pytest.mark.parametrize("name", ["greeter.py", "listener.mjs"])
+def test_a_module_is_twenty_lines(name: str) -> None:
+    code = (MODULES / name).read_text().split('"""')[-1]
     lines = [line for line in code.splitlines() if line.strip() and not line.startswith("//")]
     assert len(lines) <= 20
