@@ -10,7 +10,7 @@ import pytest
 import lumen
 from lumen.bus import connect
 from lumen.buses.validated import validated
-from lumen.language.commands import Look, Posture, Rest, Say, Stop, Wake
+from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
@@ -199,6 +199,15 @@ def test_no_aim_leaves_the_limits(robot: Body, project: Project, angle: float) -
     limit = project.body.joints["HeadPitch"]
     measured = joints.angles[joints.names.index("HeadPitch")]
     assert limit.minimum - 0.05 <= measured <= limit.maximum + 0.05
+
+
+def test_a_move_goes_on_until_another_one_or_stop_ends_it(robot: Body) -> None:
+    robot.start("a", Move(0.02))
+    assert live(robot, 2.0) == []
+    robot.start("b", Move(0.0, 0.0, 0.1))
+    assert names(live(robot, 0.5)) == ["done.command.a"]
+    robot.start("s", Stop("walk"))
+    assert sorted(names(live(robot, 1.5))) == ["cancelled.command.b", "done.command.s"]
 
 
 @pytest.mark.parametrize("angle", [nan, inf])
