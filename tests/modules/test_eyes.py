@@ -141,7 +141,7 @@ def test_learns_who_somebody_is_and_tells_them_from_others(
     assert look(20.0, drawn[1.5, 0.0][0]) == "unknown"
     assert Known(file, lambda: 0.0).names == ["Eileen"]
     assert file.stat().st_mode & 0o077 == 0
-    here.bus.publish("lumen.NAO.persistence.fact", {"method": "forget", "name": "eileen"})
+    here.bus.publish("lumen.NAO.persistence.forgotten", {"name": "eileen"})
     assert look(30.0, photographed) == "unknown"
     assert Known(file, lambda: 0.0).names == []
 

@@ -187,6 +187,24 @@ def test_senses_at_a_pace(stand: Make, project: Project) -> None:
     assert [kind for kind, _, _ in entries(here)] == ["sonar"] * 3
 
 
+def test_text_that_no_file_holds_is_written_all_the_same(stand: Make, tmp_path: Path) -> None:
+    here = stand()
+    remembering(here, tmp_path / "memory.db")
+    talk(here.bus, "An\ud800i")
+    here.bus.publish(JOURNAL, {"text": "a\x00b", "kind": "\udfff", "note": "José \ud800"})
+    assert [text for kind, _, text in entries(here)[:2]] == ["my name is An?i", "An?i"]
+    assert here.ask(FACT, {"method": "recall", "name": "An\ud800i"})["visitor"]["visits"] == 1
+    assert here.ask(FACT, {"method": "forget", "name": "josé"})["entries"] == 1
+
+
+def test_tells_the_others_who_is_to_be_forgotten(stand: Make) -> None:
+    here = stand()
+    remembering(here, None)
+    told = here.listen("lumen.NAO.persistence.forgotten")
+    here.ask(FACT, {"method": "forget", "name": "Ani"})
+    assert told.bodies == [{"name": "Ani"}]
+
+
 def test_another_robots_behaviour_is_not_noted(stand: Make) -> None:
     here = stand()
     remembering(here, None)

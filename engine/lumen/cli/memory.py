@@ -2,11 +2,13 @@
 
 import argparse
 import json
+import time
 from datetime import datetime
 from pathlib import Path
 
 from lumen.errors import UsageError
 from lumen.loading.packaged import find_project
+from lumen.modules.eyes.eyes import FILE as FACES
 from lumen.modules.memory import Store
 from lumen.modules.memory.memory import FILE
 from lumen.runtime.home import home_of
@@ -40,9 +42,14 @@ def _run(options: argparse.Namespace, store: Store, file: Path) -> int:
         if not (options.name or "").strip():
             raise UsageError("say whom: `lumen memory forget NAME`")
         visitors, entries = store.forget(options.name)
-        told = f"forgot {options.name}: {visitors} visitors, {entries} entries"
-        print(json.dumps({"visitors": visitors, "entries": entries}) if options.format == "json" else told)
-        return 0 if visitors or entries else 1
+        faces = _faces(options.name, file.with_name(FACES))
+        told = f"forgot {options.name}: {visitors} visitors, {entries} entries, {faces} pictures"
+        print(
+            json.dumps({"visitors": visitors, "entries": entries, "pictures": faces})
+            if options.format == "json"
+            else told
+        )
+        return 0 if visitors or entries or faces else 1
     rows = (
         store.visitors()
         if options.what == "visitors"
@@ -57,6 +64,15 @@ def _run(options: argparse.Namespace, store: Store, file: Path) -> int:
     return 0
 
 
+def _faces(name: str, file: Path) -> int:
+    """Delete the pictures that the eyes keep under that name; how many. Raises ModuleError where that can't be done."""
+    if not file.exists():
+        return 0
+    from lumen.modules.eyes.known import Known  # OpenCV takes its time to import
+
+    return Known(file, time.time).forget(name)
+
+
 def _visitor(row: dict[str, object]) -> str:
     return _plain(f"{_when(row['last'])}  {row['name']}, visits: {row['visits']}")
 
@@ -66,8 +82,8 @@ def _entry(row: dict[str, object]) -> str:
     return _plain(f"{_when(row['time'])}  {row['kind']:<10} {row['text']}{about}")
 
 
-def _when(time: object) -> str:
-    return datetime.fromtimestamp(float(str(time))).isoformat(" ", "seconds")
+def _when(moment: object) -> str:
+    return datetime.fromtimestamp(float(str(moment))).isoformat(" ", "seconds")
 
 
 def _plain(text: str) -> str:

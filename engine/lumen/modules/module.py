@@ -33,6 +33,7 @@ KEYS: Mapping[str, str] = {
     "social_perception": "lumen.{robot}.social.perception",
     "social_expression": "lumen.{robot}.social.expression",
     "fact": "lumen.{robot}.persistence.fact",
+    "forgotten": "lumen.{robot}.persistence.forgotten",
     "journal": "lumen.{robot}.persistence.journal",
     "state": "lumen.state",
     "trouble": "lumen.trouble",

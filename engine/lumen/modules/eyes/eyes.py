@@ -58,7 +58,7 @@ class Eyes(Module):
         self._who, self._expired = "", 0.0
 
     def hears(self) -> Mapping[str, Handler]:
-        heard: dict[str, Handler] = {"visual_command": self._enrol, "fact": self._fact}
+        heard: dict[str, Handler] = {"visual_command": self._enrol, "forgotten": self._forget}
         return heard if self._source else {"image": self._image, **heard}
 
     def idle(self) -> float | None:
@@ -144,10 +144,10 @@ class Eyes(Module):
             raise ModuleError(f"a name of up to {LONGEST} characters is expected on {message.key}, and nothing else")
         self._learning, self._left = name, SAMPLES
 
-    def _fact(self, message: Message) -> None:
+    def _forget(self, message: Message) -> None:
         """Who is forgotten is not recognised either."""
         match message.body:
-            case {"method": "forget", "name": str(name)} if name.strip():
+            case {"name": str(name)} if name.strip():
                 if self._learning.casefold() == name.strip().casefold():
                     self._learning, self._left = "", 0
                 self._known.forget(name.strip())

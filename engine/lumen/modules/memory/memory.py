@@ -152,6 +152,7 @@ class Memory(Module):
         if self._visitor.casefold() == name.casefold():
             self._visitor = ""
         visitors, entries = self._store.forget(name)
+        self.publish("forgotten", {"name": name})
         return {"visitors": visitors, "entries": entries}
 
     def _asked(self, message: Message) -> None:

@@ -57,7 +57,7 @@ class Store:
     def add(self, entries: Sequence[Entry]) -> None:
         """Write all of them, or (ModuleError) none."""
         rows = [
-            (e.time, _date(e.time), e.robot, e.visitor, e.kind, e.text, json.dumps(e.data, ensure_ascii=False))
+            (e.time, _date(e.time), e.robot, _sound(e.visitor), _sound(e.kind), _sound(e.text), _json(e.data))
             for e in entries
         ]
         sql = "INSERT INTO journal (time, date, robot, visitor, kind, text, data) VALUES (?, ?, ?, ?, ?, ?, ?)"
@@ -65,15 +65,17 @@ class Store:
 
     def met(self, name: str, now: float, data: Mapping[str, Any] | None = None) -> None:
         """Somebody of that name came, once more or for the first time; what is known of them is added to."""
+        name = _sound(name)
         known = self.visitor(name)
-        told = json.dumps({**(known["data"] if known else {}), **(data or {})}, ensure_ascii=False)
+        told = _json({**(known["data"] if known else {}), **(data or {})})
         sql = """INSERT INTO visitors VALUES (?, ?, ?, 1, ?)
             ON CONFLICT (name) DO UPDATE SET last = excluded.last, visits = visits + 1, data = excluded.data"""
         self._do(lambda db: db.execute(sql, (name, now, now, told)))
 
     def visitor(self, name: str) -> dict[str, Any] | None:
         """What is known of somebody, None where nothing is."""
-        rows = self._do(lambda db: db.execute("SELECT * FROM visitors WHERE name = ?", (name,)).fetchall())
+        sql = "SELECT * FROM visitors WHERE name = ?"
+        rows = self._do(lambda db: db.execute(sql, (_sound(name),)).fetchall())
         return _visitor(rows[0]) if rows else None
 
     def visitors(self) -> list[dict[str, Any]]:
@@ -84,7 +86,9 @@ class Store:
     def journal(self, *, since: float = 0.0, visitor: str = "", limit: int = 100) -> list[dict[str, Any]]:
         """The newest entries, the oldest of them first."""
         sql = "SELECT * FROM journal WHERE time >= ? AND (? = '' OR visitor = ?) ORDER BY time DESC, id DESC LIMIT ?"
-        found = self._do(lambda db: db.execute(sql, (since, visitor, visitor, min(limit, MOST))).fetchall())
+        found = self._do(
+            lambda db: db.execute(sql, (float(since), _sound(visitor), _sound(visitor), min(limit, MOST))).fetchall()
+        )
         return [{**dict(row), "data": json.loads(row["data"])} for row in reversed(found)]
 
     def forget(self, name: str) -> tuple[int, int]:
@@ -92,6 +96,7 @@ class Store:
 
         Of the journal: what was noted while they were there, and whatever names them.
         """
+        name = _sound(name)
         word = re.compile(rf"(?<!\w){re.escape(name.strip())}(?!\w)", re.IGNORECASE)
 
         def delete(db: sqlite3.Connection) -> tuple[int, int]:
@@ -128,7 +133,7 @@ class Store:
             db = self._connection or self._open()
             with db:
                 return work(db)
-        except (sqlite3.Error, OSError) as error:
+        except (sqlite3.Error, OSError, OverflowError) as error:
             self.close()
             raise ModuleError(self._why(error)) from None
 
@@ -167,3 +172,12 @@ def _date(time: float) -> str:
 
 def _visitor(row: sqlite3.Row) -> dict[str, Any]:
     return {**dict(row), "data": json.loads(row["data"])}
+
+
+def _sound(text: str) -> str:
+    """The text as a file can hold it: half characters, which JSON may bring, are replaced."""
+    return text.encode("utf-8", "replace").decode()
+
+
+def _json(data: Mapping[str, Any]) -> str:
+    return _sound(json.dumps(data, ensure_ascii=False))
