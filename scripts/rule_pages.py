@@ -10,6 +10,8 @@ from functools import cache
 from pathlib import Path
 
 from lumen.cli.against import against
+from lumen.cli.findings import Findings
+from lumen.cli.physics import played
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import Unreadable, read_files
 from lumen.rules import check_files
@@ -19,6 +21,9 @@ from lumen.rules.pages import Example, Page, page
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs/rules"
 BASE = ROOT / "tests/lint/pages/base"
+
+PHYSICS, OTHERS = "physics", 1
+"""What is noted at examples that are about the shipped robot in simulation, and how many robots play them beside it."""
 
 _BLOCK = re.compile(r"^(?=[^\s#])", re.MULTILINE)
 
@@ -48,11 +53,21 @@ def _kept(below: str, sheet: Example) -> str:
 @cache
 def said(sheets: tuple[Example, ...]) -> list[Diagnostic]:
     """What lint says of an example; of one that was otherwise before, what it says with `--against` that."""
+    if any(sheet.note == PHYSICS for sheet in sheets):
+        return _played(sheets)
     before = [sheet._replace(note="") for sheet in sheets if sheet.note == "before"]
     now, found = check_files(BASE, laid(read_files(BASE), [sheet for sheet in sheets if sheet.note != "before"]))
     if before and now and (old := check_files(BASE, laid(read_files(BASE), before))[0]):
         return [*found, *against(old, now)]
     return list(found)
+
+
+def _played(sheets: tuple[Example, ...]) -> list[Diagnostic]:
+    """What `--physics` says of a motion in the shipped project, with the robot of the model and two others."""
+    files = laid(read_files(ROOT), sheets)
+    asked = [sheet.file for sheet in sheets if sheet.file.startswith("motions/")]
+    found = played(Findings((), files, str(ROOT), asked), lambda d: d.code in FAMILIES["physics"], OTHERS, keep=False)
+    return list(found[0].diagnostics)
 
 
 def written() -> dict[str, str]:

@@ -28,6 +28,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="OLD",
         help="also say what a reload from there would refuse: a folder, a revision, or `live`",
     )
+    add("--physics", action="store_true", help="also play every motion in simulation (minutes; what is known is kept)")
+    add("--robots", metavar="N", help="with --physics: how many robots that differ a little play it too (default: 20)")
     add("--strict", action="store_true", help="count warnings as errors")
     add("--fix", action="store_true", help="repair what can be repaired without asking")
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
@@ -52,8 +54,21 @@ def run(options: argparse.Namespace) -> int:
     if options.fix:
         _fix(projects, wanted)
     found = [judge(what) for what in projects]
+    if options.physics:
+        found = _physics(found, wanted, options)
     show(render(options.format, found, coloured=options.format in ("text", "concise") and coloured()))
     return verdict(found, strict=options.strict)
+
+
+def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
+    """The findings with those of the motions in simulation; how they went is told beside what is for people."""
+    from lumen.cli.physics import ROBOTS, number_of_robots, played, summary
+
+    robots = ROBOTS if options.robots is None else number_of_robots(options.robots)
+    both = [played(each, wanted, robots) for each in found]
+    for _, rehearsals in both if options.format == "text" else ():
+        print(summary(rehearsals) or "no motion was played: there is none, or there are errors", file=sys.stderr)
+    return [each for each, _ in both]
 
 
 def verdict(found: Sequence[Findings], *, strict: bool = False) -> int:
@@ -107,6 +122,10 @@ def _consistent(options: argparse.Namespace) -> None:
         raise UsageError("--fix repairs and --diff only shows: choose one")
     if options.diff and options.against is not None:
         raise UsageError("--diff shows what --fix would change, and no reload is repaired: leave out --against")
+    if options.robots is not None and not options.physics:
+        raise UsageError("--robots goes with --physics")
+    if options.physics and (options.watch or options.fix or options.diff or "-" in options.paths):
+        raise UsageError("--physics takes minutes: it can't stand beside --watch, --fix, --diff or `-`")
     if options.watch and (options.fix or options.diff or "-" in options.paths):
         raise UsageError("--watch goes on until Ctrl-C: it can't stand beside --fix, --diff or `-`")
     if options.watch and options.format not in ("text", "concise"):

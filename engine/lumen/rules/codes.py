@@ -173,6 +173,15 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "two-times": Code(ERROR, "a keyframe has a time and a beat"),
         "zero-duration": Code(ERROR, "a motion takes no time"),
     },
+    "physics": {
+        "comes-late": Code(WARNING, "a joint can't follow where a motion leads it (`--physics`)"),
+        "falls": Code(ERROR, "the robot falls when it plays a motion (`--physics`)"),
+        "feet-slide": Code(WARNING, "a foot slides while it bears load (`--physics`)"),
+        "not-played": Code(ERROR, "the robot refuses a motion that a behaviour leads to (`--physics`)"),
+        "overloaded": Code(WARNING, "a motor gives all it can for too long (`--physics`)"),
+        "self-collision": Code(ERROR, "parts of the robot run into each other (`--physics`)"),
+        "unsteady": Code(WARNING, "little is missing and the robot falls when it plays a motion (`--physics`)"),
+    },
     "robot": {
         "incomplete-posture": Code(ERROR, "a posture leaves out a joint"),
         "joint-in-two-parts": Code(ERROR, "a joint stands in two parts of the body"),

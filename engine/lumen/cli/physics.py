@@ -1,0 +1,114 @@
+"""`lumen lint --physics`: every motion played by the simulated robot, and by others that differ a little."""
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+
+from lumen.cli.findings import Findings
+from lumen.cli.rehearsed import Rehearsed
+from lumen.errors import UsageError
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.projects import Project
+from lumen.rules import check_files
+from lumen.rules.physics import Case, Make, Outcome, Rehearsal, attempt
+from lumen.rules.physics.cases import cases
+from lumen.rules.physics.verdict import findings
+
+ROBOTS = 20
+"""How many robots beside the one of the model play each motion, where nobody says."""
+
+Tell = Callable[[int, int, str], None]
+"""Told how many performances are done, of how many, and of what is played now."""
+
+
+def played(
+    found: Findings, wanted: Callable[[Diagnostic], bool], robots: int, *, keep: bool = True
+) -> tuple[Findings, list[Rehearsal]]:
+    """The findings of a project with those of its motions in simulation, where it has no errors; and what was played.
+
+    Only motions in files that somebody asked about are played, and with `keep` only where they were not before.
+    """
+    root = Path(found.root)
+    project = check_files(root, found.files)[0]
+    if project is None:
+        return found, []
+    chosen = [case for case in cases(project) if not found.asked or case.file in found.asked]
+    memory = Rehearsed(project, found.files) if keep else None
+    with _progress() as tell:
+        rehearsals = rehearse(chosen, _maker(project), robots, memory, tell)
+    more = [d for r in rehearsals for d in findings(r, project.documents[r.case.file]) if wanted(d)]
+    everything = sorted([*found.diagnostics, *dict.fromkeys(more)], key=lambda d: (d.place.file, d.place.line))
+    return replace(found, diagnostics=everything), rehearsals
+
+
+def rehearse(chosen: Sequence[Case], make: Make, robots: int, memory: Rehearsed | None, tell: Tell) -> list[Rehearsal]:
+    """What comes of each case with the robot of the model and `robots` others; what is remembered is not played."""
+    done, whole, rehearsals = 0, len(chosen) * (robots + 1), []
+    for case in chosen:
+        outcomes = memory.recall(case) if memory else {}
+        for number in range(robots + 1):
+            tell(done, whole, case.motion.name)
+            done += 1
+            if number not in outcomes:
+                outcomes[number] = _attempt(case, make, number)
+                if memory:
+                    memory.keep(case, outcomes)
+        rehearsals.append(Rehearsal(case, [outcomes[number] for number in range(robots + 1)]))
+    return rehearsals
+
+
+def summary(rehearsals: Sequence[Rehearsal]) -> str:
+    """A line for each case: how many came to its end, and how far the torso leaned."""
+    lines = []
+    for rehearsal in rehearsals:
+        case, tried = rehearsal.case, rehearsal.tried
+        well = sum(map(rehearsal.succeeded, tried))
+        name = case.motion.name if case.passage else f"{case.motion.name} {case.way}"
+        leaned = "" if case.passage else f", leaned {max((o.tilt for o in tried), default=0.0):.1f} deg at most"
+        slid = max((m[1] for o in tried for m in o.slid.values()), default=0.0)
+        slides = "" if case.passage else f", feet slid {1000 * slid:.0f} mm"
+        lines.append(f"{name:<28} {well} of {len(tried)} robots{leaned}{slides}")
+    return "\n".join(lines)
+
+
+def number_of_robots(text: str) -> int:
+    """What --robots says; raises UsageError for what is no such number."""
+    number = int(text) if text.isdecimal() and text.isascii() else inf
+    if number > 1000:
+        raise UsageError(f"--robots is a number from 0 to 1000, not `{text}`")
+    return int(number)
+
+
+def _attempt(case: Case, make: Make, number: int) -> Outcome:
+    robot = make(number)
+    try:
+        return attempt(case, robot)
+    finally:
+        robot.close()
+
+
+def _maker(project: Project) -> Make:
+    from lumen.robots.simulation.subject import subject
+
+    models = Path(project.root) / "models"
+    return lambda number: subject(project.body, models, project.hall, number)
+
+
+@contextmanager
+def _progress() -> Iterator[Tell]:
+    """A bar on a terminal, of which nothing is left at the end."""
+    terminal = sys.stderr.isatty()
+
+    def tell(done: int, whole: int, name: str) -> None:
+        if terminal:
+            bar = "#" * (30 * done // max(whole, 1))
+            print(f"\r\x1b[K[{bar:<30}] {done} of {whole}  {name}", end="", file=sys.stderr, flush=True)
+
+    try:
+        yield tell
+    finally:
+        if terminal:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)

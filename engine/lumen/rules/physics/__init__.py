@@ -1,0 +1,38 @@
+"""Motions in simulation: what the robot, and others much like it, come to when they play them.
+
+Who calls hands over the simulator: `Make` gives a robot that stands and waits. Nothing here knows how it is simulated.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from lumen.ports import Subject
+from lumen.rules.physics.cases import Case
+from lumen.rules.physics.trial import DONE, FELL, Outcome, attempt
+
+Make = Callable[[int], Subject]
+"""A robot in `Stand`: 0 is the one that the model describes, every other number a brother of it."""
+
+
+@dataclass(frozen=True)
+class Rehearsal:
+    """A case, and what came of it with each robot, the first of them as the model describes it."""
+
+    case: Case
+    outcomes: Sequence[Outcome]
+
+    @property
+    def tried(self) -> Sequence[Outcome]:
+        """Those that came to the motion's beginning."""
+        return [outcome for outcome in self.outcomes if outcome.answer]
+
+    def succeeded(self, outcome: Outcome) -> bool:
+        """Whether the robot came to the end of it, and a passage at its first attempt."""
+        late = self.case.passage and outcome.at > self.case.motion.duration + AGAIN
+        return outcome.answer == DONE and not late
+
+
+AGAIN = 1.5
+"""A passage that takes so much longer than its motion was tried again [s]."""
+
+__all__ = ["AGAIN", "DONE", "FELL", "Case", "Make", "Outcome", "Rehearsal", "attempt"]

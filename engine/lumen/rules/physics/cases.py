@@ -1,0 +1,119 @@
+"""From where a motion is played: the postures in which the behaviours may leave the robot before it."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from lumen.interpreters.postures import UPRIGHT
+from lumen.language.actions import If, Parallel, Step
+from lumen.language.commands import Play, Posture, Wake, Walk
+from lumen.language.machines import Machine
+from lumen.language.motions import Motion
+from lumen.language.projects import Project
+from lumen.ports import Perform, RobotCommand
+
+MOTIONS, PASSAGES = "motions", "models/passages"
+FIRST = "Stand"
+"""The posture in which a robot begins."""
+
+Before = tuple[RobotCommand, ...]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A motion of `folder`, what the robot does before it, and the `command` that plays it."""
+
+    folder: str
+    motion: Motion
+    before: Before
+    command: RobotCommand
+
+    @property
+    def file(self) -> str:
+        return f"{self.folder}/{self.motion.name}.yaml"
+
+    @property
+    def passage(self) -> bool:
+        """Whether it leads from posture to posture, where feet may slide and links may touch on purpose."""
+        return self.folder == PASSAGES
+
+    @property
+    def way(self) -> str:
+        """`from Stand`, `after photo`."""
+        match self.before[-1:]:
+            case (Posture(posture),):
+                return f"from {posture}"
+            case (Perform(motion),):
+                return f"after {motion.name}"
+        return f"from {FIRST}"
+
+
+def cases(project: Project) -> list[Case]:
+    """Every motion from its start and from wherever the behaviours lead to it, then every passage."""
+    motions = project.motions
+    ways: dict[str, list[Before]] = {name: [_to(motion.start or FIRST)] for name, motion in motions.items()}
+    blocks = [block for machine in project.behaviors.values() for block in _blocks(machine)]
+    ends = [end for block in blocks for step in block if (end := _end(motions, step.action)) is not None]
+    anywhere = [end for end in ends if _upright(end)]
+    for block in blocks:
+        for i, step in enumerate(block):
+            for name in ways.keys() & set(_played(step)):
+                last = next((end for s in block[:i][::-1] if (end := _end(motions, s.action)) is not None), None)
+                ways[name] += anywhere if last is None else [last]
+    found = [Case(MOTIONS, motions[name], before, Perform(motions[name])) for name in motions for before in ways[name]]
+    for passage in project.body.passages:
+        before = Posture(passage.start, 1.0)
+        found.append(Case(PASSAGES, passage, (before,), Posture(passage.end, 1.0)))
+    return list({(case.file, case.way): case for case in found}.values())
+
+
+def _to(posture: str) -> Before:
+    return () if posture == FIRST else (Posture(posture, 1.0),)
+
+
+def _end(motions: Mapping[str, Motion], action: object) -> Before | None:
+    """What a robot does to be where this action leaves it; None for one that moves neither arms nor legs."""
+    match action:
+        case Posture(name):
+            return _to(name)
+        case Walk() | Wake():
+            return ()
+        case Play(name) if name in motions:
+            motion = motions[name]
+            return _to(motion.end) if motion.end else (*_to(motion.start or FIRST), Perform(motion))
+    return None
+
+
+def _upright(end: Before) -> bool:
+    match end[:1]:
+        case (Posture(name),):
+            return name in UPRIGHT
+    return True
+
+
+def _played(step: Step) -> Iterator[str]:
+    match step.action:
+        case Play(name):
+            yield name
+        case Parallel(branches):
+            for branch in branches:
+                yield from _played(branch)
+
+
+def _blocks(machine: Machine) -> Iterator[Sequence[Step]]:
+    """Every list of actions, those inside others too."""
+    for state in machine.states.values():
+        for block in (state.entry, state.do, state.exit, *(t.actions for t in state.transitions)):
+            yield from _nested(block)
+
+
+def _nested(block: Sequence[Step]) -> Iterator[Sequence[Step]]:
+    yield block
+    for step in block:
+        match step.action:
+            case If(_, then, otherwise):
+                yield from _nested(then)
+                yield from _nested(otherwise)
+            case Parallel(branches):
+                for branch in branches:
+                    if isinstance(branch.action, If):
+                        yield from _nested((branch,))

@@ -1,0 +1,161 @@
+"""One performance of a motion, watched."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from math import degrees, hypot
+from typing import Any, Self
+
+from lumen.language.events import Event
+from lumen.ports import RobotCommand, Sole, Strain, Subject
+from lumen.rules.physics.cases import Case
+
+LOOK = 0.02
+"""Between two looks at the robot [s]."""
+
+PATIENCE = 60.0
+"""How much longer than its motion a command may take until it counts as stuck [s]."""
+
+BEFORE, AFTER = 0.3, 0.5
+"""How long the robot comes to rest before and after [s]."""
+
+LEANS, FALLS = 15.0, 30.0
+"""A torso that falls was falling since it leaned that far [degrees]; what happens beyond the second is the fall's."""
+
+DONE, FELL = "done", "fell"
+SLID = 0.01
+"""How far a foot that bears load may slide [m]."""
+
+BEARING = 5.0
+"""A foot bears load from here on [N]."""
+
+Moment = tuple[float, float]
+"""When it was [s from the motion's beginning], and how long or how much it came to."""
+
+_KINDS = ("collisions", "exhausted", "behind", "slid")
+
+
+@dataclass
+class Outcome:
+    """What came of one performance.
+
+    `answer` is `done`, `fell`, or why the robot did not go on, at the time `at` [s]; `tilt` is how far it leaned at
+    most [degrees], at the time `leaned` [s].
+    `collisions` [s] by pair of links, `exhausted` [s] and `behind` [rad] by joint, `slid` [m] by foot.
+    """
+
+    answer: str = ""
+    at: float = 0.0
+    tilt: float = 0.0
+    leaned: float = 0.0
+    collisions: dict[str, Moment] = field(default_factory=dict)
+    exhausted: dict[str, Moment] = field(default_factory=dict)
+    behind: dict[str, Moment] = field(default_factory=dict)
+    slid: dict[str, Moment] = field(default_factory=dict)
+
+    def to_json(self) -> dict[str, Any]:
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> Self:
+        """Raises KeyError, TypeError, ValueError or AttributeError for what is no outcome."""
+        moments = {kind: {str(k): (float(a), float(b)) for k, (a, b) in data[kind].items()} for kind in _KINDS}
+        return cls(str(data["answer"]), float(data["at"]), float(data["tilt"]), float(data["leaned"]), **moments)
+
+
+def attempt(case: Case, robot: Subject) -> Outcome:
+    """What comes of the motion; `answer` is empty where the robot did not even come to its beginning."""
+    if any(_perform(robot, command) != DONE for command in case.before):
+        return Outcome()
+    robot.advance(BEFORE)
+    robot.poll()
+    watch = _Watch(case.passage)
+    watch.outcome.answer = _perform(robot, case.command, watch, case.motion.duration)
+    return watch.closed(robot)
+
+
+def _perform(robot: Subject, command: RobotCommand, watch: "_Watch | None" = None, duration: float = 0.0) -> str:
+    """A command to its end: `done`, `fell`, or why not."""
+    robot.start("it", command)
+    waited = 0.0
+    while waited < duration + PATIENCE:
+        robot.advance(LOOK)
+        waited += LOOK
+        if watch:
+            watch.look(robot.strain(), waited)
+        events = robot.poll()
+        if any(event.name == "fallen" for event in events):
+            return FELL
+        for event in events:
+            if event.name.endswith(".command.it"):
+                return _answer(event)
+    return "it does not come to an end"
+
+
+def _answer(event: Event) -> str:
+    return DONE if event.name.startswith("done.") else str((event.data or {}).get("reason", "it was cancelled"))
+
+
+class _Watch:
+    """Sums up how the robot fares, look by look; on the way to a motion's beginning it only sees falls."""
+
+    def __init__(self, passage: bool) -> None:
+        self.outcome, self._passage = Outcome(), passage
+        self._now = self._steady = 0.0
+        self._stands: dict[str, Sole] = {}
+        self._since: dict[str, float] = {}
+
+    def look(self, strain: Strain, waited: float) -> None:
+        self._now = waited if self._passage else strain.played
+        tilt = degrees(strain.tilt)
+        if tilt > self.outcome.tilt:
+            self.outcome.tilt, self.outcome.leaned = tilt, round(self._now, 3)
+        if tilt < LEANS:
+            self._steady = self._now
+        if not self._passage and tilt < FALLS and strain.played > 0.0:
+            self._press(strain)
+            self._exhaust(strain)
+            self._delay(strain)
+            self._slide(strain.soles)
+
+    def closed(self, robot: Subject) -> Outcome:
+        """The whole, a moment after it was over."""
+        if self.outcome.answer == DONE:
+            robot.advance(AFTER)
+            self.outcome.tilt = max(self.outcome.tilt, degrees(robot.strain().tilt))
+            if any(event.name == "fallen" for event in robot.poll()):
+                self.outcome.answer = FELL
+        self.outcome.at = round(self._steady if self.outcome.answer == FELL else self._now, 3)
+        self.outcome.tilt = round(self.outcome.tilt, 1)
+        return self.outcome
+
+    def _press(self, strain: Strain) -> None:
+        for one, other in strain.touching:
+            begin, lasted = self.outcome.collisions.get(f"{one} and {other}", (round(self._now, 3), 0.0))
+            self.outcome.collisions[f"{one} and {other}"] = begin, round(lasted + LOOK, 3)
+
+    def _exhaust(self, strain: Strain) -> None:
+        """The longest time without a pause that a motor gave all it could."""
+        self._since = {joint: self._since.get(joint, self._now) for joint in strain.exhausted}
+        for joint, since in self._since.items():
+            _most(self.outcome.exhausted, joint, since, self._now - since)
+
+    def _delay(self, strain: Strain) -> None:
+        for joint, angle in strain.behind.items():
+            _most(self.outcome.behind, joint, self._now, angle)
+
+    def _slide(self, soles: Mapping[str, Sole]) -> None:
+        """How far each foot came from where it was when it began to bear load."""
+        for side, sole in soles.items():
+            if sole.load < BEARING:
+                self._stands.pop(side, None)
+                continue
+            stands = self._stands.setdefault(side, sole)
+            far = hypot(sole.x - stands.x, sole.y - stands.y)
+            since, most = self.outcome.slid.get(side, (0.0, 0.0))
+            _most(self.outcome.slid, side, since if most >= SLID else self._now, far)
+
+
+def _most(found: dict[str, Moment], what: str, at: float, value: float) -> None:
+    """Keep the moment with the greatest value."""
+    if value > found.get(what, (0.0, 0.0))[1]:
+        found[what] = round(at, 3), round(value, 4)

@@ -1,0 +1,164 @@
+"""What is to be said about a motion that was played in simulation, at the keyframes where it showed."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from math import degrees
+
+from lumen.language.diagnostics import Diagnostic, Path, Places
+from lumen.language.motions import Key
+from lumen.rules.codes import CODES
+from lumen.rules.physics import FELL, Outcome, Rehearsal
+from lumen.rules.physics.trial import FALLS, SLID, Moment
+
+TOUCH = 0.04
+"""How long two links have to press into each other [s]."""
+
+EXHAUSTED = 0.3
+"""For how long a motor may give all it can [s]."""
+
+LATE = 0.35
+"""How far a joint may be from where the motion has it [rad]."""
+
+MOST_FAILED = 0.1
+"""Of a passage, which the robot tries again, so many attempts may fail."""
+
+_FEET = {"L": "the left foot", "R": "the right foot"}
+_JOINTS = ("comes-late", "overloaded")
+_LEGS = ("Hip", "Knee", "Ankle")
+
+
+def findings(rehearsal: Rehearsal, document: Places) -> list[Diagnostic]:
+    """What is wrong with a motion; `document` is its file."""
+    return [*_Judge(rehearsal, document).judge()]
+
+
+class _Judge:
+    """Looks at the outcomes of one case."""
+
+    def __init__(self, rehearsal: Rehearsal, document: Places) -> None:
+        self._rehearsal, self._case, self._document = rehearsal, rehearsal.case, document
+
+    def judge(self) -> Iterator[Diagnostic]:
+        tried = self._rehearsal.tried
+        if not tried:
+            return
+        failed = [outcome for outcome in tried if not self._rehearsal.succeeded(outcome)]
+        if failed:
+            yield from self._failure(failed, failed[0] is self._rehearsal.outcomes[0])
+        if self._case.passage:
+            return
+        if not failed and (leans := max(outcome.tilt for outcome in tried)) >= FALLS:
+            message = (
+                f"the torso leans {leans:.0f} deg when the robot plays this {self._case.way}: at 45 it counts as fallen"
+            )
+            most = max(tried, key=lambda outcome: outcome.tilt)
+            yield self._found("unsteady", message, "bow less deep", self._keys(most.leaned, _LEGS))
+            return  # the rest comes of it
+        worst = [*self._worst("self-collision", lambda o: o.collisions, TOUCH)]
+        if worst or (failed and failed[0] is self._rehearsal.outcomes[0]):
+            yield from worst
+            return  # the rest comes of it
+        slides = [*self._worst("feet-slide", lambda o: o.slid, SLID)]
+        yield from slides
+        spared = _LEGS if slides else ()
+        late = [*self._worst("comes-late", lambda o: o.behind, LATE, spared)]
+        yield from late or self._worst("overloaded", lambda o: o.exhausted, EXHAUSTED, spared)
+
+    def _failure(self, failed: list[Outcome], itself: bool) -> Iterator[Diagnostic]:
+        """It falls, or does not come to its end: with the robot itself, or with some others."""
+        worst = failed[0]
+        what = "falls" if worst.answer == FELL else f"does not come to its end: {worst.answer}"
+        if worst.answer == "done":
+            what = "needs another attempt"
+        elif worst.answer != FELL and itself:
+            message = f"the robot does not play this {self._case.way}: {worst.answer}"
+            yield self._found("not-played", message, "", ())
+            return
+        if itself and worst.answer == FELL:
+            message = f"the robot falls here, at {worst.at:.1f} s, when it plays this {self._case.way}"
+            hint = "slower, smaller, or with the weight over the foot that stands"
+            yield self._found("falls", message, hint, self._keys(worst.at, _LEGS))
+            return
+        tried = len(self._rehearsal.tried)
+        if len(failed) <= (MOST_FAILED * tried if self._case.passage else 0):
+            return
+        message = f"{len(failed)} of {tried} robots, each a little different, {_plural(what)} here"
+        if not self._case.passage:
+            message += f" when they play this {self._case.way}"
+        hint = "it holds on the robot of the model alone: slower, or smaller, leaves a margin"
+        yield self._found("unsteady", message, hint, self._keys(worst.at, _LEGS))
+
+    def _worst(
+        self,
+        code: str,
+        of: Callable[[Outcome], Mapping[str, Moment]],
+        limit: float,
+        spared: Iterable[str] = (),
+    ) -> Iterator[Diagnostic]:
+        """One finding where some robot went too far with something, at the worst moment."""
+        tried = self._rehearsal.tried
+        beyond = [
+            (moment, what)
+            for outcome in tried
+            for what, moment in of(outcome).items()
+            if moment[1] >= limit
+            and (code not in _JOINTS or what in self._case.motion.tracks)
+            and not any(part in what for part in spared)
+        ]
+        if not beyond:
+            return
+        (at, value), what = max(beyond, key=lambda found: found[0][1])
+        others = sorted({other for _, other in beyond} - {what})
+        robots = sum(any(m[1] >= limit for m in of(outcome).values()) for outcome in tried)
+        message, hint = _words(code, what, at, value)
+        message += f", also {', '.join(map(_name, others))}" if others else ""
+        message += f" (with {robots} of {len(tried)} robots)" if robots < len(tried) else ""
+        joints = (what,) if code in _JOINTS else _LEGS if code == "feet-slide" else ()
+        yield self._found(code, message, hint, self._keys(at, joints))
+
+    def _keys(self, at: float, joints: Iterable[str]) -> Path:
+        """Where the keyframe stands that the robot was on its way to; of these joints, where some of them move."""
+        tracks = self._case.motion.tracks
+        chosen = [keys for name, keys in tracks.items() if any(part in name for part in joints)] or list(
+            tracks.values()
+        )
+        coming = [key for keys in chosen for key in keys if key.time >= at - 1e-9]
+        keys = sorted(coming or [keys[-1] for keys in chosen], key=lambda key: key.time)
+        return _keyframe(keys[0]) if keys else ()
+
+    def _found(self, code: str, message: str, hint: str, path: Path) -> Diagnostic:
+        severity = CODES[code].severity
+        return Diagnostic(code, message, self._document.place(path), hint, severity)
+
+
+def _words(code: str, what: str, at: float, value: float) -> tuple[str, str]:
+    """What is wrong, and what to do."""
+    match code:
+        case "self-collision":
+            message = f"{what} run into each other here, at {at:.1f} s, for {value:.1f} s"
+            return message, "lead one of them around the other: a keyframe between, or a wider pose"
+        case "feet-slide":
+            message = f"{_name(what)} slides {100 * value:.1f} cm while it bears load, from {at:.1f} s"
+            return message, "keep the soles flat and the hips between the feet, or lift the foot"
+        case "comes-late":
+            message = f"{_name(what)} is {degrees(value):.0f} deg behind here, at {at:.1f} s: its motor can't follow"
+            return message, "give it more time, or less weight to move"
+        case _:
+            message = f"{_name(what)} gives all it can here, from {at:.1f} s, for {value:.1f} s"
+            return message, "its motor gets hot and comes late: slower, or with less weight on it"
+
+
+def _name(what: str) -> str:
+    return _FEET.get(what, what if " " in what else f"`{what}`")
+
+
+def _keyframe(key: Key) -> Path:
+    """Where the keyframe of a key stands: the innermost item of a list of keyframes."""
+    last = max((i for i, step in enumerate(key.where) if step == "keyframes"), default=None)
+    if last == len(key.where) - 1:
+        return ("return",)
+    return key.where if last is None else key.where[: last + 2]
+
+
+def _plural(what: str) -> str:
+    verb, _, rest = what.partition(" ")
+    return f"{ {'falls': 'fall', 'needs': 'need', 'does': 'do'}[verb] } {rest}".strip()
