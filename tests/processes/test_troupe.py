@@ -128,3 +128,16 @@ def test_files_that_the_brain_puts_in_force_are_in_force_everywhere(troupe: Trou
     assert brain.brain
     assert brain.brain._motion()
     assert {robot, motion} < set(troupe.members)
+
+
+def test_nonsense_on_every_key_ends_nobody(troupe: Troupe, caplog: pytest.LogCaptureFixture) -> None:
+    _, brain = troupe.play()
+    troupe.join("motion")
+    troupe.join("visitor", story="dancing")
+    keys = [route.key_for("NAO") for route in brain.brain.project.routes.values()] if brain.brain else []
+    for key in [*keys, "lumen.config.command", "lumen.config.status"]:
+        for body in (None, 7, [], {}, {"id": 5, "play": []}, {"parts": [{}], "speed": "fast"}, {"verdict": "applied"}):
+            troupe.ear.publish(key, body)
+    troupe.ear.publish("lumen.config.status", {"verdict": "applied", "after": "files of somebody else"})
+    troupe.until(lambda: "dance" in brain.states)
+    assert "failed on" not in caplog.text

@@ -50,14 +50,24 @@ class Bundles:
             self._wanted.put(body["after"])
 
     def _run(self) -> None:
-        while (wanted := self._wanted.get()) is not None:
+        missed = ""
+        while (wanted := self._latest()) is not None:
             usual = sys.getswitchinterval()
             sys.setswitchinterval(SLICE)
             try:
                 project, _ = check_files(self._root, read_files(self._root))
             finally:
                 sys.setswitchinterval(usual)
-            if project is None or project.hash != wanted:
-                self._loaded.put("the files here are not those that the brain runs on now: it goes on alone")
-            else:
+            if project is not None and project.hash == wanted:
+                missed = ""
                 self._loaded.put(project)
+            elif not missed:
+                missed = "the files here are not those that the brain runs on now: it goes on alone"
+                self._loaded.put(missed)
+
+    def _latest(self) -> str | None:
+        """The newest hash that is wanted, None at the end; waits for one."""
+        wanted = self._wanted.get()
+        while wanted is not None and not self._wanted.empty():
+            wanted = self._wanted.get()
+        return wanted

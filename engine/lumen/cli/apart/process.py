@@ -142,7 +142,8 @@ class Process:
     def _check_speed(self) -> None:
         """Raises UsageError where the others' time runs at another speed."""
         for peer in self._presence.peers():
-            if (theirs := peer.said.get("speed", self._speed)) != self._speed:
+            theirs = peer.said.get("speed")
+            if isinstance(theirs, int | float) and theirs != self._speed:
                 raise UsageError(f"{told(peer)} runs at {theirs:g} × real time: say --speed {theirs:g} here, too")
 
     def _over(self, lived: float, period: float | None) -> bool:

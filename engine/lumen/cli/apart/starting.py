@@ -105,9 +105,10 @@ def assembled(
         running[0] = other
         process.use(other)
 
-    bundles = Bundles(Path(project.root), bus, use, lambda line: transcript.line("reload", line))
-    process.after.append(bundles.tick)
-    process.closing.append(bundles.close)
+    if set(names) != {BRAIN}:  # which sees to its files by itself
+        bundles = Bundles(Path(project.root), bus, use, lambda line: transcript.line("reload", line))
+        process.after.append(bundles.tick)
+        process.closing.append(bundles.close)
     return process, brain
 
 
