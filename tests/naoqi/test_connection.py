@@ -43,7 +43,7 @@ def test_addresses(url: str, whole: str) -> None:
 
 @pytest.mark.parametrize("url", ["", "tcp://", "http://nao.local:80", "tcp://nao.local:port", "tcp://:9559"])
 def test_what_is_no_address(url: str) -> None:
-    with pytest.raises(RobotError, match="write tcp://nao.local:9559"):
+    with pytest.raises(RobotError, match=r"write tcp://nao\.local:9559"):
         address(url)
 
 

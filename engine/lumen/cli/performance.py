@@ -15,9 +15,10 @@ from lumen.cli.show import Show, film
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedSpeech
 from lumen.cli.why import innermost
+from lumen.clocks.real import RealClock
 from lumen.language.commands import Rest
 from lumen.language.events import Event
-from lumen.language.modules import EYES
+from lumen.language.modules import EYES, MODULES
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
 from lumen.loading.packaged import shipped_root
@@ -39,10 +40,12 @@ class Performance:
         self._transcript = Transcript(chosen.clock.now, lambda: self._show.exhibition.project.machine)
         self._show.exhibition.observers.append(self._transcript)
         self._story, self._blind = story, chosen.blind
+        self._real = isinstance(chosen.clock, RealClock)
         self._typed: TypedSpeech | None = None
         self._interrupts, self._resting = 0, False
         self._show.exhibition.parts.append(self._rest)
         self._face: float | None = None
+        self._presence: Presence | None = None
 
     def interrupt(self, times: int = 1, *, leave: bool = False) -> None:
         """Ctrl-C: once rests the robot, twice ends. With `leave` the next run goes on where this one ended."""
@@ -70,7 +73,9 @@ class Performance:
             self._settle(mode)
             self._introduce(speed)
             folder = None if self._story else home_of(self._premises.root)
-            join(show, folder, self._transcript.line, paced=speed != "max")
+            begun = {module.name for module in join(show, folder, self._transcript.line, paced=speed != "max")}
+            if self._presence:
+                self._presence.parts = tuple(p for p in self._presence.parts if p not in MODULES or p in begun)
             self._start(language, fresh=fresh)
             settled()
             began = time.monotonic()
@@ -89,6 +94,7 @@ class Performance:
         presence = presence_of(show.exhibition.project, show.bus, (ROBOT, BRAIN, MOTION, *here), self._said)
         show.closing.insert(0, presence.close)
         claim(presence)
+        self._presence = presence
         show.exhibition.parts.append(lambda now: self._meet(presence))
 
     def _said(self) -> dict[str, str]:
@@ -168,7 +174,7 @@ class Performance:
         failure = player.failure if player else ""
         early = player is not None and not player.finished
         ended = "The story failed" if failure else "Ended before the story did" if early else "All well"
-        pace = "" if self._show.walker is None else f" in {took:.0f} s ({now / max(took, 0.01):.1f} × real time)"
+        pace = "" if self._real else f" in {took:.0f} s ({now / max(took, 0.01):.1f} × real time)"
         print(f"\n{ended}: {clock_time(now)} of {'simulated ' * bool(pace)}time{pace}.")
         if failure:
             print(f"  {failure}")
