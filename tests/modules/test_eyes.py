@@ -25,7 +25,6 @@ from lumen.modules.eyes import Eyes
 from lumen.modules.eyes.finding import Finder
 from lumen.modules.eyes.known import Known
 from lumen.ports import Sense
-from lumen.robots.bodies import image_body
 from lumen.robots.simulation import SimulatedRobot
 from tests.modules.conftest import Stand, with_options
 
@@ -242,16 +241,3 @@ def test_the_head_turns_to_a_face_that_was_seen_in_the_image(project: Project) -
     assert len(faces) == sum(key.endswith("tracking") for key, _ in seen) > 10
     assert max(distances[:50]) > 60.0
     assert max(distances[-25:]) < 12.0
-
-
-def test_images_of_the_robot_are_bodies_that_the_eyes_read(eyes: Make, project: Project) -> None:
-    robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
-    robot.place(Visitor(x=1.5, y=0.0))
-    robot.advance(0.02)
-    image = robot.read(Sense.IMAGE)
-    here = eyes()
-    faces = here.listen("lumen.visual.face.detection")
-    here.bus.publish(IMAGE, image_body(image, 1, "2015-05-20"))  # type: ignore[arg-type]
-    here.settle()
-    robot.close()
-    assert len(faces.bodies) == 1

@@ -16,6 +16,7 @@ def opencv() -> ModuleType:
     for part in ("CascadeClassifier", "HOGDescriptor", "face"):
         if not hasattr(cv2, part):
             raise ModuleError(f"this OpenCV ({cv2.__version__}) has no `{part}`: {INSTALL}, without another OpenCV")
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what it has to say is said by us, in one line
     cv2.setNumThreads(1)  # the robot's physics and the behaviour want the other cores
     module: ModuleType = cv2
     return module
