@@ -25,7 +25,7 @@ class World:
         self.calls: list[tuple[float, str, tuple[Any, ...]]] = []
         self.awake, self.family, self.stiffness = True, "Standing", 1.0
         self.position = [0.0, 0.0, 0.0]
-        self.obstacle = self.deaf = False
+        self.obstacle = self.deaf = self.astray = False
         self.version = "2.8.6.23"
         self.pressed: set[str] = set()
         self.sonar = (2.55, 2.55)
@@ -148,6 +148,8 @@ class ALMotion:
         self._world.position = [p + v * dt for p, v in zip(self._world.position, self._velocity, strict=True)]
 
     def getRobotPosition(self, sensors: bool) -> list[float]:
+        if self._world.astray:
+            raise RuntimeError("ALMotion::getRobotPosition\n\tno odometry")
         with self._times.lock:
             if self._walk and not self._walk.over:
                 self._walking()

@@ -147,6 +147,15 @@ def test_sonars_stop_a_walk(robot: Lockstep, live: Live) -> None:
     assert "did not set out" in reason(live(0.2))
 
 
+def test_a_walk_ends_where_nobody_knows_where_it_is(robot: Lockstep, live: Live) -> None:
+    robot.start("a", Walk(0.3))
+    live(0.5)
+    robot.nao.world.astray = True
+    assert "nobody knows where the robot is (ALMotion::getRobotPosition no odometry)" in reason(live(1.5))
+    robot.nao.world.astray = False
+    assert robot.nao.world.position[0] < 0.15
+
+
 def test_nobody_leaves_the_stage(robot: Lockstep, live: Live) -> None:
     robot.start("a", Walk(0.35))
     assert "leave the stage" in reason(live(0.5))

@@ -52,7 +52,10 @@ class Watch:
         if not self._where.done:
             return ""
         found, self._where = self._where, None
-        return self._ground.outside(found.result(), self._here, DRIFT)
+        try:
+            return self._ground.outside(found.result(), self._here, DRIFT)
+        except RobotError as error:
+            return f"nobody knows where the robot is ({error})"
 
 
 class Walks:
