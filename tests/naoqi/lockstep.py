@@ -31,7 +31,7 @@ class Lockstep(NaoqiRobot):
         deadline, pause = time.monotonic() + DEADLINE, threading.Event()
         while self._link.up and (self._link.pending != self.nao.times.waiting or self._noticing.heard < self.nao.told):
             assert time.monotonic() < deadline, "the fake robot and the adapter wait for each other"
-            pause.wait(0.0002)
+            pause.wait(0.0005)
 
     def read(self, sense: Sense) -> Reading | None:
         return self._senses[sense].fresh() if sense in self._fresh else super().read(sense)

@@ -39,6 +39,7 @@ class Keeper:
         try:
             self._link.open()
             self._take_over(False)
+            self._link.ready = self._link.up
         except RobotError:
             self._link.close()
             raise
@@ -76,6 +77,7 @@ class Keeper:
         try:
             self._link.open()
             self._take_over(True)
+            self._link.ready = self._link.up
         except RobotError as error:
             self._link.close()
             _log.info("the robot is still away: %s", error)

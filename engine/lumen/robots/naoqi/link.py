@@ -18,6 +18,10 @@ MISSING = (
     " (there are wheels for CPython up to 3.12 on Linux, x86-64)"
 )
 
+CUT = "the connection to the robot is lost"
+_CUT = ("Service removed", "Socket is not connected", "Socket disconnected", "Session closed")
+"""How qi says so."""
+
 _SCHEME = re.compile(r"^[a-z]+://")
 
 
@@ -46,6 +50,8 @@ def address(url: str) -> str:
 def plain(error: object) -> str:
     """NAOqi's words about what went wrong, in one line and without where in its code that was."""
     text = " ".join(str(error).partition("\n\nAt:")[0].split())
+    if text in _CUT:
+        return CUT
     return text.removeprefix("RuntimeError: ")[:LONGEST] or "it said nothing about it"
 
 
@@ -78,12 +84,13 @@ class Call:
 class Link:
     """A session with the NAOqi at `url`, to be opened again after it was lost.
 
-    `up` is whether it stands; `lost` is called once for each time that it breaks, on any thread, with the reason.
+    `up` is whether it stands, `ready` whether all is settled with the robot as well; `lost` is called once for each time that it breaks, on any thread, with the reason.
     """
 
     def __init__(self, url: str, lost: Callable[[str], None] = lambda _: None) -> None:
         self.url = address(url)
         self.pending = 0
+        self.ready = False
         self._lost, self._qi = lost, qi()
         self._session: Any = None
         self._services: dict[str, Any] = {}
@@ -128,7 +135,7 @@ class Link:
         """Call, without waiting; trouble of any kind is in the answer."""
         proxy = self._services.get(service)
         if not self.up:
-            return Call(error="the robot can't be reached")
+            return Call(error=CUT)
         if proxy is None:
             return Call(error=f"this robot has no {service}")
         try:
@@ -163,7 +170,7 @@ class Link:
 
     def close(self) -> None:
         """Let go; `lost` hears nothing of it."""
-        session, self._session = self._session, None
+        session, self._session, self.ready = self._session, None, False
         if session is not None:
             session.close()
 
@@ -175,6 +182,6 @@ class Link:
         with self._lock:
             if session is None or session is not self._session:
                 return
-            self._session = None
+            self._session, self.ready = None, False
         threading.Thread(target=session.close, daemon=True).start()  # it may wait for what does not answer
         self._lost(reason)

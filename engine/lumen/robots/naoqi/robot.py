@@ -13,7 +13,7 @@ from lumen.robots.naoqi.deeds import Deed
 from lumen.robots.naoqi.ground import Ground
 from lumen.robots.naoqi.instruments import Instruments
 from lumen.robots.naoqi.keeping import Keeper
-from lumen.robots.naoqi.link import Call, Link
+from lumen.robots.naoqi.link import CUT, Call, Link
 from lumen.robots.naoqi.noticing import FALLEN, FALLING, Condition, Noticing
 from lumen.robots.naoqi.preparing import halt, prepare
 from lumen.robots.naoqi.repertoire import Repertoire
@@ -96,8 +96,8 @@ class NaoqiRobot:
         self._link.close()
 
     def _begin(self, command: RobotCommand, now: float) -> Deed:
-        if not self._link.up:
-            raise RobotError("the connection to the robot is lost")
+        if not self._link.ready:
+            raise RobotError(CUT)
         return self._repertoire.begin(command, now)
 
     def _take_over(self, again: bool) -> None:
@@ -138,7 +138,7 @@ class NaoqiRobot:
             return
         self._aim = None
         free = {n: a for n, a in aim.angles.items() if not self._executor.owner(self._part.get(n, ""))}
-        if free and self._link.up:
+        if free and self._link.ready:
             inside = self._repertoire.inside(free)
             speed = min(max(aim.speed, 0.01), 1.0)
             self._aimed = self._link.post("ALMotion", "setAngles", list(inside), list(inside.values()), speed)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from lumen.errors import RobotError
 from lumen.ports import Reading
-from lumen.robots.naoqi.link import Link
+from lumen.robots.naoqi.link import CUT, Link
 
 PERIODS = {"image": 0.066, "joint": 0.05, "sonar": 0.1, "tactile": 0.1, "battery": 1.0}
 """How often each is acquired [s]: no later than the shipped routes publish it."""
@@ -62,14 +62,14 @@ class Acquiring:
 
     def _round(self) -> float:
         """Acquire once; how long to wait until the next time [s]."""
-        if not self._link.up:
+        if not self._link.ready:
             self.newest = None
             return self._period
         try:
             self.newest = self._acquire()
         except RobotError as error:
             self.newest = None
-            if self._link.up and not self._ending.is_set():
+            if self._link.ready and str(error) != CUT and not self._ending.is_set():
                 self._tell(str(error))
             return AGAIN
         if self._told:
