@@ -15,6 +15,7 @@ pytestmark = pytest.mark.xdist_group("rabbitmq")
 
 def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
     expected = alone(troupe.folder, "short")
+    troupe.speed = "2"
     robot = troupe.join("robot")
     troupe.join("motion")
     brain, visitor = troupe.join("brain", story="short"), troupe.join("visitor", story="short")
@@ -29,6 +30,7 @@ def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
     assert [m.tracks for m in played] == [project.motions[m.name].tracks for m in played]
 
 
+@pytest.mark.soak
 def test_without_a_motion_module_the_brain_does_it_itself_and_hands_it_over(troupe: Troupe) -> None:
     robot, brain = troupe.join("robot"), troupe.join("brain", story="short")
     visitor = troupe.join("visitor", story="short")
@@ -53,7 +55,7 @@ def test_a_brain_for_one_robot_moves_no_other(troupe: Troupe) -> None:
     assert {body["robot"] for body in troupe.trace.bodies} == {"NAO"}
 
 
-@pytest.mark.parametrize("part", ["brain", "robot"])
+@pytest.mark.parametrize("part", ["brain", pytest.param("robot", marks=pytest.mark.soak)])
 def test_a_second_one_of_the_same_kind_is_refused(troupe: Troupe, part: str) -> None:
     robot, brain = troupe.join("robot"), troupe.join("brain")
     troupe.until(lambda: "idle" in brain.states)
@@ -73,6 +75,7 @@ def test_a_robot_that_is_lost_is_answered_and_comes_back(troupe: Troupe) -> None
     assert any(isinstance(command, Posture) for _, command in again.body.performed)
 
 
+@pytest.mark.soak
 def test_a_robot_whose_brain_is_gone_rests_after_5_seconds_and_tells_the_next_one(troupe: Troupe) -> None:
     robot, brain = troupe.play()
     troupe.kill(brain)
@@ -84,6 +87,7 @@ def test_a_robot_whose_brain_is_gone_rests_after_5_seconds_and_tells_the_next_on
     troupe.until(lambda: "idle" in again.states)
 
 
+@pytest.mark.soak
 def test_a_network_that_is_cut_for_10_seconds_ends_safely_and_goes_on(troupe: Troupe) -> None:
     port = int(troupe.url.rpartition(":")[2].strip("/"))
     cable = Relay(port)

@@ -65,12 +65,12 @@ steps:
 class Member:
     """One process, its parts, and what stands behind it."""
 
-    def __init__(self, folder: Path, url: str, names: tuple[str, ...], story: str, name: str) -> None:
+    def __init__(self, folder: Path, url: str, names: tuple[str, ...], story: str, name: str, speed: str) -> None:
         project = replace(lumen.load(folder), robot=name)
-        options = argparse.Namespace(speed=SPEED, reload="manual", fresh=False, robot="recording")
+        options = argparse.Namespace(speed=speed, reload="manual", fresh=False, robot="recording")
         self.premises = Premises(folder, guest=BRAIN not in names)
-        self.cast: Cast | None = cast("recording", project, SPEED) if ROBOT in names else None
-        clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(SPEED))
+        self.cast: Cast | None = cast("recording", project, speed) if ROBOT in names else None
+        clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(speed))
         played = project.stories[story] if story else None
         bus = validated(connect(url), project)
         self.process, self.brain = assembled(
@@ -99,7 +99,7 @@ class Troupe:
     """Members that live while somebody waits for something."""
 
     def __init__(self, folder: Path, url: str) -> None:
-        self.folder, self.url = folder, url
+        self.folder, self.url, self.speed = folder, url, SPEED
         self.members: list[Member] = []
         self.told = StringIO()
         self.ear: Bus = connect(url)
@@ -107,7 +107,7 @@ class Troupe:
         self.ear.subscribe("lumen.state", self.trace)
 
     def join(self, *names: str, story: str = "", robot: str = "NAO", url: str = "") -> Member:
-        member = Member(self.folder, url or self.url, names, story, robot)
+        member = Member(self.folder, url or self.url, names, story, robot, self.speed)
         self.members.append(member)
         return member
 
