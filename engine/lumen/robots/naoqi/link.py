@@ -84,7 +84,8 @@ class Call:
 class Link:
     """A session with the NAOqi at `url`, to be opened again after it was lost.
 
-    `up` is whether it stands, `ready` whether all is settled with the robot as well; `lost` is called once for each time that it breaks, on any thread, with the reason.
+    `up` is whether it stands, `ready` whether all is settled with the robot as well; `lost` is called once for each
+    time that it breaks, on any thread, with the reason.
     """
 
     def __init__(self, url: str, lost: Callable[[str], None] = lambda _: None) -> None:
