@@ -138,8 +138,8 @@ class Strain(NamedTuple):
     """How a body fares at one moment.
 
     `played` is how far along its motion it is [s], `tilt` how far the torso leans [rad]. `touching` are pairs of its
-    own links that press into each other; `exhausted` the joints whose motors give all they can; `behind` is how far [rad]
-    joints are from where they are wanted.
+    own links that press into each other; `exhausted` the joints whose motors give all they can; `behind` is how far
+    joints are from where they are wanted [rad].
     """
 
     played: float

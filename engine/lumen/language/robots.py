@@ -50,7 +50,7 @@ class Ultrasound:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A link's mass [kg], centre of mass [m], inertia about it (xx, yy, zz, xy, xz, yz) [kg m^2], in the joint's axes."""
+    """A link's mass [kg], centre of mass [m], inertia about it (xx yy zz xy xz yz) [kg m^2], in its joint's axes."""
 
     mass: float
     centre: tuple[float, ...]

@@ -67,7 +67,9 @@ def _carried(report: Report, route: Route) -> None:
         for key, value in (("ttl", route.ttl), ("keep", route.keep)):
             if value is not None:
                 message = f"nothing of a journal is lost, and `{key}` throws messages away"
-                find(report, "lossy-journal", (*where, key), message, f"delete `{key}`, or `carried: journal`", key=True)
+                find(
+                    report, "lossy-journal", (*where, key), message, f"delete `{key}`, or `carried: journal`", key=True
+                )
 
 
 def _missing(draft: Draft, routes: Mapping[str, Route], report: Report) -> None:

@@ -74,7 +74,7 @@ def reading_of(sense: Sense, body: Any, names: Sequence[str]) -> Reading | None:
 
 
 def _felt(body: Mapping[str, Any], count: int) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
-    """What else the robot feels of itself: motors' temperatures, inertial unit, soles; nothing where nothing is said."""
+    """What else the robot feels of itself: motors' temperatures, inertial unit, soles; empty where nothing is said."""
     temperature = tuple(map(float, body.get("temperature", ())))
     inertial, fsr = ({str(k): float(v) for k, v in dict(body.get(name, {})).items()} for name in ("inertial", "fsr"))
     return temperature if len(temperature) == count else (), inertial, fsr
