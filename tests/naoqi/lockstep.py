@@ -38,6 +38,7 @@ class Lockstep(NaoqiRobot):
 
     def touch(self, sensor: str, pressed: bool) -> None:
         self.nao.touch(sensor, pressed)
+        self.settle()
 
     def plug(self, plugged: bool) -> None:
         self.nao.world.plugged = plugged

@@ -5,6 +5,7 @@ import logging
 import numpy as np
 import pytest
 
+from lumen.language.commands import Posture
 from lumen.ports import Battery, Image, Joints, Sense, Tactile
 from tests.naoqi.conftest import Live
 from tests.naoqi.lockstep import Lockstep
@@ -61,6 +62,13 @@ def test_a_bumper_has_two_sides(robot: Lockstep) -> None:
     assert sum(found.values) == 1
 
 
+def test_a_touch_whose_event_got_lost_is_felt(robot: Lockstep, live: Live) -> None:
+    robot.nao.world.pressed = {"RearTactil"}
+    robot.advance(1.0)
+    robot.read(Sense.TACTILE)
+    assert [(e.name, e.data) for e in live(0.1)] == [("touched", {"sensor": "RearTactil"})]
+
+
 def test_a_low_battery_is_told_once(robot: Lockstep, live: Live) -> None:
     robot.nao.world.charge, robot.nao.world.charging = 0.19, True
     battery = robot.read(Sense.BATTERY)
@@ -76,8 +84,6 @@ def test_a_hot_motor_is_told_once(robot: Lockstep, live: Live) -> None:
 
 
 def test_senses_go_on_while_a_command_blocks(robot: Lockstep, live: Live) -> None:
-    from lumen.language.commands import Posture
-
     robot.start("a", Posture("Crouch"))
     knees = []
     for _ in range(4):

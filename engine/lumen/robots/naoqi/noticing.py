@@ -8,6 +8,7 @@ from typing import Any
 
 from lumen.errors import RobotError
 from lumen.language.events import Event
+from lumen.ports import Tactile
 from lumen.robots.naoqi.link import Link
 
 FALLEN = "robotHasFallen"
@@ -18,6 +19,9 @@ LOW, RECHARGED = 20, 25
 """Charge [%] at which the robot speaks up, and may do so again."""
 HOT, COOLED = 75.0, 70.0
 """Temperatures [degrees Celsius] at which it speaks up, and may do so again."""
+
+SETTLED = 0.3
+"""How much younger than an event a look at the sensors has to be, to count more [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -36,6 +40,7 @@ class Noticing:
     def __init__(self, sensors: Iterable[str]) -> None:
         self.pressed = dict.fromkeys(sensors, False)
         self.heard = 0
+        self._since = dict.fromkeys(self.pressed, 0.0)
         self._came: deque[tuple[str, bool]] = deque(maxlen=1_000)
         self._kept: list[Any] = []
 
@@ -49,13 +54,21 @@ class Noticing:
             except RobotError as error:
                 _log.warning("the robot will not tell of `%s`: %s", event, error)
 
-    def take(self) -> list[tuple[str, bool]]:
-        """What has changed: sensors pressed or let go of, `robotHasFallen`, or that it is `falling`."""
+    def take(self, now: float, felt: Tactile | None) -> list[tuple[str, bool]]:
+        """What has changed by `now` [s]: sensors pressed or let go of, and falls.
+
+        Two events may overtake each other on their way; what was `felt` since puts that right.
+        """
+        if felt:
+            for name, value in zip(felt.names, felt.values, strict=True):
+                if felt.time > self._since[name] + SETTLED and self.pressed[name] != bool(value):
+                    self._came.append((name, bool(value)))
         changed = []
         while self._came:
             name, value = self._came.popleft()
             if name not in self.pressed or self.pressed[name] != value:
-                self.pressed.update({name: value} if name in self.pressed else {})
+                if name in self.pressed:
+                    self.pressed[name], self._since[name] = value, now
                 changed.append((name, value))
         return changed
 

@@ -7,7 +7,7 @@ from lumen.errors import RobotError
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.ports import Aim, Battery, Reading, RobotCommand, Sense, Sonar
+from lumen.ports import Aim, Battery, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.executor import Executor
 from lumen.robots.naoqi.deeds import Deed
 from lumen.robots.naoqi.ground import Ground
@@ -114,7 +114,8 @@ class NaoqiRobot:
             if name == "robot.lost":
                 self._executor.fail(f"the robot is lost: {reason}")
             self._events.append(Event(name, {"seconds": round(seconds, 3)}, now))
-        for name, value in self._noticing.take():
+        felt = self._senses[Sense.TACTILE].newest
+        for name, value in self._noticing.take(now, felt if isinstance(felt, Tactile) else None):
             if name in self.body.tactile:
                 self._events.append(Event("touched" if value else "released", {"sensor": name}, now))
             elif value and name in (FALLEN, *FALLING):
