@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from lumen.language.projects import Project
-from lumen.language.stories import Arrive, Deed, Expect, Pause, Scene, Story, Touch, Visitor
+from lumen.language.stories import Arrive, Deed, Expect, Pause, Scene, Story, Visitor
 from lumen.robots.simulation import SimulatedRobot
 from tests.tour.playing import play
 
