@@ -4,6 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 STORY ?= visitor
 SPEED ?= 4
+FETCHED := .cache/scion .cache/sarif .cache/xstate .cache/asyncapi .cache/node_modules/amqplib
 
 .PHONY: help run test soak broker check packages clean
 
@@ -17,7 +18,7 @@ help:
 run: .venv/run
 	@$(BIN)/lumen run --story $(STORY) --speed $(SPEED)
 
-test: packages check .cache/scion .cache/sarif .cache/xstate .cache/asyncapi .cache/node_modules/amqplib
+test: packages check $(FETCHED)
 	@$(BIN)/lumen lint --strict
 	@$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not soak"
 
@@ -37,29 +38,9 @@ check: .venv/test
 packages:
 	@sh scripts/packages.sh packages.txt
 
-.cache/scion: scripts/conformance-data.sh
+$(FETCHED): scripts/fetch.sh scripts/fetched.txt
 	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
-	@sh scripts/conformance-data.sh
-	@touch $@
-
-.cache/xstate: scripts/xstate.sh
-	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
-	@sh scripts/xstate.sh
-	@touch $@
-
-.cache/asyncapi: scripts/asyncapi.sh
-	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
-	@sh scripts/asyncapi.sh
-	@touch $@
-
-.cache/node_modules/amqplib: scripts/amqplib.sh
-	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
-	@sh scripts/amqplib.sh
-	@touch $@
-
-.cache/sarif: scripts/sarif-schema.sh
-	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
-	@sh scripts/sarif-schema.sh
+	@sh scripts/fetch.sh $@
 	@touch $@
 
 .venv/run: requirements.txt pyproject.toml

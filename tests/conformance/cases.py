@@ -1,7 +1,7 @@
 """The cases of the SCION test framework, and what our importer and interpreter make of them.
 
 A case is a statechart in SCXML and, mostly, a driver: which states have to be active at first, and after each of some
-events. `scripts/conformance-data.sh` fetches them.
+events. `scripts/fetch.sh` fetches them.
 """
 
 import json

@@ -18,7 +18,7 @@ PASSING = [c for c in CASES if c.driver is not None and c.name not in REASONS]
 
 
 def test_the_cases_are_there() -> None:
-    assert len(CASES) == 335, f"fetch the cases into {FOLDER}: sh scripts/conformance-data.sh"
+    assert len(CASES) == 335, f"fetch the cases into {FOLDER}: sh scripts/fetch.sh .cache/scion"
     assert {c.name for c in CASES if c.driver is None} == set(TABLE["without a driver"])
     assert set(REASONS) <= {c.name for c in CASES if c.driver is not None}
     assert len(PASSING) >= 180

@@ -145,7 +145,7 @@ def by_lumen(machine: Machine, events: list[Any]) -> Any:
 
 
 def test_xstate_goes_the_same_way() -> None:
-    assert XSTATE.is_file(), "fetch it: sh scripts/xstate.sh"
+    assert XSTATE.is_file(), "fetch it: sh scripts/fetch.sh .cache/xstate"
     machines = [Machine.from_dict(chart) for chart, _ in CHARTS]
     rows = [
         {"config": exported(machine), "events": [e * 1000 if isinstance(e, float) else e for e in events]}
