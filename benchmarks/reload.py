@@ -10,20 +10,19 @@ files that the writer completed, and a good one; no event may be lost; nothing m
 import argparse
 import os
 import platform
-import random
-import shutil
 import subprocess
 import sys
-import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
 from statistics import quantiles
 from typing import NamedTuple
+
+from editing import Writer, project
 
 import lumen
 from lumen.bus import connect
@@ -36,34 +35,14 @@ from lumen.cli.show import Show
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.stories import Visitor
-from lumen.loading.files import fingerprint, read_files
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.exhibition import TICK
 from lumen.runtime.home import Home
 
-ROOT = Path(__file__).parents[1]
 RATE = 200
-STORIES = ("known_visitor", "refuses", "unknown_visitor")
-TOUR, MAIN = "behaviors/tour.yaml", "lumen.yaml"
-FIVE = (MAIN, TOUR, *(f"behaviors/stories/{name}.yaml" for name in STORIES))
 PATIENCE = 60.0
 WARM = 0.4
 """The part of the edits after which memory, threads and files are counted for the first time."""
-
-COUNTER = """
-  load:
-    initial: counting
-    states:
-      counting: {on: {load: {actions: {assign: {loaded: "context.loaded + 1"}}}}}
-"""
-ROUTE = "  load: {key: lumen.load, direction: in, event: load}\n"
-BREAKS: tuple[tuple[str, str, str], ...] = (
-    (TOUR, "onDone: any_question", "onDone: any_questoin"),
-    (TOUR, "id: tour\n", "id: tour\n\tx: 1\n"),
-    (TOUR, "{play: sing}", "{play: sign}"),
-    (MAIN, "languages: [en, id]", "languages: [en, id"),
-    (MAIN, "behavior: tour", "behaviour: tour"),
-)
 
 
 @dataclass
@@ -116,118 +95,6 @@ def told_of(bulletin: Bulletin, at: float) -> Told:
     own = bulletin.judged.took if bulletin.judged else 0.0
     reason = next(bulletin.lines(), "")
     return Told(at, bulletin.verdict, bulletin.after, own, bulletin.took.get("applying", 0.0), reason)
-
-
-class Writer:
-    """Edits a project as people and programs do; `good` and `bad` are the hashes of all states it completed."""
-
-    def __init__(self, root: Path, seed: int) -> None:
-        self.root, self.random = root, random.Random(seed)
-        self.good = {fingerprint(read_files(root))}
-        self.bad: set[str] = set()
-        self.number = 0
-        self.mending: tuple[str, ...] = ()
-        self.ways: list[Callable[[dict[str, str]], None]] = [
-            self.in_place, self.truncated, self.atomically, self.one_after_the_other, self.checked_out,
-        ]  # fmt: skip
-
-    def edit(self) -> tuple[str, bool]:
-        """Make the next edit; the hash of what the files are now, and whether they are good."""
-        self.number += 1
-        broken = self.number % 3 == 0
-        way = self.ways[self.number % len(self.ways)]
-        chosen = FIVE if way in self.ways[3:] else (self.random.choice(FIVE),)
-        files = {path: self.marked(path) for path in (*self.mending, *chosen)}
-        self.mending = ()
-        if broken:
-            path, old, new = self.random.choice(BREAKS)
-            text = files.get(path) or self.marked(path)
-            assert old in text, (path, old)
-            files[path] = text.replace(old, new, 1)
-            self.mending = (path,)
-        way(files)
-        hash = fingerprint(read_files(self.root))
-        (self.bad if broken else self.good).add(hash)
-        return hash, not broken
-
-    def marked(self, path: str) -> str:
-        """The file as it was at first, with the number of this edit in a text of it."""
-        text = self.read_first(path)
-        old = {MAIN: "name: Lumen at", TOUR: "en: Never mind."}.get(path, "title: ")
-        assert old in text, path
-        return text.replace(old, f"{old} {self.number} ".rstrip(), 1)
-
-    def read_first(self, path: str) -> str:
-        return (self.root.parent / "first" / path).read_text("utf-8")
-
-    def in_place(self, files: dict[str, str]) -> None:
-        for path, text in files.items():
-            with (self.root / path).open("r+", encoding="utf-8") as file:
-                file.write(text)
-                file.truncate()
-
-    def truncated(self, files: dict[str, str]) -> None:
-        """Emptied, and half of it written before the rest."""
-        for path, text in files.items():
-            with (self.root / path).open("w", encoding="utf-8") as file:
-                file.flush()
-                time.sleep(0.05)
-                file.write(text[: len(text) // 2])
-                file.flush()
-                time.sleep(0.05)
-                file.write(text[len(text) // 2 :])
-
-    def atomically(self, files: dict[str, str]) -> None:
-        """As vim does: the old file becomes a backup, and another takes its name."""
-        for path, text in files.items():
-            file = self.root / path
-            (file.parent / "4913").touch()
-            (file.parent / "4913").unlink()
-            os.replace(file, file.with_name(f"{file.name}~"))
-            time.sleep(0.02)
-            draft = file.with_name(f".{file.name}.swp")
-            draft.write_text(text, "utf-8")
-            os.replace(draft, file)
-            file.with_name(f"{file.name}~").unlink()
-
-    def one_after_the_other(self, files: dict[str, str]) -> None:
-        for path, text in files.items():
-            (self.root / path).write_text(text, "utf-8")
-            if path != list(files)[-1]:
-                time.sleep(self.pause)
-
-    pause = 0.12
-
-    def checked_out(self, files: dict[str, str]) -> None:
-        """Two revisions of the project, and from one to the other."""
-        for path, text in files.items():
-            (self.root.parent / "work" / path).write_text(text, "utf-8")
-        _git(self.root.parent / "work", "commit", "-qam", f"edit {self.number}")
-        _git(self.root, "fetch", "-q", "origin")
-        _git(self.root, "checkout", "-qf", "origin/HEAD")
-
-
-@contextmanager
-def project() -> Iterator[Path]:
-    """A copy of the shipped tour that counts events, as a clone of a git repository."""
-    with tempfile.TemporaryDirectory(prefix="lumen-reload-") as name:
-        folder = Path(name)
-        first = folder / "first"
-        for part in ("behaviors", "fuzzy", "motions", "schemas", "models"):
-            shutil.copytree(ROOT / part, first / part)
-        for story in (first / "behaviors" / "stories").glob("*.yaml"):
-            if story.stem not in STORIES:
-                story.unlink()
-        main = (ROOT / MAIN).read_text("utf-8").replace("story: visitor", "story: refuses")
-        (first / MAIN).write_text(main.replace("routes:\n", f"routes:\n{ROUTE}", 1), "utf-8")
-        tour = (ROOT / TOUR).read_text("utf-8").replace("context:\n", "context:\n  loaded: 0\n", 1)
-        (first / TOUR).write_text(tour.rstrip("\n") + "\n" + COUNTER, "utf-8")
-        shutil.copytree(first, folder / "work")
-        _git(folder / "work", "init", "-q", "-b", "main")
-        _git(folder / "work", "add", ".")
-        _git(folder / "work", "commit", "-qm", "first")
-        _git(folder, "clone", "-q", "work", "show")
-        yield folder / "show"
 
 
 METRONOME = f"""
@@ -415,20 +282,6 @@ def soak(edits: int, url: str = "memory://", quiet: float = 0.3, seed: int = 1) 
         one = Soak(root, url, quiet, seed, edits)
         one.writer.pause = 0.4 * quiet
         return one.run()
-
-
-def _git(folder: Path, *words: str) -> None:
-    who = [
-        "-c",
-        "user.name=soak",
-        "-c",
-        "user.email=soak@localhost",
-        "-c",
-        "gc.auto=0",
-        "-c",
-        "init.defaultBranch=main",
-    ]
-    subprocess.run(["git", *who, *words], cwd=folder, check=True, capture_output=True)
 
 
 def _spread(times: list[float]) -> str:
