@@ -4,7 +4,7 @@ import argparse
 import json
 import os
 import sys
-import time
+import threading
 from collections.abc import Iterator
 from contextlib import closing, suppress
 from datetime import UTC, datetime
@@ -102,19 +102,20 @@ def _permissions(probe: Probe, project: Project) -> Iterator[Finding]:
 def _life(bus: Bus, project: Project) -> Iterator[Finding]:
     """What is heard in two seconds: the senses, and how late it is for who sends them."""
     routes, heard, skews = by_key(project), set[str](), list[float]()
+    complete = threading.Event()
 
     def listen(message: Any) -> None:
         heard.add(message.key)
         if (skew := _skew(message.body)) is not None:
             skews.append(skew)
+        if senses.keys() <= heard and skews:
+            complete.set()
 
     senses = {key: route for key, route in routes.items() if route.every and route.every <= LISTENING / 2}
     for key in senses:
         with suppress(BusError):  # what we may not read is nothing that we hear
             bus.subscribe(key, listen)
-    end = time.monotonic() + LISTENING
-    while time.monotonic() < end and not (senses.keys() <= heard and skews):
-        time.sleep(0.05)
+    complete.wait(LISTENING)
     silent = [route.name for key, route in senses.items() if key not in heard]
     if silent:
         text = f"nothing came on {_names(silent)} in {LISTENING:g} s: does the robot run?"
