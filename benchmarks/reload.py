@@ -26,11 +26,11 @@ from editing import Writer, project
 
 import lumen
 from lumen.bus import connect
-from lumen.cli.bulletin import Bulletin
 from lumen.cli.cast import Cast
-from lumen.cli.records import Records
-from lumen.cli.reloading import Reloading
-from lumen.cli.settled import settled
+from lumen.cli.reloading.bulletin import Bulletin
+from lumen.cli.reloading.records import Records
+from lumen.cli.reloading.reloading import Reloading
+from lumen.cli.reloading.settled import settled
 from lumen.cli.show import Show
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock

@@ -10,7 +10,7 @@ import pytest
 
 import lumen
 from lumen.cli.cast import Cast
-from lumen.cli.reloading import Reloading
+from lumen.cli.reloading.reloading import Reloading
 from lumen.cli.show import Show
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock

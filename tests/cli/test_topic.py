@@ -11,7 +11,7 @@ import pytest
 from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
 from lumen.cli.main import main
-from lumen.cli.premises import Premises
+from lumen.cli.reloading.premises import Premises
 from lumen.language.projects import Project
 from tests.exhibits import project
 from tests.rabbitmq import RabbitMQ

@@ -8,9 +8,9 @@ from typing import Any
 
 import lumen
 from lumen.cli.cast import Cast
-from lumen.cli.orders import COMMAND, STATUS
-from lumen.cli.records import Records
-from lumen.cli.reloading import Reloading
+from lumen.cli.reloading.orders import COMMAND, STATUS
+from lumen.cli.reloading.records import Records
+from lumen.cli.reloading.reloading import Reloading
 from lumen.cli.show import Show
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock

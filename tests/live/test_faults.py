@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from lumen.cli import judging
+from lumen.cli.reloading import judging
 from lumen.cli.show import Show
 from lumen.errors import BusError, LumenError
 from lumen.interpreters.migration import Plan, Wait

@@ -14,7 +14,7 @@ from lumen.buses.validated import validated
 from lumen.cli.apart.brain import BrainPart
 from lumen.cli.apart.starting import assembled
 from lumen.cli.cast import Cast, cast
-from lumen.cli.premises import Premises
+from lumen.cli.reloading.premises import Premises
 from lumen.cli.show import Show
 from lumen.clocks.real import RealClock
 from lumen.ports import Clock

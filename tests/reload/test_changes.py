@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
-from lumen.cli.versions import version
+from lumen.cli.reloading.versions import version
 from lumen.errors import UsageError
 from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
 from lumen.interpreters.statechart import initial, step

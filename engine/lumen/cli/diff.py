@@ -5,9 +5,9 @@ import json
 import sys
 from typing import Any
 
-from lumen.cli.fates import Fate, Fates, fate_of, fates
+from lumen.cli.reloading.fates import Fate, Fates, fate_of, fates
+from lumen.cli.reloading.versions import LIVE, Version, version
 from lumen.cli.terminal import coloured, paint
-from lumen.cli.versions import LIVE, Version, version
 from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
 
 BOUND = 10_000

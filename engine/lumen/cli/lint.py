@@ -94,7 +94,7 @@ def _judge(against: str | None, wanted: Wanted) -> Judge:
             found = lint(what, wanted, files)
         if against is None:
             return found
-        from lumen.cli.against import compared
+        from lumen.cli.reloading.against import compared
 
         return compared(found, against, wanted)
 

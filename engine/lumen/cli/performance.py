@@ -8,9 +8,9 @@ from lumen.cli.apart.claiming import claim, presence_of
 from lumen.cli.cast import Cast
 from lumen.cli.main import STARTED
 from lumen.cli.modules.inside import join
-from lumen.cli.premises import Premises
-from lumen.cli.reloading import Reloading
-from lumen.cli.settled import settled
+from lumen.cli.reloading.premises import Premises
+from lumen.cli.reloading.reloading import Reloading
+from lumen.cli.reloading.settled import settled
 from lumen.cli.show import Show, film
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedSpeech

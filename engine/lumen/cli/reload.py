@@ -5,8 +5,8 @@ import json
 from typing import Any
 
 from lumen.cli.asking import ask
-from lumen.cli.orders import COMMAND, STATUS
 from lumen.cli.reach import configure_reach, reach
+from lumen.cli.reloading.orders import COMMAND, STATUS
 
 VERBS = {
     "status": "say which files run, what is staged, and what came of the last ones",

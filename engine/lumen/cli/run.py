@@ -11,8 +11,8 @@ from lumen.cli.apart.choosing import parts_of
 from lumen.cli.cast import ROBOTS, SPEEDS, VOICES, Cast, cast
 from lumen.cli.choosing import home_of, stories_of
 from lumen.cli.performance import Performance
-from lumen.cli.premises import Premises
-from lumen.cli.reloading import MODES
+from lumen.cli.reloading.premises import Premises
+from lumen.cli.reloading.reloading import MODES
 from lumen.cli.report import report
 from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import did_you_mean

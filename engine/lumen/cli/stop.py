@@ -3,8 +3,8 @@
 import argparse
 
 from lumen.cli.commanding import command
-from lumen.cli.orders import COMMAND
 from lumen.cli.reach import configure_reach
+from lumen.cli.reloading.orders import COMMAND
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -7,8 +7,8 @@ from typing import Any
 from lumen.buses.validated import ValidatedBus
 from lumen.cli.cast import Cast
 from lumen.cli.modules.inside import Troubles
-from lumen.cli.premises import Premises
-from lumen.cli.reloading import Reloading
+from lumen.cli.reloading.premises import Premises
+from lumen.cli.reloading.reloading import Reloading
 from lumen.cli.show import Show
 from lumen.cli.transcript import Transcript
 from lumen.cli.why import innermost

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-from lumen.cli.orders import STATUS
+from lumen.cli.reloading.orders import STATUS
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.ports import Bus, Message

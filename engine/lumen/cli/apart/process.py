@@ -9,7 +9,7 @@ from lumen.cli.apart.claiming import CLAIM, refuse
 from lumen.cli.apart.part import Part
 from lumen.cli.main import STARTED
 from lumen.cli.performance import clock_time
-from lumen.cli.settled import settled
+from lumen.cli.reloading.settled import settled
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.ports import Clock

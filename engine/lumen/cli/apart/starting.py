@@ -18,7 +18,7 @@ from lumen.cli.apart.process import Process
 from lumen.cli.apart.robot import RobotPart
 from lumen.cli.apart.visitor import VisitorPart
 from lumen.cli.cast import Cast, cast
-from lumen.cli.premises import Premises
+from lumen.cli.reloading.premises import Premises
 from lumen.cli.transcript import Transcript
 from lumen.clocks.real import RealClock
 from lumen.errors import UsageError

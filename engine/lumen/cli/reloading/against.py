@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from lumen.cli.fates import Fates, fates
 from lumen.cli.findings import Findings
-from lumen.cli.versions import version
+from lumen.cli.reloading.fates import Fates, fates
+from lumen.cli.reloading.versions import version
 from lumen.interpreters.changes import live
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.migration.identity import Identity

@@ -101,7 +101,7 @@ class Jury:
         if self._child is None or self._child.poll() is not None:
             self.close()
             self._child = subprocess.Popen(
-                [sys.executable, "-m", "lumen.cli.jury"],
+                [sys.executable, "-m", "lumen.cli.reloading.jury"],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 start_new_session=True,  # Ctrl-C is not for it

@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from lumen.cli.jury import Here, Jury
 from lumen.cli.rehearsal import Rehearsal
+from lumen.cli.reloading.jury import Here, Jury
 from lumen.interpreters.changes import Change, Risk, changes
 from lumen.interpreters.statechart.program import compiled
 from lumen.language.diagnostics import Diagnostic

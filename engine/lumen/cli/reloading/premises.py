@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from lumen.buses.local import Door
-from lumen.cli.records import Records
+from lumen.cli.reloading.records import Records
 from lumen.errors import LumenError, UsageError
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.statechart import thaw

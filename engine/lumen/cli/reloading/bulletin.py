@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from lumen.cli.judging import Judged, told
+from lumen.cli.reloading.judging import Judged, told
 from lumen.interpreters.changes import Change, Risk, risk, summary
 from lumen.interpreters.migration import Refusal, Wait
 from lumen.language.diagnostics import Severity

@@ -1,0 +1,166 @@
+"""Good files on their way: in force at the first tick at which the running state allows it."""
+
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from lumen.cli.reloading.bulletin import Bulletin, refusal_of, what_for
+from lumen.cli.reloading.judging import Judged
+from lumen.cli.reloading.orders import Order
+from lumen.cli.reloading.probation import Probation
+from lumen.cli.reloading.records import Records
+from lumen.cli.reloading.telling import Herald
+from lumen.cli.show import Show
+from lumen.errors import BusError
+from lumen.interpreters.changes import Change, changes
+from lumen.interpreters.migration import Plan, Refusal, Wait
+from lumen.language.projects import Project
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass
+class Staged:
+    """A good bundle on its way: `going` is whether it is to be put in force, `since` when that was asked [s].
+
+    `asked` is the snapshot from which it could not go on; `told` what it was said to wait for.
+    """
+
+    project: Project
+    changes: tuple[Change, ...]
+    judged: Judged | None = None
+    who: str = "files"
+    going: bool = False
+    now: bool = False
+    back: bool = False
+    since: float = field(default_factory=time.monotonic)
+    asked: object = None
+    told: str = ""
+    orders: list[Order] = field(default_factory=list)
+
+
+class Staging:
+    """Holds at most one bundle, `staged`; `tick` puts it in force, waits for what it has to wait for, or refuses it.
+
+    `revision` counts how often another bundle came in force, `applied` is told of it. What has just come is on
+    `probation`.
+    """
+
+    def __init__(self, show: Show, herald: Herald, records: Records, applied: Callable[[Project], None]) -> None:
+        self._show, self._herald, self._records, self._applied = show, herald, records, applied
+        self.revision = 0
+        self.staged: Staged | None = None
+        self.probation = Probation(show, self._rolled_back)
+
+    @property
+    def running(self) -> Project:
+        return self._show.exhibition.project
+
+    def stage(self, staged: Staged, order: Order | None = None) -> None:
+        """Have a bundle put in force as soon as may be."""
+        if self.staged and self.staged is not staged:
+            staged.orders += self.staged.orders
+        if order:
+            staged.orders.append(order)
+            staged.now |= order.now
+        staged.going, staged.since, staged.asked, staged.told = True, time.monotonic(), None, ""
+        self.staged = staged
+
+    def hold(self, staged: Staged) -> None:
+        """Keep a bundle until somebody has it put in force."""
+        self.staged = staged
+        self._herald.tell(self._about(staged, "staged"))
+
+    def drop(self) -> None:
+        """Newer files have come, and they are bad, or those that run."""
+        self.staged = None
+
+    def dry_run(self, staged: Staged, order: Order) -> None:
+        """Answer what would become of a bundle."""
+        verdict = self._show.plan(staged.project, now=order.now)
+        bulletin = self._about(staged, "dry run")
+        match verdict:
+            case Plan(notes=notes):
+                bulletin.reason, bulletin.notes = "it would be in force at once", notes
+            case Wait(reason, what):
+                bulletin.reason = f"it would wait for `{what}`: {reason}"
+            case Refusal():
+                bulletin = refusal_of(verdict, staged.project, "command")
+        order.answer({**bulletin.to_json(), "lines": list(bulletin.lines())})
+
+    def tick(self, now: float) -> None:
+        if self.probation.over(now):
+            self._records.approve(self.running.hash)
+        if self.staged and self.staged.going:
+            self._go(self.staged, now)
+
+    def _go(self, staged: Staged, now: float) -> None:
+        """Apply it, wait for what it has to wait for, or refuse it."""
+        expired = time.monotonic() - staged.since > self.running.patience
+        snapshot = self._show.exhibition.runtime.snapshot
+        if staged.asked is snapshot and not expired:
+            return
+        staged.asked = snapshot
+        try:
+            verdict = self._show.plan(staged.project, now=staged.now, back=staged.back)
+            if isinstance(verdict, Plan):
+                self._apply(staged, verdict, now)
+                return
+        except BusError as error:
+            self._refuse(staged, f"the bus refuses its routes: {error}")
+            return
+        except Exception as error:  # a fault of ours costs the reload, and nothing else
+            _log.exception("the saved files could not be put in force")
+            self._refuse(staged, f"Lumen failed on these files: {error!r}")
+            return
+        if expired or not what_for(verdict):
+            self._give_up(staged, verdict)
+        elif verdict.reason != staged.told:
+            staged.told = verdict.reason
+            waiting = self._about(staged, "waiting")
+            waiting.waiting_for, waiting.reason = what_for(verdict), verdict.reason
+            self._herald.tell(waiting, staged.orders)
+
+    def _apply(self, staged: Staged, plan: Plan, now: float) -> None:
+        before, began = self.running, time.perf_counter()
+        self._show.apply(staged.project, plan)
+        self.staged = None
+        self.revision += 1
+        self.probation.begin(before, now)
+        bulletin = self._about(staged, "applied")
+        bulletin.before, bulletin.notes, bulletin.back = before.hash, plan.notes, staged.back
+        bulletin.took = {"applying": time.perf_counter() - began, "waiting": time.monotonic() - staged.since}
+        self._herald.tell(bulletin, staged.orders)
+        self._applied(self.running)
+        self._records.prune(self.running, self.probation.before, self.probation.good)
+
+    def _give_up(self, staged: Staged, verdict: Wait | Refusal) -> None:
+        """It has waited long enough, or can't go on from here at all."""
+        staged.going = False
+        if isinstance(verdict, Wait):
+            waited = f"`{verdict.what}` is still under way after {self.running.patience:g} s ({verdict.reason})"
+            self._refuse(staged, waited, "`lumen reload --now` does not wait", keep=True)
+        else:
+            self.staged = None
+            self._herald.tell(refusal_of(verdict, staged.project, staged.who), staged.orders)
+
+    def _refuse(self, staged: Staged, reason: str, hint: str = "", *, keep: bool = False) -> None:
+        self.staged = staged if keep else None
+        bulletin = self._about(staged, "refused")
+        bulletin.reason, bulletin.hint = reason, hint
+        self._herald.tell(bulletin, staged.orders)
+        staged.orders = []
+
+    def _rolled_back(self, reason: str, bad: Project) -> None:
+        """The probation has brought back the bundle before."""
+        self.staged = None
+        self.revision += 1
+        found = changes(bad, self.running)
+        bulletin = Bulletin("rolled back", "probation", bad.hash, self.running.hash, self.revision, found)
+        bulletin.reason = f"the new files failed: {reason}"
+        self._herald.tell(bulletin)
+
+    def _about(self, staged: Staged, verdict: str) -> Bulletin:
+        hashes = self.running.hash, staged.project.hash
+        return Bulletin(verdict, staged.who, *hashes, self.revision, staged.changes, staged.judged)
