@@ -97,7 +97,15 @@ class Aim:
     speed: float = 0.3
 
 
-RobotCommand = Say | Perform | Posture | Walk | Move | Look | Aim | Stop | Rest | Wake
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Listen for `duration` [s]; then the robot tells of what it heard by an event `RECORDED`."""
+
+    name: str
+    duration: float
+
+
+RobotCommand = Say | Perform | Posture | Walk | Move | Look | Aim | Record | Stop | Rest | Wake
 """What a robot understands."""
 
 

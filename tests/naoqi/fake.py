@@ -10,7 +10,7 @@ from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.robots.naoqi.noticing import event_of
 from lumen.robots.recording import FACE, PODIUM, TORSO
-from tests.naoqi.services import SERVICES, ALMemory, ALSonar, ALVideoDevice, World
+from tests.naoqi.services import SERVICES, ALAudioDevice, ALMemory, ALSonar, ALVideoDevice, World
 
 
 class FakeNao:
@@ -34,7 +34,8 @@ class FakeNao:
         """Come up, on any free port or on this one."""
         self._session = qi.Session()
         self._session.listenStandalone(f"tcp://127.0.0.1:{port}")
-        for kind in (*SERVICES, ALSonar):
+        self._own[ALAudioDevice] = self.microphones = ALAudioDevice(self.world, self._session)
+        for kind in (*SERVICES, ALSonar, ALAudioDevice):
             if kind.__name__ not in self._without:
                 made = self._own.get(kind) or (kind() if kind is ALSonar else kind(self.world))  # type: ignore[call-arg]
                 self._session.registerService(kind.__name__, made)

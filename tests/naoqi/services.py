@@ -6,7 +6,7 @@ from typing import Any
 
 import qi
 
-from lumen.robots.naoqi.instruments import CHARGE, CHARGING, PLUGGED, TOUCHES, device
+from lumen.robots.naoqi.instruments import CHARGE, CHARGING, INERTIAL, PLUGGED, SOLES, TOUCHES, device
 from tests.naoqi.joints import Joints, bezier
 from tests.naoqi.times import Blocked, Times
 
@@ -35,6 +35,10 @@ class World:
         self.voices = ["English", "French"]
         self.sounds: set[str] = set()
         self.life = "solitary"
+        self.sound = bytes(range(256)) * 400
+        self.listens = True
+        self.lacks: set[str] = set()
+        self.silent: set[str] = set()
 
     def note(self, method: str, *arguments: Any) -> None:
         self.calls.append((self.times.now, method, arguments))
@@ -230,6 +234,8 @@ class ALMemory:
         return self.events.setdefault(name, Event())
 
     def getListData(self, keys: list[str]) -> list[Any]:
+        if self._world.silent & set(keys):
+            raise RuntimeError("ALMemory::getListData\n\tno such key")
         return [self._value(key) for key in keys]
 
     def raised(self, name: str, value: Any) -> bool:
@@ -247,9 +253,11 @@ class ALMemory:
             PLUGGED: world.plugged,
             CHARGING: world.charging,
             **{device(f"{joint}/Temperature"): world.temperatures.get(joint, 40.0) for joint in world.body.joints},
+            **{device(f"InertialSensor/{name}"): 9.81 if name == "AccelerometerZ" else 0.0 for name in INERTIAL},
+            **{device(name): 2.7 if name.endswith("TotalWeight") else 0.675 for name in SOLES},
             **{device(d): float(name in world.pressed) for name, devices in TOUCHES.items() for d in devices},
         }
-        return known.get(key)
+        return known.get(key) if key not in world.lacks else None
 
 
 @qi.multiThreaded()
@@ -350,6 +358,50 @@ class ALAudioPlayer:
         self._world.note("ALAudioPlayer.stopAll")
         if self._playing:
             self._playing.end()
+
+
+@qi.multiThreaded()
+class ALAudioDevice:
+    """Hands each subscriber's service what the microphones hear, 170 ms at a time; `session` finds it."""
+
+    BLOCK, SECONDS = 2 * 2720, 0.17
+
+    def __init__(self, world: World, session: Any) -> None:
+        self._world, self._session = world, session
+        self._preferences: dict[str, tuple[int, int, int]] = {}
+        self.subscribers: dict[str, Any] = {}
+
+    def setClientPreferences(self, name: str, rate: int, channels: int, deinterleaved: int) -> None:
+        self._world.note("setClientPreferences", name, rate, channels, deinterleaved)
+        if (rate, channels) not in ((48_000, 0), *((16_000, one) for one in (1, 2, 3, 4))):
+            raise RuntimeError(f"ALAudioDevice::setClientPreferences\n\tno {channels} at {rate} Hz")
+        self._preferences[name] = (rate, channels, deinterleaved)
+
+    def subscribe(self, name: str) -> None:
+        self._world.note("ALAudioDevice.subscribe", name)
+        listener = self.subscribers[name] = self._session.service(name)
+        self._feed(listener, name, 0)
+
+    def unsubscribe(self, name: str) -> None:
+        self._world.note("ALAudioDevice.unsubscribe", name)
+        self.subscribers.pop(name, None)
+
+    def _feed(self, listener: Any, name: str, begin: int) -> None:
+        def feed() -> None:
+            if self.subscribers.get(name) is listener:
+                part = self._world.sound[begin : begin + self.BLOCK].ljust(self.BLOCK, b"\0")
+                if not self._world.listens or self._heard(listener, part):
+                    self._feed(listener, name, begin + self.BLOCK)
+
+        self._world.times.at(self._world.times.now + self.SECONDS, feed)
+
+    def _heard(self, listener: Any, part: bytes) -> bool:
+        """Whether the listener is still there."""
+        try:
+            listener.processRemote(1, len(part) // 2, [0, 0], part)
+        except RuntimeError:
+            return False
+        return True
 
 
 @qi.multiThreaded()

@@ -7,6 +7,7 @@ import pytest
 
 from lumen.language.commands import Posture
 from lumen.ports import Battery, Image, Joints, Sense, Tactile
+from lumen.robots.naoqi.instruments import INERTIAL, SOLES, device
 from tests.naoqi.conftest import Live
 from tests.naoqi.lockstep import Lockstep
 from tests.waiting import until
@@ -79,7 +80,8 @@ def test_a_low_battery_is_told_once(robot: Lockstep, live: Live) -> None:
 def test_a_hot_motor_is_told_once(robot: Lockstep, live: Live) -> None:
     live(1.0)
     robot.nao.world.temperatures = {"LKneePitch": 81.25}
-    events = live(12.0)
+    robot.read(Sense.JOINT)
+    events = live(2.0)
     assert [(e.name, e.data) for e in events] == [("motors.hot", {"joint": "LKneePitch", "temperature": 81.2})]
 
 
@@ -93,3 +95,36 @@ def test_senses_go_on_while_a_command_blocks(robot: Lockstep, live: Live) -> Non
         knees.append(joints.angles[joints.names.index("LKneePitch")])
     assert knees == sorted(knees)
     assert knees[0] < knees[-1] - 0.5
+
+
+def test_what_it_feels_travels_with_its_joints(robot: Lockstep) -> None:
+    robot.nao.world.temperatures = {"LHipYawPitch": 51.5}
+    robot.nao.world.lacks = {device("InertialSensor/AngleZ")}
+    joints = robot.read(Sense.JOINT)
+    assert isinstance(joints, Joints)
+    heat = dict(zip(joints.names, joints.temperature, strict=True))
+    assert (heat["LHipYawPitch"], heat["RHipYawPitch"], heat["HeadYaw"]) == (51.5, 51.5, 40.0)
+    assert joints.inertial == {**dict.fromkeys(set(INERTIAL) - {"AngleZ"}, 0.0), "AccelerometerZ": 9.81}
+    assert joints.fsr["LFoot/FSR/TotalWeight"] == 2.7
+    assert joints.fsr.keys() == set(SOLES)
+
+
+def test_a_robot_that_feels_nothing_has_its_joints_all_the_same(
+    robot: Lockstep, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot.nao.world.silent = {device("InertialSensor/AngleX")}
+    with caplog.at_level(logging.WARNING):
+        for _ in range(3):
+            joints = robot.read(Sense.JOINT)
+    assert isinstance(joints, Joints)
+    assert len(joints.angles) == 26
+    assert (joints.temperature, joints.inertial, joints.fsr) == ((), {}, {})
+    lines = [record.getMessage() for record in caplog.records]
+    assert lines == ["the robot does not feel its heat, balance and weight: ALMemory::getListData no such key"]
+
+
+def test_a_full_battery_is_told_when_naoqi_tells(robot: Lockstep, live: Live) -> None:
+    for flag in (1, 0, 1):
+        robot.nao.tell("BatteryFullChargedFlagChanged", flag)
+        robot.settle()
+    assert [(e.name, e.data) for e in live(0.1)] == [("battery.full", {"percentage": 100})] * 2

@@ -14,7 +14,7 @@ from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.ports import Aim, Battery, Hall, Joints, Perform, Robot, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Hall, Joints, Perform, Record, Robot, Sense, Sonar, Tactile
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import Host, RemoteHall, RemoteRobot
 from lumen.robots.simulation import SimulatedRobot
@@ -220,6 +220,18 @@ def test_what_is_no_angle_moves_nothing(robot: Body, angle: float) -> None:
     assert isinstance(before, Joints)
     assert isinstance(after, Joints)
     assert after.angles == pytest.approx(before.angles, abs=0.05)
+
+
+def test_a_recording_takes_its_time_while_everything_else_goes_on(robot: Body) -> None:
+    robot.start("ears", Record("r1", 1.0))
+    robot.start("say", Say("Hello"))
+    answers = [e for e in live(robot, 2.0) if ".command." in e.name]
+    assert names(answers) == ["done.command.say", "done.command.ears"]
+    assert answers[1].at == pytest.approx(1.0, abs=0.3)
+    robot.start("again", Record("r2", 5.0))
+    live(robot, 0.5)
+    robot.cancel("again")
+    assert names(live(robot, 1.0)) == ["cancelled.command.again"]
 
 
 def test_senses_in_their_order_and_units(robot: Body, project: Project) -> None:

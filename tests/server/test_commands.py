@@ -5,13 +5,19 @@ from typing import Any
 
 import pytest
 
+from lumen.bus import connect
+from lumen.buses.validated import validated
 from lumen.errors import BusError
 from lumen.language.commands import Posture, Rest, Say
 from lumen.language.events import Event
 from lumen.language.motions import Motion
+from lumen.modules.sound import Sound, sound_of
 from lumen.ports import Aim, Message, Perform
+from lumen.robots.recording import RecordingRobot
+from lumen.robots.server import Server
 from tests.exhibits import project
 from tests.server.stand import PATIENT, PROJECT, Caller, Stand, without
+from tests.waiting import Collector
 
 
 def test_a_command_begins_at_the_next_tick_and_is_answered_when_it_is_over() -> None:
@@ -224,3 +230,23 @@ def test_after_closing_no_command_is_taken() -> None:
     stand.bus.publish("avatar.NAO.command", {"method": "rest"})
     stand.server.sample(0.0)
     assert stand.robot.started == []
+
+
+def test_a_recording_is_for_modules_and_on_its_own_route() -> None:
+    robot = RecordingRobot(PROJECT.body)
+    bus = validated(connect("memory://"), PROJECT)
+    server, came, told = Server(PROJECT, robot, bus), Collector(), Collector()
+    bus.subscribe("avatar.NAO.data.recording", came)
+    bus.subscribe("avatar.NAO.event.noticed", told)
+    order = {"type": "audiodevice", "Method": "record", "parameter": {"recordingName": "r1", "duration": 0.5}}
+    bus.publish("avatar.NAO.command", order)
+    server.sample(0.0)
+    for _ in range(60):
+        robot.advance(0.02)
+        for event in robot.poll():
+            server.answer(event)
+    server.close()
+    [body] = came.bodies
+    assert body["name"] == "r1"
+    assert sound_of(body["content"]) == Sound(16_000, bytes(16_000))
+    assert told.bodies == []

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from lumen.errors import RobotError
 from lumen.language.commands import Language, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.motions import Motion
-from lumen.ports import Aim, Perform
+from lumen.ports import Aim, Perform, Record
 from lumen.robots.dialect import command_from
 from tests.exhibits import project
 
@@ -46,6 +46,8 @@ def order(method: str, /, **parameter: Any) -> dict[str, Any]:
         (order("say", text="Hello", language="English"), Say("Hello", "en")),
         (order("say", text="Halo"), Say("Halo", "")),
         (order("setLanguage", language="Indonesian"), Language("id")),
+        ({"type": "audiodevice", "method": "record", "parameter": {"recordingName": "r1"}}, Record("r1", 5.0)),
+        (order("record", duration=2), Record("recording", 2.0)),
     ],
 )  # fmt: skip
 def test_methods(body: dict[str, Any], command: object) -> None:
@@ -118,7 +120,9 @@ def test_what_a_stranger_wrote_stays_in_one_line(body: Any) -> None:
         (order("say", text=5), "has to be a text"),
         (order("say", text="x", language="Klingon"), "`klingon` is not spoken here"),
         (order("setlanguage"), "has to be a text"),
-        (order("record", recordingName="a"), "can't be done with this robot"),
+        (order("setstiffnesses", jointNames=["HeadYaw"]), "can't be done with this robot"),
+        (order("record", recordingName=5), "has to be a text"),
+        (order("record", recordingName="a", duration=60), "between 0.1 and 20 s, not at 60"),
     ],
 )
 def test_what_cant_be_done_is_said(body: Any, says: str) -> None:

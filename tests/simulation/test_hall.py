@@ -117,7 +117,7 @@ def test_a_charger_fills_the_battery_and_it_may_speak_up_again() -> None:
     condition.plugged = False
     assert live(1500) == ["battery.low"]
     condition.plugged = True
-    live(4000)
+    assert live(4000) == ["battery.full"]
     assert condition.percentage == 100
     assert not condition.charging
 

@@ -27,7 +27,7 @@ from lumen.language.commands import (
     Wake,
     Walk,
 )
-from lumen.language.events import CUE, Event
+from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import Machine
 from lumen.language.stories import Arrive, Deed, Happen, Leave, Send, Speak, Touch
 from lumen.runtime.exhibition import Observer
@@ -94,6 +94,8 @@ class Transcript(Observer):
         elif event.name == CUE:
             if isinstance(event.data, dict) and event.data.get("kind") == "sound":
                 self.line("robot", f"sounds {event.data.get('value')}")
+        elif event.name == RECORDED:
+            self.line("robot", "has recorded what it heard")
         elif not id:
             details = ", ".join(f"{k} {v}" for k, v in (event.data or {}).items())
             self.line("robot", f"notices {event.name}" + (f": {details}" if details else ""))

@@ -29,11 +29,15 @@ CUE = "cue"
 It is for who runs the exhibition, not for its behaviour, which hears no such event.
 """
 
+RECORDED = "recorded"
+"""What a robot tells when it has listened: the body of the route `recording`. It is for modules, and no behaviour."""
+
 ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "touched": _object(sensor={"type": "string"}),
     "released": _object(sensor={"type": "string"}),
     "fallen": _object(),
     "battery.low": _object(percentage={"type": "integer"}),
+    "battery.full": _object(percentage={"type": "integer"}),
     "motors.hot": _object(joint={"type": "string"}, temperature={"type": "number"}),
     "brain.lost": _object(seconds={"type": "number"}),
     "robot.lost": _object(seconds={"type": "number"}),

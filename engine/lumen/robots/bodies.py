@@ -1,6 +1,7 @@
 """The five senses as the JSON bodies of 2015, and `time` [s], the robot's clock, which is ours."""
 
 import base64
+import wave
 from collections.abc import Mapping
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 QUALITY = 80
+RATE = 16_000
+"""Samples of a recording a second."""
 
 
 def body_of(reading: Joints | Sonar | Tactile | Battery) -> dict[str, Any]:
@@ -47,6 +50,17 @@ def image_body(image: Image, number: int, date: str) -> dict[str, Any]:
         "contentUrl": "data:image/jpeg;base64," + base64.b64encode(jpeg).decode("ascii"),
         "time": image.time,
     }
+
+
+def recording_body(name: str, samples: bytes) -> dict[str, Any]:
+    """The body of a recording: `samples` of 16 bits, little-endian, one channel, `RATE` a second, as a WAV."""
+    buffer = BytesIO()
+    with wave.open(buffer, "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(RATE)
+        file.writeframes(samples)
+    return {"name": name, "content": base64.b64encode(buffer.getvalue()).decode("ascii")}
 
 
 def _jpeg(pixels: "NDArray[np.uint8]") -> bytes:

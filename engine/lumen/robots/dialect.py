@@ -13,7 +13,7 @@ from lumen.errors import RobotError
 from lumen.language.commands import Channel, Language, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
-from lumen.ports import Aim, Perform, RobotCommand
+from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.motions import motion_from
 
 SPEED = 0.3
@@ -23,7 +23,9 @@ STOPPING = ("rest", "stopmove", "stop")
 LARGEST = 2.0**63
 LONGEST_ID = 200
 LANGUAGES = {"english": "en", "indonesian": "id", "bahasa": "id"}
-NOT_HERE = ("setstiffnesses", "setwalkarmsenabled", "sendremotebuffertooutput", "record")
+NOT_HERE = ("setstiffnesses", "setwalkarmsenabled", "sendremotebuffertooutput")
+LISTENING, LONGEST = 5.0, 20.0
+"""How long a recording is, as in 2015, and at most [s]: a message holds 1 MiB."""
 
 
 Angles = Callable[[], Mapping[str, float]]
@@ -179,6 +181,13 @@ class _Order:
         """A motion as it is, whatever this project has under its name."""
         return Perform(motion_from(self.parameter.get("motion"), self.project.body))
 
+    def record(self) -> Record:
+        """`duration` [s] is ours."""
+        duration = self.number("duration", LISTENING)
+        if not 0.1 <= duration <= LONGEST:
+            raise RobotError(f"the `duration` of `record` lies between 0.1 and {LONGEST:g} s, not at {duration:g}")
+        return Record(_shown(self.text("recordingname", "recording")), duration)
+
     def posture(self) -> Posture:
         name = self.text("posturename")
         postures = {p.lower(): p for p in self.project.body.postures}
@@ -205,6 +214,7 @@ _METHODS: Mapping[str, Callable[[_Order], RobotCommand | Language]] = {
     "stop": _Order.stop,
     "look": lambda order: Look(order.number("yaw", 0.0), order.number("pitch", 0.0)),
     "perform": _Order.perform,
+    "record": _Order.record,
 }
 
 

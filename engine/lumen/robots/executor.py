@@ -1,6 +1,6 @@
 """Who moves what: commands wait until the parts of the body that they need are free.
 
-Head, arms, legs, voice and LEDs each have one owner at a time. `Rest` and `Stop` cancel what runs and come before
+Head, arms, legs, voice, LEDs and ears each have one owner at a time. `Rest` and `Stop` cancel what runs and come before
 everything; the others wait by rank, then in the order they came. A body supplies the activities; this keeps the order,
 the ownership and the answers, and is the same for every robot that executes commands itself.
 """
@@ -13,14 +13,14 @@ from typing import Protocol
 from lumen.errors import RobotError
 from lumen.language.commands import Channel, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.events import Event
-from lumen.ports import Perform, RobotCommand
+from lumen.ports import Perform, Record, RobotCommand
 
-HEAD, ARMS, LEGS, VOICE, LEDS = PARTS = ("head", "arms", "legs", "voice", "leds")
+HEAD, ARMS, LEGS, VOICE, LEDS, EARS = PARTS = ("head", "arms", "legs", "voice", "leds", "ears")
 
 REMEMBERED = 1_000
 """Of how many commands that began it is known at most, where nobody asks."""
 
-_RANK = {Stop: 0, Rest: 0, Wake: 1, Posture: 1, Walk: 1, Perform: 2, Move: 2, Say: 2, Look: 3}
+_RANK = {Stop: 0, Rest: 0, Wake: 1, Posture: 1, Walk: 1, Perform: 2, Move: 2, Say: 2, Record: 2, Look: 3}
 _CHANNELS: dict[Channel, tuple[type, ...]] = {"walk": (Walk, Move), "play": (Perform,), "say": (Say,)}
 
 

@@ -5,8 +5,8 @@ from typing import assert_never
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
-from lumen.ports import Aim, Perform, RobotCommand
-from lumen.robots.executor import ARMS, HEAD, LEDS, LEGS, VOICE
+from lumen.ports import Aim, Perform, Record, RobotCommand
+from lumen.robots.executor import ARMS, EARS, HEAD, LEDS, LEGS, VOICE
 
 _BODY = frozenset((HEAD, ARMS, LEGS))
 
@@ -24,6 +24,8 @@ def parts(command: RobotCommand, body: Body) -> frozenset[str]:
             return frozenset((LEGS,))
         case Look():
             return frozenset((HEAD,))
+        case Record():
+            return frozenset((EARS,))
         case Stop() | Aim():
             return frozenset()
         case _:

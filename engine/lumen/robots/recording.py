@@ -11,14 +11,15 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
-from lumen.ports import Aim, Battery, Joints, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Joints, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.cues import Prompter
-from lumen.robots.executor import Executor
+from lumen.robots.executor import Activity, Executor
+from lumen.robots.listening import Listening
 from lumen.robots.parts import part_of, parts
 
 _VERBS: Mapping[type, str] = {
     Say: "say", Perform: "play", Posture: "posture", Walk: "walk", Move: "walk", Look: "look", Rest: "rest",
-    Wake: "wake",
+    Wake: "wake", Record: "record",
 }  # fmt: skip
 
 TORSO = 0.333
@@ -146,7 +147,7 @@ class RecordingRobot:
     def _notice(self, event: Event) -> None:
         self._noticed.append(event)
 
-    def _begin(self, command: RobotCommand, now: float) -> _Lasting:
+    def _begin(self, command: RobotCommand, now: float) -> Activity:
         self.performed.append((now, command))
         behaves = self._behaves.get(_VERBS[type(command)])
         if behaves == "fails":
@@ -160,6 +161,8 @@ class RecordingRobot:
         until = float("inf") if behaves == "hangs" else now + _duration(command, behaves)
         if isinstance(command, Perform):
             return _Playing(until, now, Prompter(command.motion, self._notice))
+        if isinstance(command, Record):
+            return Listening(command, until, self._notice)
         return _Lasting(until)
 
     def _free(self, joint: str) -> bool:
@@ -189,5 +192,7 @@ def _duration(command: RobotCommand, behaves: str | float | None) -> float:
             return inf if any((vx, vy, vtheta)) else 1.0
         case Look():
             return 1.0
+        case Record(_, duration):
+            return duration
         case _:
             return 2.0

@@ -10,14 +10,14 @@ from typing import Any
 
 from lumen.errors import BusError
 from lumen.language.commands import Say
-from lumen.language.events import Event
+from lumen.language.events import RECORDED, Event
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.ports import Bus, Image, Robot, RobotCommand, Sense
 from lumen.robots.bodies import body_of, image_body
 from lumen.robots.broadcast import Broadcast, Count, Handed
 from lumen.robots.orders import Orders
-from lumen.robots.ways import NOTICED, TEXT, tell
+from lumen.robots.ways import NOTICED, RECORDING, TEXT, tell
 
 PERIOD = 0.1
 CLOSING = 5.0
@@ -103,12 +103,15 @@ class Server:
         return True
 
     def answer(self, event: Event) -> bool:
-        """Pass on what the robot says: of a command, to who sent it; else, what it noticed, to everybody.
+        """Pass on what the robot says: of a command, to who sent it; what it recorded and noticed, to everybody.
 
         True where it was about a command that came from the bus.
         """
         if ".command." in event.name:
             return self._orders.answer(event)
+        if event.name == RECORDED:
+            self._tell(RECORDING, event.data)
+            return False
         self._tell(NOTICED, {"name": event.name, "data": event.data, "time": event.at})
         return False
 

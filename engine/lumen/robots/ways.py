@@ -7,7 +7,7 @@ from lumen.language.projects import Project
 from lumen.ports import Bus
 
 COMMAND, STOP, AIM, REPORT, NOTICED = "command", "stop", "aim", "report", "noticed"
-HALL, SEEN, TEXT = "hall", "seen", "text_stream"
+HALL, SEEN, TEXT, RECORDING = "hall", "seen", "text_stream", "recording"
 
 KEYS: Mapping[str, str] = {
     COMMAND: "avatar.{robot}.command",
@@ -15,6 +15,7 @@ KEYS: Mapping[str, str] = {
     AIM: "avatar.{robot}.aim",
     REPORT: "avatar.{robot}.event.command",
     NOTICED: "avatar.{robot}.event.noticed",
+    RECORDING: "avatar.{robot}.data.recording",
     HALL: "avatar.{robot}.hall",
     SEEN: "avatar.{robot}.hall.seen",
 }

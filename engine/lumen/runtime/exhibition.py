@@ -6,7 +6,7 @@ from typing import Any
 from lumen.interpreters.migration import Plan, Verdict
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Track
-from lumen.language.events import CUE, Event
+from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot
 from lumen.runtime.cues import Cues
@@ -166,9 +166,9 @@ class Exhibition:
 def _ours(event: Event) -> bool:
     """Whether it is for the behaviour: its own commands are c1, d2@quiz, …; others' answers are theirs alone.
 
-    The words and sounds of a motion are for us.
+    The words and sounds of a motion are for us, recordings for modules.
     """
-    if event.name == CUE:
+    if event.name in (CUE, RECORDED):
         return False
     _, separator, id = event.name.partition(".command.")
     return not separator or (id[:1] in ("c", "d") and id[1:].partition("@")[0].isdecimal())

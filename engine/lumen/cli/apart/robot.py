@@ -12,7 +12,7 @@ from lumen.language.commands import Rest, Start
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
-from lumen.ports import Aim, Perform, RobotCommand
+from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.remote import Host
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.presence import BRAIN, ROBOT, Presence
@@ -90,6 +90,8 @@ class RobotPart:
         match command:
             case Perform(motion):
                 self._say(f"plays {motion.name}")
+            case Record(name, duration):
+                self._say(f"listens for {duration:g} s: {name}")
             case Aim():
                 pass
             case _:

@@ -1,14 +1,14 @@
 """How each sense is asked for: ALMemory's keys, and the camera."""
 
+import logging
 from collections import deque
-from collections.abc import Callable, Sequence
-from math import inf
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import RobotError
 from lumen.language.robots import Body
 from lumen.ports import Battery, Image, Joints, Reading, Sense, Sonar, Tactile
-from lumen.robots.naoqi.link import Call, Link
+from lumen.robots.naoqi.link import Link
 
 if TYPE_CHECKING:
     import numpy as np
@@ -21,6 +21,8 @@ RATE = 15
 """Images a second."""
 FRAMES = 100
 """Of how many images the fastest tells how the robot's clock stands to ours."""
+
+_log = logging.getLogger(__name__)
 
 _DEVICE = "Device/SubDeviceList/{}/Value"
 TOUCHES = {
@@ -46,22 +48,35 @@ CHARGE, PLUGGED, CHARGING = (
 )
 
 
+INERTIAL = tuple(f"{kind}{axis}" for kind in ("Angle", "Gyroscope", "Accelerometer") for axis in "XYZ")
+SOLES = tuple(
+    f"{foot}/FSR/{where}"
+    for foot in ("LFoot", "RFoot")
+    for where in ("FrontLeft", "FrontRight", "RearLeft", "RearRight", "TotalWeight")
+)
+
+
 def device(name: str) -> str:
     """ALMemory's key of what a sensor measures."""
     return _DEVICE.format(f"{name}/Sensor")
 
 
 class Instruments:
-    """Reads a robot's senses; every method waits for NAOqi, and raises RobotError where it can't be read."""
+    """Reads a robot's senses; every method waits for NAOqi, and raises RobotError where it can't be read.
+
+    `heat` is how hot each motor was when the joints were read last [degrees Celsius].
+    """
 
     def __init__(self, link: Link, body: Body, clock: Callable[[], float]) -> None:
         self._link, self._body, self._clock = link, body, clock
+        self.heat: dict[str, float] = {}
+        self._numb = False
         self._names = list(body.joints)
+        motors = [device(f"{body.shared.get(name, name)}/Temperature") for name in self._names]
+        self._felt = [*motors, *(device(f"InertialSensor/{name}") for name in INERTIAL), *map(device, SOLES)]
         self._touches = {name: [device(d) for d in TOUCHES[name]] for name in body.tactile if name in TOUCHES}
         self._handle = ""
         self._behind: deque[float] = deque(maxlen=FRAMES)
-        self._warm: Call | None = None
-        self._warmed = -inf
 
     def reader(self, sense: Sense) -> Callable[[], Reading]:
         readers: dict[Sense, Callable[[], Reading]] = {
@@ -72,7 +87,7 @@ class Instruments:
 
     def begin(self) -> None:
         """Forget what another session was about; what was left over of our own cameras is let go."""
-        self._handle = ""
+        self._handle, self._numb = "", False
         self._behind.clear()
         if self._link.has("ALVideoDevice"):
             for handle in self._link.ask("ALVideoDevice", "getSubscribers") or ():
@@ -92,7 +107,7 @@ class Instruments:
         now = self._clock()
         angles = self._numbers(self._link.ask("ALMotion", "getAngles", self._names, True), "getAngles")
         stiffness = self._numbers(self._link.ask("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
-        return Joints(now, tuple(self._names), angles, stiffness)
+        return Joints(now, tuple(self._names), angles, stiffness, *self._feelings())
 
     def sonar(self) -> Sonar:
         if not self._link.has("ALSonar"):
@@ -137,20 +152,20 @@ class Instruments:
 
         return Image(stamp + min(self._behind), shaped)
 
-    def heat(self, now: float, every: float) -> dict[str, float]:
-        """How hot the motors are [degrees Celsius], once every so many seconds, else nothing; this waits for nobody."""
-        names = [name for name in self._names if name not in self._body.shared]
-        if self._warm is None and now >= self._warmed + every:
-            self._warmed = now
-            self._warm = self._link.post("ALMemory", "getListData", [device(f"{n}/Temperature") for n in names])
-        if self._warm is None or not self._warm.done:
-            return {}
-        call, self._warm = self._warm, None
+    def _feelings(self) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
+        """Motors' temperatures, inertial unit and soles, read at once; what this robot does not feel is left out."""
         try:
-            found = zip(names, call.result() or (), strict=False)
-        except RobotError:
-            return {}
-        return {name: float(t) for name, t in found if isinstance(t, int | float)}
+            found, motors = self._memory(self._felt), len(self._names)
+        except RobotError as error:
+            if self._link.up and not self._numb:
+                self._numb = True
+                _log.warning("the robot does not feel its heat, balance and weight: %s", error)
+            return (), {}, {}
+        inertial, soles = found[motors : motors + len(INERTIAL)], found[motors + len(INERTIAL) :]
+        self.heat = _known(n for n in zip(self._names, found, strict=False) if n[0] not in self._body.shared)
+        temperature = tuple(float(t) for t in found[:motors] if isinstance(t, int | float))
+        whole = temperature if len(temperature) == motors else ()
+        return whole, _known(zip(INERTIAL, inertial, strict=True)), _known(zip(SOLES, soles, strict=True))
 
     def _subscribe(self) -> str:
         camera = self._body.camera
@@ -186,3 +201,8 @@ class Instruments:
         if not isinstance(found, Sequence) or len(found) != len(self._names):
             raise RobotError(f"ALMotion.{method} did not answer for every joint")
         return tuple(map(float, found))
+
+
+def _known(found: Iterable[tuple[str, Any]]) -> dict[str, float]:
+    """What is a number of what ALMemory has."""
+    return {name: round(float(value), 4) for name, value in found if isinstance(value, int | float)}

@@ -65,6 +65,11 @@ class Call:
     def done(self) -> bool:
         return self._future is None or bool(self._future.isFinished())
 
+    @property
+    def failed(self) -> bool:
+        """Whether it is over, and NAOqi raised."""
+        return bool(self._error) or (self._future is not None and self.done and bool(self._future.hasError()))
+
     def wait(self, seconds: float) -> bool:
         """Whether it was done within so many seconds."""
         if self._future is not None:
@@ -95,6 +100,7 @@ class Link:
         self._lost, self._qi = lost, qi()
         self._session: Any = None
         self._services: dict[str, Any] = {}
+        self._serving: dict[str, Call] = {}
         self._lock = threading.Lock()
 
     @property
@@ -113,7 +119,7 @@ class Link:
                 f"no robot at {self.url} ({plain(future.error())}): is it switched on, and on this network?"
             )
         session.disconnected.connect(lambda *_: self._broken(session, "the connection was closed"))
-        self._services = {}
+        self._services, self._serving = {}, {}
         self._session = session
 
     def find(self, names: Iterable[str]) -> list[str]:
@@ -143,10 +149,16 @@ class Link:
             future = getattr(proxy, method)(*arguments, _async=True)
         except (AttributeError, RuntimeError) as error:
             return Call(error=f"{service}.{method} can't be called: {plain(error)}")
-        with self._lock:
-            self.pending += 1
-        future.addCallback(self._settled)
-        return Call(future)
+        return self._called(future)
+
+    def serve(self, name: str, make: Callable[[Any], object]) -> Call:
+        """Be a service of that name to NAOqi, once in each session; `make` gets the package `qi`."""
+        if not self.up:
+            return Call(error=CUT)
+        if name not in self._serving or self._serving[name].failed:
+            future = self._session.registerService(name, make(self._qi), _async=True)
+            self._serving[name] = self._called(future)
+        return self._serving[name]
 
     def ask(self, service: str, method: str, *arguments: Any, patience: float = PATIENCE) -> Any:
         """What NAOqi answers; for threads that may wait. Raises RobotError; a silent robot counts as lost."""
@@ -174,6 +186,12 @@ class Link:
         session, self._session, self.ready = self._session, None, False
         if session is not None:
             session.close()
+
+    def _called(self, future: Any) -> Call:
+        with self._lock:
+            self.pending += 1
+        future.addCallback(self._settled)
+        return Call(future)
 
     def _settled(self, _: Any) -> None:
         with self._lock:

@@ -15,6 +15,8 @@ FALLEN = "robotHasFallen"
 FALLING = ("robotIsFalling", "ALMotion/RobotIsFalling")
 """What NAOqi 2.1 and 2.8 call the beginning of a fall."""
 
+FULL = "BatteryFullChargedFlagChanged"
+
 LOW, RECHARGED = 20, 25
 """Charge [%] at which the robot speaks up, and may do so again."""
 HOT, COOLED = 75.0, 70.0
@@ -32,7 +34,7 @@ def event_of(sensor: str) -> str:
 
 
 class Noticing:
-    """Hears of touches and falls, on threads of qi's; `take` is for the robot's own.
+    """Hears of touches, falls and a full battery, on threads of qi's; `take` is for the robot's own.
 
     `pressed` says of every tactile sensor whether it is touched.
     """
@@ -47,7 +49,7 @@ class Noticing:
     def listen(self, link: Link) -> None:
         """Subscribe to everything, in a new session; what can't be heard is logged."""
         self._kept = []
-        for name in (*self.pressed, FALLEN, *FALLING):
+        for name in (*self.pressed, FALLEN, *FALLING, FULL):
             event = event_of(name) if name in self.pressed else name
             try:
                 self._kept.append(link.subscribe(event, partial(self._hear, name)))
@@ -55,7 +57,7 @@ class Noticing:
                 _log.warning("the robot will not tell of `%s`: %s", event, error)
 
     def take(self, now: float, felt: Tactile | None) -> list[tuple[str, bool]]:
-        """What has changed by `now` [s]: sensors pressed or let go of, and falls.
+        """What has changed by `now` [s]: sensors pressed or let go of, falls, and the battery.
 
         Two events may overtake each other on their way; what was `felt` since puts that right.
         """

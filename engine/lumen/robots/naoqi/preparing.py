@@ -16,6 +16,7 @@ WELCOME = {
     "ALSonar": "nothing but its bumpers stops it before a wall",
     "ALLeds": "its lights stay as they are",
     "ALAudioPlayer": "it plays no sounds",
+    "ALAudioDevice": "its microphones hear nothing",
     "ALAutonomousLife": "see that nothing else moves it",
     "ALSystem": "its version is not known",
 }

@@ -9,13 +9,15 @@ from lumen.errors import RobotError
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
-from lumen.ports import Aim, Perform, RobotCommand
+from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.cues import Notice
 from lumen.robots.naoqi.deeds import Deed, Doing
 from lumen.robots.naoqi.ground import Ground
+from lumen.robots.naoqi.link import Link
+from lumen.robots.naoqi.microphones import Microphones
 from lumen.robots.naoqi.playing import Player
 from lumen.robots.naoqi.speech import language_of, words
-from lumen.robots.naoqi.walks import Post, Walks
+from lumen.robots.naoqi.walks import Walks
 from lumen.robots.parts import part_of, parts
 
 LOOK_SPEED = 1.5
@@ -32,8 +34,10 @@ _log = logging.getLogger(__name__)
 class Repertoire:
     """Begins activities; `fallen` is whether the robot lies where it fell."""
 
-    def __init__(self, post: Post, body: Body, ground: Ground, notice: Notice, clock: Callable[[], float]) -> None:
-        self._post, self._body, self._clock = post, body, clock
+    def __init__(self, link: Link, body: Body, ground: Ground, notice: Notice, clock: Callable[[], float]) -> None:
+        post = self._post = link.post
+        self._body, self._clock = body, clock
+        self._microphones = Microphones(link, notice, clock)
         self._walks = Walks(post, ground)
         self._player = Player(post, body, notice, clock)
         self._part = part_of(body)
@@ -45,6 +49,8 @@ class Repertoire:
         match command:
             case Say(text, language):
                 return Deed(self._say(text, language), lambda: [self._post("ALTextToSpeech", "stopAll")])
+            case Record():
+                return self._microphones.begin(command)
             case Rest():
                 return Deed(self._rest(), patience=inf)
             case Posture(name, speed):

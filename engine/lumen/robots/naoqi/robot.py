@@ -14,14 +14,11 @@ from lumen.robots.naoqi.ground import Ground
 from lumen.robots.naoqi.instruments import Instruments
 from lumen.robots.naoqi.keeping import Keeper
 from lumen.robots.naoqi.link import CUT, Call, Link
-from lumen.robots.naoqi.noticing import FALLEN, FALLING, Condition, Noticing
+from lumen.robots.naoqi.noticing import FALLEN, FALLING, FULL, Condition, Noticing
 from lumen.robots.naoqi.preparing import halt, prepare
 from lumen.robots.naoqi.repertoire import Repertoire
 from lumen.robots.naoqi.senses import PERIODS, Acquiring
 from lumen.robots.parts import part_of, parts
-
-WARM_EVERY = 5.0
-"""How often motors are asked how hot they are [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -43,7 +40,7 @@ class NaoqiRobot:
         self._ground = Ground(stage, self._noticing.pressed, self._echo)
         self._condition = Condition()
         self._events: list[Event] = []
-        self._repertoire = Repertoire(self._link.post, body, self._ground, self._events.append, clock)
+        self._repertoire = Repertoire(self._link, body, self._ground, self._events.append, clock)
         self._executor = Executor(self._begin, lambda command: parts(command, body))
         self._part = part_of(body)
         self._aimed: Call = Call()
@@ -120,10 +117,12 @@ class NaoqiRobot:
                 self._events.append(Event("touched" if value else "released", {"sensor": name}, now))
             elif value and name in (FALLEN, *FALLING):
                 self._fall(name, now)
-        battery = self.read(Sense.BATTERY)
+            elif value and name == FULL:
+                self._events.append(Event("battery.full", {"percentage": 100}, now))
+        battery = self._senses[Sense.BATTERY].newest
         if isinstance(battery, Battery):
             self._events += self._condition.battery(battery.percentage, now)
-        self._events += self._condition.motors(self._instruments.heat(now, WARM_EVERY), now)
+        self._events += self._condition.motors(self._instruments.heat, now)
 
     def _fall(self, name: str, now: float) -> None:
         """Its commands end as the fall begins; `fallen` is told once it is over."""

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from typing import Any, assert_never
 
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
-from lumen.ports import Aim, Battery, Joints, Perform, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Joints, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.motions import data_of
 
 
@@ -26,6 +26,8 @@ def body_of(command: RobotCommand) -> dict[str, Any]:
             return _body("motion", "look", yaw=yaw, pitch=pitch)
         case Aim(angles, speed):
             return _body("motion", "setAngles", jointNames=list(angles), angles=list(angles.values()), speed=speed)
+        case Record(name, duration):
+            return _body("audiodevice", "record", recordingName=name, duration=duration)
         case Stop(what):
             return _body("motion", "stop", what=what)
         case Rest():

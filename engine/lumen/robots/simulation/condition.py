@@ -22,8 +22,8 @@ While plugged in, the robot lives on the charger, and motors that take more take
 LOSS = 6.0
 """What a motor takes [W] to give its greatest torque without moving."""
 
-LOW, RECHARGED = 20, 25
-"""Charge [%] at which the robot speaks up, and may do so again."""
+LOW, RECHARGED, USED = 20, 25, 95
+"""Charge [%] at which the robot speaks up, may do so again, and may say again that the battery is full."""
 
 HOT, COOLED = 75.0, 70.0
 """Temperatures [degrees Celsius] at which the robot speaks up, and may do so again."""
@@ -43,7 +43,7 @@ class Condition:
         self._efforts = np.array(efforts)
         self._energy = charge * CAPACITY
         self.plugged = False
-        self._low = False
+        self._low, self._full = False, charge > USED / 100
         self._hot: set[int] = set()
         self.temperatures: NDArray[np.float64] = np.full(len(names), AMBIENT)
 
@@ -77,6 +77,10 @@ class Condition:
 
     def _battery(self, now: float) -> list[Event]:
         self._low = self._low and self.percentage < RECHARGED
+        self._full = self._full and self.percentage > USED
+        if not self._full and self._energy >= CAPACITY:
+            self._full = True
+            return [Event("battery.full", {"percentage": 100}, now)]
         if self._low or self.percentage > LOW:
             return []
         self._low = True

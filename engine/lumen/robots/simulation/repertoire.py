@@ -8,9 +8,10 @@ from lumen.errors import RobotError
 from lumen.interpreters.postures import RESTFUL, UPRIGHT
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
-from lumen.ports import Aim, Perform, RobotCommand
+from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.cues import Notice
 from lumen.robots.executor import Activity
+from lumen.robots.listening import Listening
 from lumen.robots.parts import part_of, parts
 from lumen.robots.simulation.instruments import Instruments
 from lumen.robots.simulation.lights import Lights
@@ -71,11 +72,13 @@ class Repertoire:
 
     def begin(self, command: RobotCommand, now: float) -> Activity:
         """The command under way. Raises RobotError where the robot can't."""
-        if not isinstance(command, Say | Rest | Wake | Posture):
+        if not isinstance(command, Say | Record | Rest | Wake | Posture):
             self._ready()
         match command:
             case Say(text, language):
                 return Speech(self._lights, self.voice, text, language, now)
+            case Record(_, duration):
+                return Listening(command, now + duration, self._notice)
             case Perform():
                 return self._perform(command, now)
             case Posture(name, speed):

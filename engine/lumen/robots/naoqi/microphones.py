@@ -1,0 +1,76 @@
+"""The robot's microphones: NAOqi hands what they hear to a service of ours, until we have enough of it."""
+
+from collections.abc import Callable
+from typing import Any
+
+from lumen.errors import RobotError
+from lumen.language.events import RECORDED, Event
+from lumen.ports import Record
+from lumen.robots.bodies import RATE, recording_body
+from lumen.robots.cues import Notice
+from lumen.robots.naoqi.deeds import Deed, Doing
+from lumen.robots.naoqi.link import Call, Link
+
+DEVICE, NAME = "ALAudioDevice", "LumenMicrophones"
+FRONT, INTERLEAVED = 3, 0
+"""The microphone that points at the visitor: ALAudioDevice gives one of them at 16 kHz, all four at 48 kHz only."""
+LATE = 3.0
+"""How much longer than its duration a recording may take to come [s]."""
+
+
+class Microphones:
+    """Records from ALAudioDevice, one recording at a time; `notice` is told of each that was made."""
+
+    def __init__(self, link: Link, notice: Notice, clock: Callable[[], float]) -> None:
+        self._link, self._notice, self._clock = link, notice, clock
+        self._heard, self._wanted = bytearray(), 0
+
+    def begin(self, command: Record) -> Deed:
+        """The recording under way. Raises RobotError where there is no microphone."""
+        if not self._link.has(DEVICE):
+            raise RobotError(f"this robot has no {DEVICE}")
+        return Deed(self._listen(command), self._hush)
+
+    def _listen(self, command: Record) -> Doing:
+        """NAOqi calls `processRemote` of our service about six times a second; whatever came before does not count."""
+        yield self._link.serve(NAME, self._service)
+        yield self._link.post(DEVICE, "setClientPreferences", NAME, RATE, FRONT, INTERLEAVED)
+        self._heard, self._wanted = bytearray(), 2 * round(command.duration * RATE)
+        yield self._link.post(DEVICE, "subscribe", NAME)
+        until = self._clock() + command.duration + LATE
+        while len(self._heard) < self._wanted:
+            if self._clock() > until:
+                self._hush()
+                raise RobotError(
+                    f"{len(self._heard) / (2 * RATE):.1f} of {command.duration:g} s came from the microphones: "
+                    "can the robot reach this machine, or is there a firewall?"
+                )
+            yield None
+        yield from self._hush()
+        self._notice(Event(RECORDED, recording_body(command.name, bytes(self._heard[: self._wanted])), self._clock()))
+
+    def _hush(self) -> list[Call]:
+        return [self._link.post(DEVICE, "unsubscribe", NAME)]
+
+    def _service(self, qi: Any) -> object:
+        """What NAOqi calls, on a thread of qi's, one call at a time."""
+        microphones = self
+
+        class Listener:
+            @qi.bind(paramsType=(qi.Int32, qi.Int32, qi.Dynamic, _Raw()), returnType=qi.Void)  # type: ignore[untyped-decorator]
+            def processRemote(self, channels: int, samples: int, stamp: Any, buffer: Any) -> None:  # noqa: N802
+                microphones.hear(bytes(buffer))
+
+        return Listener()
+
+    def hear(self, samples: bytes) -> None:
+        """16 bits each, little-endian; none are kept beyond what is wanted."""
+        if len(self._heard) < self._wanted:
+            self._heard += samples
+
+
+class _Raw:
+    """qi's signature of bytes; without it they arrive as a text."""
+
+    def __str__(self) -> str:
+        return "r"
