@@ -1,5 +1,6 @@
 """Whole controllers: the exact centroid against the sampled set, every method, defaults, state and errors."""
 
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lumen.errors import LumenError
+from lumen.errors import LumenError, UsageError
 from lumen.fuzzy import Controller
 from lumen.interpreters.inference import infer
 from lumen.interpreters.inference.layers import LayeredCentroid
@@ -164,6 +165,34 @@ def test_an_output_that_no_rule_concludes_has_its_default() -> None:
     assert c.evaluate({"a": 1})["d"] == 4
     assert c.evaluate_batch({"a": [1, 2]})["d"] == pytest.approx([4, 4])
     assert c.explain({"a": 1}).outputs["d"].fired is False
+
+
+def test_a_sum_without_bound_is_the_same_in_a_batch() -> None:
+    """A term clipped at 2 is the whole term: flat from 0 to 4, then falling to 8."""
+    c = controller(
+        rules=["if a is any or b is any then c is shelf"],
+        operators={"disjunction": "unbounded-sum"},
+        output={"terms": {"shelf": {"trapezoid": [0, 0, 4, 8]}}},
+    )
+    assert c.evaluate({"a": 1, "b": 1})["c"] == pytest.approx(28 / 9, abs=1e-4)
+    assert c.evaluate_batch({"a": [1.0], "b": [1.0]})["c"] == pytest.approx([28 / 9], abs=1e-4)
+
+
+@pytest.mark.parametrize("shape", [{"sigmoid": [5, 0]}, {"bell": [5, 2, 0]}])
+def test_what_has_no_slope_is_one_half_at_infinity_too(shape: dict[str, Any]) -> None:
+    flat = {"range": [0, 10], "terms": {"even": shape}}
+    rules = ["if a is even then c is small"]
+    c = Controller.from_dict({"inputs": {"a": flat}, "outputs": {"c": Y}, "rules": rules})
+    assert c.evaluate({"a": inf})["c"] == pytest.approx(2)
+    assert c.evaluate_batch({"a": [inf, -inf, 5.0]})["c"] == pytest.approx([2, 2, 2])
+
+
+@pytest.mark.parametrize("odd", [10**400, "far", None, [1.0, [2.0]]])
+def test_an_input_that_is_no_number_is_told(odd: Any) -> None:
+    with pytest.raises(UsageError, match="have to be numbers"):
+        controller().evaluate({"a": odd, "b": 1})
+    with pytest.raises(UsageError, match=r"have to be numbers|not numbers"):
+        controller().evaluate_batch({"a": [odd, 1], "b": [1, 1]})
 
 
 def test_many_terms_take_the_general_way() -> None:

@@ -78,8 +78,8 @@ class Evaluator:
             values = [float(inputs[name]) for name in self._names]
         except KeyError as error:
             raise UsageError(f"the input `{error.args[0]}` of `{self.controller.name}` is missing") from None
-        except (TypeError, ValueError):
-            raise UsageError(f"the inputs of `{self.controller.name}` have to be numbers, not {dict(inputs)}") from None
+        except (TypeError, ValueError, OverflowError):
+            raise self._no_numbers(inputs) from None
         if len(inputs) != len(values):
             self._refuse_unknown(inputs)
         for value in values:
@@ -93,13 +93,19 @@ class Evaluator:
         self._refuse_unknown(inputs)
         if missing := [name for name in self._names if name not in inputs]:
             raise UsageError(f"the input `{missing[0]}` of `{self.controller.name}` is missing")
-        columns = [np.atleast_1d(np.asarray(inputs[name], dtype=float)) for name in self._names]
+        try:
+            columns = [np.atleast_1d(np.asarray(inputs[name], dtype=float)) for name in self._names]
+        except (TypeError, ValueError, OverflowError):
+            raise self._no_numbers(inputs) from None
         if any(column.shape != columns[0].shape or column.ndim != 1 for column in columns):
             shapes = {name: c.shape for name, c in zip(self._names, columns, strict=True)}
             raise UsageError(f"the inputs of a batch have to be of one Shape (n,), not {shapes}")
         if any(np.isnan(column).any() for column in columns):
             raise UsageError(f"an input of `{self.controller.name}` holds values that are not numbers")
         return columns
+
+    def _no_numbers(self, inputs: Mapping[str, Any]) -> UsageError:
+        return UsageError(f"the inputs of `{self.controller.name}` have to be numbers, not {str(dict(inputs))[:200]}")
 
     def _refuse_unknown(self, inputs: Mapping[str, Any]) -> None:
         for name in inputs:

@@ -123,14 +123,14 @@ class _Table:
         self.levels = np.array(layer.levels)
         self.pieces = np.array([layer.area, layer.count, layer.moment, layer.above]).T.copy()
         edges = np.searchsorted(self.levels, np.arange(_BINS + 1) / _BINS)
-        self.first = edges[:-1].astype(np.intp)
-        self.sure = edges[:-1] == edges[1:]
+        self.first = edges.astype(np.intp)
+        self.sure = np.append(edges[:-1] == edges[1:], False)  # a sum without bound may be above 1
 
     def measure(self, t: "Array") -> "tuple[Array, Array]":
         """Area and moment under each level. A bin without a corner tells the piece at once; others are searched."""
         import numpy as np
 
-        bins = np.minimum(t * _BINS, _BINS - 1).astype(np.intp)
+        bins = np.minimum(t * _BINS, _BINS).astype(np.intp)
         index = self.first[bins]
         unsure = np.flatnonzero(~self.sure[bins])
         index[unsure] = np.searchsorted(self.levels, t[unsure])

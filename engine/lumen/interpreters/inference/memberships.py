@@ -75,6 +75,9 @@ def gaussian_product(m: Arithmetic, mean_a: float, sigma_a: float, mean_b: float
 
 
 def bell(m: Arithmetic, center: float, width: float, slope: float) -> Membership:
+    if slope == 0.0:
+        return _half
+
     def shape(x: Number) -> Number:
         exponent = 2.0 * slope * m.log(m.maximum(m.abs((x - center) / width), TINY))
         return 1.0 / (1.0 + m.exp(m.clamp(exponent, -LARGE, LARGE)))
@@ -83,7 +86,14 @@ def bell(m: Arithmetic, center: float, width: float, slope: float) -> Membership
 
 
 def sigmoid(m: Arithmetic, inflection: float, slope: float) -> Membership:
+    if slope == 0.0:
+        return _half
     return lambda x: 1.0 / (1.0 + m.exp(m.clamp(slope * (inflection - x), -LARGE, LARGE)))
+
+
+def _half(x: Number) -> Number:
+    """What has no slope is one half everywhere, at infinity too."""
+    return 0.5
 
 
 def sigmoid_difference(m: Arithmetic, left: float, rising: float, falling: float, right: float) -> Membership:
