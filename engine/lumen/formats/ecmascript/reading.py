@@ -29,7 +29,10 @@ from lumen.interpreters.expressions.tree import (
 )
 
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-_UNDEFINED = Name("undefined")
+_UNDEFINED, _EVENT = Name("undefined"), Name("_event")
+_HAPPENED = Call("has", (Field(Name("event"), "name"),))
+"""That there is an event: before the first one `_event` is undefined (SCXML 5.10.1)."""
+
 _FALSY = Items((Literal(None), Literal(False), Literal(0), Literal("")))
 
 
@@ -88,7 +91,7 @@ class Reading:
                 return negated(self.condition(operand))
             case Choice(condition=condition, then=then, otherwise=otherwise):
                 return Choice(self.condition(condition), self.condition(then), self.condition(otherwise))
-        return self._truthy(self.value(tree))
+        return _HAPPENED if tree == _EVENT else self._truthy(self.value(tree))
 
     def _logic(self, sign: str, operands: tuple[Node, ...]) -> Node:
         before, found = self.present, list[Node]()
@@ -154,7 +157,7 @@ class Reading:
         raise ScriptError(f"`{name}` stands in no datamodel")
 
     def _field(self, base: Node, name: str) -> Node:
-        if base == Name("_event"):
+        if base == _EVENT:
             if name not in ("name", "data"):
                 raise ScriptError(f"an event has no `{name}` here, only `name` and `data`")
             return Field(Name("event"), name)
@@ -222,12 +225,15 @@ class Reading:
             if isinstance(one, Unary) and kind_asked and other != Literal("undefined"):
                 raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
             if isinstance(one, Unary) and kind_asked:
-                return self._absent(self.value(one.operand), False)
+                return self._absent(one.operand, False)
             if one == _UNDEFINED or (one == Literal(None) and not strict):
-                return self._absent(self.value(other), not strict)
+                return self._absent(other, not strict)
         return None
 
-    def _absent(self, node: Node, or_null: bool) -> Node:
+    def _absent(self, tree: Node, or_null: bool) -> Node:
+        if tree == _EVENT:
+            return negated(_HAPPENED)
+        node = self.value(tree)
         path = path_of(node)
         is_null = Binary("==", node, Literal(None))
         if not is_data(path) or path in self.present:

@@ -23,6 +23,7 @@ from lumen.interpreters.expressions.tree import (
     Name,
     Node,
     Unary,
+    path_of,
 )
 
 _METHODS = {ours: theirs for theirs, ours in SAME.items()}
@@ -84,7 +85,7 @@ class _Writer:
             case Entries(keys=keys, values=values):
                 return Entries(keys, tuple(map(self.node, values)))
             case Unary(sign="!", operand=Call(function="has", arguments=(target,))):
-                return Binary("===", Unary("typeof", self.node(target)), Literal("undefined"))
+                return self._typeof("===", target)
             case Unary(sign=sign, operand=operand):
                 return Unary(sign, self.node(operand))
             case Logic(sign=sign, operands=operands):
@@ -127,8 +128,8 @@ class _Writer:
     def _call(self, node: Call) -> Node:
         arguments = tuple(map(self.node, node.arguments))
         match node.function, arguments:
-            case "has", (target,):
-                return Binary("!==", Unary("typeof", target), Literal("undefined"))
+            case "has", _:
+                return self._typeof("!==", node.arguments[0])
             case "In", (Literal(value=str() as state),):
                 return Call("In", (Literal(self.vocabulary.states.get(state, state)),))
             case "In", _:
@@ -144,6 +145,11 @@ class _Writer:
             case name, _ if name in _METHODS:
                 return Call(_METHODS[name], arguments)
         return self._own(node.function, *arguments)
+
+    def _typeof(self, sign: str, target: Node) -> Node:
+        """Whether something is there; where an event's name is, there is an event."""
+        asked = Name("_event") if path_of(target) == ("event", "name") else self.node(target)
+        return Binary(sign, Unary("typeof", asked), Literal("undefined"))
 
     def _own(self, name: str, *arguments: Node) -> Node:
         self.foreign.append(name)
