@@ -4,6 +4,7 @@ import os
 import random
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -34,12 +35,10 @@ BREAKS: tuple[tuple[str, str, str], ...] = (
 
 
 class Writer:
-    """Edits a project as people and programs do; `good` and `bad` are the hashes of all states it completed."""
+    """Edits a project as people and programs do, several files `pause` [s] apart."""
 
-    def __init__(self, root: Path, seed: int) -> None:
-        self.root, self.random = root, random.Random(seed)
-        self.good = {fingerprint(read_files(root))}
-        self.bad: set[str] = set()
+    def __init__(self, root: Path, seed: int, pause: float) -> None:
+        self.root, self.random, self.pause = root, random.Random(seed), pause
         self.number = 0
         self.mending: tuple[str, ...] = ()
         self.ways: list[Callable[[dict[str, str]], None]] = [
@@ -61,9 +60,7 @@ class Writer:
             files[path] = text.replace(old, new, 1)
             self.mending = (path,)
         way(files)
-        hash = fingerprint(read_files(self.root))
-        (self.bad if broken else self.good).add(hash)
-        return hash, not broken
+        return fingerprint(read_files(self.root)), not broken
 
     def marked(self, path: str) -> str:
         """The file as it was at first, with the number of this edit in a text of it."""
@@ -111,8 +108,6 @@ class Writer:
             if path != list(files)[-1]:
                 time.sleep(self.pause)
 
-    pause = 0.12
-
     def checked_out(self, files: dict[str, str]) -> None:
         """Two revisions of the project, and from one to the other."""
         for path, text in files.items():
@@ -120,6 +115,28 @@ class Writer:
         _git(self.root.parent / "work", "commit", "-qam", f"edit {self.number}")
         _git(self.root, "fetch", "-q", "origin")
         _git(self.root, "checkout", "-qf", "origin/HEAD")
+
+
+class Colleague:
+    """A writer in a process of its own, as people and their editors are; `good` are the hashes of all good states."""
+
+    def __init__(self, root: Path, seed: int, pause: float) -> None:
+        self.good = {fingerprint(read_files(root))}
+        words = [sys.executable, __file__, str(root), str(seed), str(pause)]
+        self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def edit(self) -> tuple[str, bool]:
+        """Have the next edit made; the hash of what the files are now, and whether they are good."""
+        assert self._process.stdin
+        assert self._process.stdout
+        print("edit", file=self._process.stdin, flush=True)
+        hash, said = self._process.stdout.readline().split()
+        if said == "good":
+            self.good.add(hash)
+        return hash, said == "good"
+
+    def close(self) -> None:
+        self._process.communicate()
 
 
 @contextmanager
@@ -157,3 +174,16 @@ def _git(folder: Path, *words: str) -> None:
         "init.defaultBranch=main",
     ]
     subprocess.run(["git", *who, *words], cwd=folder, check=True, capture_output=True)
+
+
+def main() -> None:
+    """Make an edit for each line of the standard input, and say what it made of the files."""
+    root, seed, pause = sys.argv[1:]
+    writer = Writer(Path(root), int(seed), float(pause))
+    for _ in sys.stdin:
+        hash, good = writer.edit()
+        print(hash, "good" if good else "bad", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -22,7 +22,7 @@ from pathlib import Path
 from statistics import quantiles
 from typing import NamedTuple
 
-from editing import Writer, project
+from editing import Colleague, project
 
 import lumen
 from lumen.bus import connect
@@ -30,8 +30,8 @@ from lumen.cli.cast import Cast
 from lumen.cli.reloading.bulletin import Bulletin
 from lumen.cli.reloading.records import Records
 from lumen.cli.reloading.reloading import Reloading
-from lumen.cli.reloading.settled import settled
 from lumen.cli.show import Show
+from lumen.cli.sweeping import Sweeper
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.stories import Visitor
@@ -154,7 +154,8 @@ class Soak:
         self.show.closing.insert(0, self.reloading.close)
         self.show.closing.append(home.release)
         self.show.after.append(lambda _: records.keep(self.show.exhibition))
-        self.outcome, self.writer = Outcome(edits), Writer(root, seed)
+        self.outcome, self.writer = Outcome(edits), Colleague(root, seed, 0.4 * quiet)
+        self.show.closing.append(self.writer.close)
         self.load = Load(self.show, url)
         self._told: list[Told] = []
         self._last: Bulletin | None = None
@@ -248,7 +249,9 @@ class Soak:
             assert show.walker
             show.walker.arrive(Visitor())
             self.load.start()
-            settled()
+            sweeper = Sweeper()
+            show.after.append(sweeper)
+            show.closing.append(sweeper.close)
             self.until(time.monotonic() + 2.0)
             outcome.missed, outcome.gap, outcome.ticks = 0, 0.0, 0
             with metronome() as beside:
@@ -279,9 +282,7 @@ class Soak:
 def soak(edits: int, url: str = "memory://", quiet: float = 0.3, seed: int = 1) -> Outcome:
     """So many edits, and what came of them."""
     with project() as root:
-        one = Soak(root, url, quiet, seed, edits)
-        one.writer.pause = 0.4 * quiet
-        return one.run()
+        return Soak(root, url, quiet, seed, edits).run()
 
 
 def _spread(times: list[float]) -> str:

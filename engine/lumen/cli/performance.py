@@ -10,8 +10,8 @@ from lumen.cli.main import STARTED
 from lumen.cli.modules.inside import join
 from lumen.cli.reloading.premises import Premises
 from lumen.cli.reloading.reloading import Reloading
-from lumen.cli.reloading.settled import settled
 from lumen.cli.show import Show, film
+from lumen.cli.sweeping import Sweeper
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedSpeech
 from lumen.cli.why import innermost
@@ -77,7 +77,9 @@ class Performance:
             if self._presence:
                 self._presence.parts = tuple(p for p in self._presence.parts if p not in MODULES or p in begun)
             self._start(language, fresh=fresh)
-            settled()
+            sweeper = Sweeper()
+            show.after.append(sweeper)
+            show.closing.append(sweeper.close)
             began = time.monotonic()
             while not self._over(now, period):
                 now = show.tick()

@@ -4,7 +4,7 @@ The words are XState v5's with UML's `entry`/`do`/`exit`; what they mean is W3C 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any
 
@@ -109,6 +109,10 @@ class Machine:
     renamed: Mapping[str, str] = field(default_factory=dict)
     hash: str = ""
     invoked: Mapping[str, "Machine"] = field(default_factory=dict, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What it says, for another process: what was made of it here is none of its fields."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @property
     def root(self) -> State:

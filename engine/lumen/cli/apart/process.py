@@ -9,7 +9,7 @@ from lumen.cli.apart.claiming import CLAIM, refuse
 from lumen.cli.apart.part import Part
 from lumen.cli.main import STARTED
 from lumen.cli.performance import clock_time
-from lumen.cli.reloading.settled import settled
+from lumen.cli.sweeping import Sweeper
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.ports import Clock
@@ -37,6 +37,7 @@ class Process:
         self._now, self._asked = clock.now(), time.monotonic()
         self._begun: list[Part] = []
         self._waiting = ""
+        self._sweeper: Sweeper | None = None
         self._interrupts, self._heeded, self._leaving = 0, 0, False
         self.after: list[Callable[[], None]] = []
         self.closing: list[Callable[[], None]] = []
@@ -79,6 +80,8 @@ class Process:
         self._clock.wait(self._now + TICK)
         self._now = self._clock.now()
         self._tick(self._now)
+        if self._sweeper:
+            self._sweeper()
         return self._now
 
     def use(self, project: Project) -> None:
@@ -116,7 +119,8 @@ class Process:
         if time.monotonic() - self._asked < CLAIM:
             return
         self._presence.settle()
-        settled()
+        self._sweeper = Sweeper()
+        self.closing.append(self._sweeper.close)
         ready = time.monotonic() - STARTED
         what = ", ".join(self._presence.parts)
         print(f"{self._project.name}: {what} of {self._project.robot}, on {self._place}, ready after {ready:.1f} s.")

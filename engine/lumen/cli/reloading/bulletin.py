@@ -41,7 +41,7 @@ class Bulletin:
 
     def kept(self) -> "Bulletin":
         """The same without the files and the project that it is about."""
-        judged = self.judged and replace(self.judged, project=None, saved=self.judged.saved._replace(files={}))
+        judged = self.judged and self.judged.kept()
         return replace(self, judged=judged)
 
     @property

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 
 from lumen.cli.rehearsal import Rehearsal
@@ -25,14 +25,14 @@ class Judged:
     """What came of saved files: a bundle, or what is wrong with them.
 
     `failed` are stories that were saved with them and do not hold; `fault` is a failure of ours. `changes` are against
-    the bundle that ran when they were judged. Times [s]: `seen` and `quiet` on the monotonic clock, `loading` and
-    `playing` how long each took.
+    `running`, the bundle that ran when they were judged; `loading` and `playing` are how long each took [s].
     """
 
     saved: Saved
     hash: str
     project: Project | None = None
     diagnostics: tuple[Diagnostic, ...] = ()
+    running: Project | None = None
     changes: tuple[Change, ...] = ()
     failed: tuple[Rehearsal, ...] = ()
     fault: str = ""
@@ -47,6 +47,10 @@ class Judged:
     def took(self) -> float:
         """How long our own work took [s], without the quiet period."""
         return self.loading + self.playing
+
+    def kept(self) -> "Judged":
+        """The same without the files and the projects that it is about."""
+        return replace(self, saved=self.saved._replace(files={}), project=None, running=None)
 
 
 class Judge:
@@ -67,11 +71,12 @@ class Judge:
             if project is None:
                 return Judged(saved, hash, None, diagnostics, loading=time.perf_counter() - began)
             compiled(project.machine)
-            found = changes(self._running(), project)
+            running = self._running()
+            found = changes(running, project)
             loaded = time.perf_counter()
             failed = tuple(self._play(project, _saved_stories(project, saved.changed)))
             took = loaded - began, time.perf_counter() - loaded
-            return Judged(saved, hash, project, diagnostics, found, failed, "", *took)
+            return Judged(saved, hash, project, diagnostics, running, found, failed, "", *took)
         except Exception as error:  # a fault of ours costs the reload, and nothing else
             return Judged(saved, hash, fault=f"Lumen failed on these files: {error!r}")
 

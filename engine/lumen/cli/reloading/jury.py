@@ -1,29 +1,32 @@
 """Saved files judged in a process of its own, so that it never holds up a tick.
 
 Python runs one thread at a time. A thread that loads files would keep the exhibition waiting for as long as the system
-lets it wait itself, some ticks on a busy machine. What comes back is unpacked field by field, and only where it differs
-from what is here already: some milliseconds. The child is our own program, and the pipe to it nobody else's.
+lets it wait itself, some ticks on a busy machine. Of what comes back only that travels which differs from what is here
+already: some milliseconds. The child is our own program, and the pipe to it nobody else's.
 """
 
+import logging
 import os
 import pickle
 import struct
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import fields
-from functools import cached_property
 from pathlib import Path
 from typing import IO, Any
 
 from lumen.cli.rehearsal import Rehearsal, rehearse
-from lumen.language.diagnostics import Diagnostic, Places
+from lumen.cli.reloading.parcels import Receiver, Sender
+from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.rules import check_files
 
+_log = logging.getLogger(__name__)
 _LENGTH = struct.Struct(">I")
+MODEST = 5
+"""By how much the judging process gives way to others on a busy machine, the robot above all (`nice`)."""
 Loaded = tuple[Project | None, tuple[Diagnostic, ...]]
 
 
@@ -59,7 +62,7 @@ class Jury:
         self._here = Here(root)
         self._root = root
         self._child: subprocess.Popen[bytes] | None = None
-        self._parts: dict[str, tuple[bytes, Any]] = {}
+        self._receiver = Receiver()
 
     def begin(self) -> None:
         """Begin the process: it takes about as long as files do to settle."""
@@ -68,11 +71,12 @@ class Jury:
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
         try:
-            parts, diagnostics = self._ask("load", str(self._root), dict(files))
-        except (OSError, EOFError, pickle.UnpicklingError):
+            parcel, diagnostics = self._ask("load", str(self._root), dict(files))
+        except (OSError, EOFError, pickle.UnpicklingError) as error:
+            _log.warning("the process that judges saved files is gone, they are judged beside the robot: %r", error)
             self.close()
             return self._here.load(files)
-        return (None if parts is None else self._project(parts)), diagnostics
+        return (None if parcel is None else self._receiver.unpack(parcel)), diagnostics
 
     def play(self, project: Project, story: str, seconds: float) -> Rehearsal | None:
         try:
@@ -108,35 +112,6 @@ class Jury:
             )
         return self._child
 
-    def _project(self, parts: Mapping[str, bytes]) -> Project:
-        for name, data in parts.items():
-            if name == "documents":
-                self._parts[name] = data, _Documents(data)
-            elif self._parts.get(name, (b"",))[0] != data:
-                self._parts[name] = data, pickle.loads(data)
-        return Project(**{name: value for name, (_, value) in self._parts.items()})
-
-
-class _Documents(Mapping[str, Places]):
-    """What stands where in the files: unpacked only when somebody asks."""
-
-    def __init__(self, packed: bytes) -> None:
-        self._packed = packed
-
-    @cached_property
-    def _found(self) -> Mapping[str, Places]:
-        found: Mapping[str, Places] = pickle.loads(self._packed)
-        return found
-
-    def __getitem__(self, file: str) -> Places:
-        return self._found[file]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._found)
-
-    def __len__(self) -> int:
-        return len(self._found)
-
 
 def failure(project: Project, story: str, seconds: float) -> Rehearsal | None:
     """How a story fails with a project; None where it does not, or not within `seconds` of this machine's time."""
@@ -167,19 +142,12 @@ def _read(pipe: IO[bytes]) -> Any:
     return pickle.loads(pipe.read(*_LENGTH.unpack(head)))
 
 
-def _parts(project: Project | None) -> dict[str, bytes] | None:
-    """A project field by field; no machine takes along what was compiled of it."""
-    if project is None:
-        return None
-    return {f.name: pickle.dumps(getattr(project, f.name), pickle.HIGHEST_PROTOCOL) for f in fields(project)}
-
-
-def _serve(question: Sequence[Any], project: Project | None) -> tuple[Any, Project | None]:
+def _serve(question: Sequence[Any], project: Project | None, sender: Sender) -> tuple[Any, Project | None]:
     """The answer, and the project that is in force after it."""
     match question:
         case ["load", str(root), dict(files)]:
             project, diagnostics = check_files(Path(root), files)
-            return (_parts(project), diagnostics), project
+            return (None if project is None else sender.pack(project), diagnostics), project
         case ["play", str(story), float(seconds)] if project:
             return failure(project, story, seconds), project
     return None, project
@@ -187,12 +155,14 @@ def _serve(question: Sequence[Any], project: Project | None) -> tuple[Any, Proje
 
 def main() -> None:
     """Answer until the pipe ends; what anybody prints goes to the terminal, not into the pipe."""
+    if hasattr(os, "nice"):
+        os.nice(MODEST)
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    project: Project | None = None
+    project, sender = None, Sender()
     with suppress(EOFError, BrokenPipeError):
         while True:
-            answer, project = _serve(_read(sys.stdin.buffer), project)
+            answer, project = _serve(_read(sys.stdin.buffer), project, sender)
             _write(answers, answer)
 
 

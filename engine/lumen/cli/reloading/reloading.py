@@ -149,7 +149,8 @@ class Reloading:
             self._herald.tell(self._verdict("refused", who, judged, judged.fault), orders)
             return
         project = live(self._running, judged.project)
-        staged = Staged(project, changes(self._running, judged.project), judged, who)
+        same = judged.running is self._running
+        staged = Staged(project, judged.changes if same else changes(self._running, project), judged, who)
         if order and order.verb == "dry-run" and judged.hash != self._running.hash:
             staging.dry_run(staged, order)
         elif judged.hash == self._running.hash:

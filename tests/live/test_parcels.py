@@ -1,0 +1,56 @@
+"""What travels between the process that judges files and the one that runs them: all of it, and nothing twice."""
+
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.cli.reloading.jury import Jury, failure
+from lumen.cli.reloading.parcels import LATE, Receiver, Sender
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+
+TOUR = "behaviors/tour.yaml"
+SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+
+
+def test_a_project_arrives_as_it_was(copy: Path) -> None:
+    sent = lumen.load(copy)
+    came = Receiver().unpack(Sender().pack(sent))
+    assert came == sent
+    assert list(came.documents) == list(sent.documents)
+    where = came.machine.states["guide"].where
+    assert came.place(TOUR, where) == sent.place(TOUR, where)
+
+
+def test_only_what_differs_travels_and_is_new(copy: Path) -> None:
+    sender, receiver = Sender(), Receiver()
+    before = receiver.unpack(sender.pack(lumen.load(copy)))
+    (copy / TOUR).write_text((copy / TOUR).read_text("utf-8").replace(SORRY, PARDON), "utf-8")
+    parcel = sender.pack(lumen.load(copy))
+    travelled = {piece for piece, data in parcel.items() if data is not None}
+    assert {("hash", None), ("behaviors", "tour"), (LATE, TOUR)} <= travelled
+    after = receiver.unpack(parcel)
+    assert after.machine is not before.machine
+    assert PARDON.removeprefix("en: ") in str(after.machine)
+    assert all(after.motions[name] is motion for name, motion in before.motions.items())
+    assert after.body is before.body
+
+
+def test_a_project_travels_after_its_stories_were_played(copy: Path) -> None:
+    project = lumen.load(copy)
+    assert failure(project, "refuses", 20.0) is None
+    assert Receiver().unpack(Sender().pack(project)) == project
+
+
+def test_the_same_process_judges_again_and_again(copy: Path, caplog: pytest.LogCaptureFixture) -> None:
+    jury = Jury(copy)
+    jury.begin()
+    for text in (SORRY, PARDON, "en: [", SORRY):
+        files = {**read_files(copy), TOUR: read_files(copy)[TOUR].replace(SORRY.encode(), text.encode())}
+        project, diagnostics = jury.load(files)
+        assert (project, list(diagnostics)) == (check_files(copy, files)[0], list(check_files(copy, files)[1]))
+        if project:
+            assert jury.play(project, "refuses", 20.0) is None
+    jury.close()
+    assert "is gone" not in caplog.text
