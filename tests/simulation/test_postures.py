@@ -114,8 +114,15 @@ def test_it_sits_down_gently_and_its_pelvis_carries_it(robot: SimulatedRobot) ->
     assert degrees(robot.world.tilt) < 35
 
 
+@pytest.mark.parametrize("posture", [*DOWN, "Crouch"])
+def test_every_joint_is_where_naoqi_has_it(robot: SimulatedRobot, do: Do, body: Body, posture: str) -> None:
+    assert do(Posture(posture)) == "done"
+    robot.advance(0.5)
+    assert np.abs(robot.world.angles - list(body.postures[posture].values())).max() < 0.06
+
+
 @pytest.mark.parametrize("posture", ["Crouch", "Sit"])
-def test_it_rests_with_its_motors_off(robot: SimulatedRobot, do: Do, posture: str) -> None:
+def test_it_rests_with_its_motors_off(robot: SimulatedRobot, do: Do, body: Body, posture: str) -> None:
     assert do(Posture(posture)) == "done"
     assert do(Rest()) == "done"
     assert not robot.awake
@@ -124,6 +131,7 @@ def test_it_rests_with_its_motors_off(robot: SimulatedRobot, do: Do, posture: st
     before, tilt = robot.world.angles[legs], robot.world.tilt
     robot.advance(60.0)
     assert np.abs(robot.world.angles[legs] - before).max() < 0.05
+    assert np.abs(robot.world.angles[legs] - [body.postures[posture][robot.motors.names[i]] for i in legs]).max() < 0.15
     assert abs(robot.world.tilt - tilt) < 0.05
     assert do(Wake()) == "done"
     assert standing(robot)

@@ -8,8 +8,8 @@ from lumen.language.robots import Body
 UPRIGHT = ("Stand", "StandInit", "StandZero", "Crouch")
 """Those on both feet: a straight way connects them."""
 
-RESTFUL = ("Crouch", "SitRelax", "LyingBack", "LyingBelly")
-"""Those that a robot keeps with its motors off; in Sit its torso leans back, and sinks once nothing holds it."""
+RESTFUL = ("Crouch", "Sit", "SitRelax", "LyingBack", "LyingBelly")
+"""Those that a robot keeps with its motors off."""
 
 STRAIGHT = 1.0
 """What a straight way counts [s], beside the duration of a passage."""
