@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
+import orjson
+
 from lumen.errors import BusError
 
 MAX_DEPTH = 64
@@ -108,8 +110,8 @@ def check_key(key: str) -> None:
 def encode(body: Any) -> bytes:
     """The body as JSON in UTF-8; raises BusError where it is not JSON data or too large."""
     try:
-        data = json.dumps(copied(body), ensure_ascii=False, separators=(",", ":")).encode()
-    except UnicodeEncodeError as error:
+        data = orjson.dumps(copied(body))
+    except orjson.JSONEncodeError as error:
         raise BusError("a text in the body is not valid Unicode: it holds half a surrogate pair") from error
     if len(data) > MAX_BYTES:
         raise BusError(f"a body may have {MAX_BYTES:,} bytes, and this one has {len(data):,}")
