@@ -119,6 +119,30 @@ def live_through_a_power_cut(broker: RabbitMQ) -> None:
     reader.close()
 
 
+@pytest.mark.soak
+@pytest.mark.usefixtures("no_thread_stays")
+def test_a_broker_that_is_killed_while_a_journal_is_made_makes_it_anew() -> None:
+    broker, key, seen = RabbitMQ(), "lumen.fault.journal", Collector()
+    broker.start()
+    try:
+        reader, sender = opened(broker.url), opened(broker.url)
+        consuming = reader._way.consuming  # type: ignore[attr-defined]
+        subscribing = threading.Thread(target=reader.subscribe, args=(key, seen))
+        subscribing.start()
+        until(lambda: consuming._settling)
+        broker.kill()
+        broker.start()
+        until(lambda: any(s.tag for s in consuming.subscriptions() if s.pattern == key), 60)
+        for n in range(3):
+            sender.publish(key, n)
+        assert seen.wait(3) == [0, 1, 2]
+        subscribing.join()
+        sender.close()
+        reader.close()
+    finally:
+        broker.stop()
+
+
 def links_of(bus: Any) -> list[Any]:
     return [bus._way.publishing, bus._way.consuming]
 

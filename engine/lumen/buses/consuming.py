@@ -13,7 +13,7 @@ from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
 from lumen.buses.addresses import Address
 from lumen.buses.bodies import MAX_BYTES
 from lumen.buses.links import Link, Outage
-from lumen.buses.queues import EXCHANGE, NOWHERE, Queue, queue_of
+from lumen.buses.queues import EXCHANGE, NOWHERE, SETTLING, Queue, queue_of
 from lumen.errors import BusError
 from lumen.language.routes import Route
 from lumen.ports import Handler
@@ -82,6 +82,7 @@ class Consuming(Link):
         self._receive = receive
         self._subscriptions: list[Subscription] = []
         self._prepared: dict[str, Subscription] = {}
+        self._settling: set[str] = set()
         self._changing = threading.Lock()
         self._epoch = 0
         self._acknowledged = 0
@@ -234,7 +235,7 @@ class Consuming(Link):
 
     def _make(self, queue: Queue) -> tuple[str, str]:
         """Declare and bind a queue on a channel of its own; its name, and why the broker refuses."""
-        for attempt in (self._declare, self._renew, self._adopt) if queue.name else (self._declare,):
+        for attempt in self._attempts(queue):
             channel = self.connection.channel()
             try:
                 name = attempt(channel, queue)
@@ -245,6 +246,35 @@ class Consuming(Link):
                 if error.reply_code != OTHERWISE:
                     break
         return "", refusal
+
+    def _attempts(self, queue: Queue) -> tuple[Callable[[Any, Queue], str], ...]:
+        """One after the other, where there is a queue of that name that was made otherwise."""
+        if queue.quorum:
+            return self._found, self._adopt
+        return (self._declare, self._renew, self._adopt) if queue.name else (self._declare,)
+
+    def _found(self, channel: Any, queue: Queue) -> str:
+        """A quorum queue, which is bound when a crash of the broker can't lose it any more.
+
+        Where the broker was killed before that, it has no log for it and never answers for it: it is made anew.
+        """
+        if queue.name in self._settling:
+            channel.queue_delete(queue.name)
+        if not self._exists(queue.name):
+            self._settling.add(queue.name)
+            channel.queue_declare(queue.name, durable=True, arguments=queue.arguments)
+            self.connection.sleep(SETTLING)
+            self._settling.discard(queue.name)
+        return self._declare(channel, queue)
+
+    def _exists(self, name: str) -> bool:
+        channel = self.connection.channel()
+        try:
+            channel.queue_declare(name, passive=True)
+        except ChannelClosedByBroker:
+            return False
+        channel.close()
+        return True
 
     def _declare(self, channel: Any, queue: Queue) -> str:
         mine = not queue.name
@@ -282,7 +312,10 @@ class Consuming(Link):
         self.connection.call_later(LEAVING, lambda: self._drop(left))
 
     def _drop(self, subscription: Subscription) -> None:
-        """Stop reading a queue; one that outlives us is bound to nothing any more, and deleted if it is empty."""
+        """Stop reading a queue; one that outlives us is bound to nothing any more, and deleted if it is empty.
+
+        A quorum queue can't be deleted so carefully, and stays.
+        """
         if self.channel is None or not subscription.queue:
             return
         if subscription.tag:
@@ -293,7 +326,8 @@ class Consuming(Link):
             channel = self.connection.channel()
             if subscription.must_arrive:
                 channel.queue_unbind(subscription.queue, EXCHANGE, subscription.pattern)
-            if subscription.must_arrive or not subscription.tag:
+            kept = queue_of("", subscription.route).quorum
+            if not kept and (subscription.must_arrive or not subscription.tag):
                 channel.queue_delete(subscription.queue, if_unused=True, if_empty=subscription.must_arrive)
             channel.close()
 

@@ -49,7 +49,7 @@ class Publishing(Link):
 
     def begin(self) -> None:
         self.address.check_version(self.connection.server)
-        self._number, self._declared = 0, set()
+        self._number, self._declared, self._refused = 0, set(), set()
         self._make(ASIDE, declare_aside)
         self.channel.add_on_return_callback(self._returned)
         self.connection.ask(self.channel.confirm_delivery, self._confirmed)

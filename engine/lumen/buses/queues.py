@@ -2,9 +2,8 @@
 
 Telemetry has a queue that goes away with its reader and keeps the newest. A command has one that outlives a reader's
 absence for as long as the command is good for; then it is dead, with the others in `lumen.dead`. A journal that comes
-in has a durable queue (docs/decisions says why no quorum queue), one that goes out a stream, from which any number of
-modules may read. Nothing here grows without bound: what can't be kept is refused to the sender, or is the oldest of
-what may be lost.
+in has a quorum queue, one that goes out a stream, from which any number of modules may read. Nothing here grows without
+bound: what can't be kept is refused to the sender, or is the oldest of what may be lost.
 """
 
 import hashlib
@@ -28,6 +27,9 @@ UNUSED = 10 * 60 * 1000
 HOUR = 60 * 60 * 1000
 GIGABYTE = 10**9
 LONGEST = 255
+SETTLING = 1.0
+"""How long a new quorum queue stays unbound [s]: RabbitMQ writes down half a second later which log is whose; killed
+before that, it loses what the queue held (docs/decisions)."""
 
 Call = Callable[..., Any]
 """Calls a method of a channel with these arguments and waits for the answer."""
@@ -42,6 +44,10 @@ class Queue:
     exchange: str = EXCHANGE
     arguments: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def quorum(self) -> bool:
+        return self.arguments.get("x-queue-type") == "quorum"
+
     def declare(self, call: Call, channel: Any) -> None:
         """Make one that has a name, and bind it to its key."""
         call(channel.queue_declare, self.name, durable=True, arguments=self.arguments)
@@ -55,10 +61,11 @@ def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXC
         return Queue(
             key, exchange=exchange, arguments={"x-max-length": newest, "x-overflow": "drop-head", **_lifetime(route)}
         )
-    name = _name(f"lumen.queue.{key}", number)
     if route.carried is Carried.JOURNAL:
-        limits = {"x-max-length-bytes": GIGABYTE, "x-overflow": "reject-publish"}
-        return Queue(key, name, exchange, {**limits, "x-single-active-consumer": True})
+        limits = {"x-max-length-bytes": GIGABYTE, "x-overflow": "reject-publish", "x-dead-letter-exchange": DEAD}
+        kept = {"x-queue-type": "quorum", **limits, "x-single-active-consumer": True}
+        return Queue(key, _name(f"lumen.inbox.{key}", number), exchange, kept)
+    name = _name(f"lumen.queue.{key}", number)
     limits = {"x-max-length": MOST, "x-overflow": "reject-publish", "x-dead-letter-exchange": DEAD}
     unused = {"x-expires": UNUSED} if route.lifetime else {}
     return Queue(key, name, exchange, {**limits, **_lifetime(route), **unused, "x-single-active-consumer": True})
