@@ -80,6 +80,17 @@ END_RULEBLOCK
 END_FUNCTION_BLOCK
 """
 
+JFUZZY = """/* an example: FUZZIFY nothing */
+FUNCTION_BLOCK tipper VAR_INPUT service : REAL; END_VAR VAR_OUTPUT tip : REAL; END_VAR
+FUZZIFY service TERM poor := gauss 2 1; TERM good := TRAPE 1 4 6 9; END_FUZZIFY // {'poor', 'good'}
+
+DEFUZZIFY tip TERM cheap := TRIAN 0 5 10; TERM dear := (20, 0) (30, 1) (30, 0); METHOD : COG; END_DEFUZZIFY
+RULEBLOCK No1
+  RULE 1 : IF service IS poor THEN tip IS cheap;
+  RULE 2 : IF service IS good THEN tip IS dear;
+END_RULEBLOCK END_FUNCTION_BLOCK
+"""
+
 FLL = """Engine: e
 InputVariable: a
   range: 0.000 10.000
@@ -136,6 +147,24 @@ def test_a_function_block_of_the_norm() -> None:
     assert controller.evaluate({"service": 9, "food": 3})["tip"] == 25
     assert controller.evaluate({"service": 4, "food": 9}, {"tip": 7.0})["tip"] == 7
     assert controller.evaluate({"service": 2, "food": 2})["tip"] == 5
+
+
+def test_a_function_block_as_jfuzzylogic_writes_it() -> None:
+    """Its comments, its shapes, and no RANGE: from where the first term begins to where the last one ends."""
+    data, found = said(read_fcl, JFUZZY)
+    assert found == [
+        "3:1 the range of `service` is that of its terms",
+        "5:1 the range of `tip` is that of its terms",
+    ]
+    assert (data["inputs"]["service"]["range"], data["outputs"]["tip"]["range"]) == ([-1, 9], [0, 30])
+    assert Controller.from_dict(data).evaluate({"service": 0})["tip"] == pytest.approx(5, abs=1e-3)
+
+
+def test_what_rounding_left_is_zero() -> None:
+    """MATLAB writes 1.665e-16 for a 0 that was dragged there."""
+    data, _ = said(read_fis, FIS.replace("[1.5 0]", "[1.5 1.665e-16]"))
+    assert data["inputs"]["the_service"]["terms"]["poor"] == {"gaussian": [0, 1.5]}
+    Controller.from_dict(data)
 
 
 def test_what_an_engine_can_not_bring_is_listed_at_its_words() -> None:

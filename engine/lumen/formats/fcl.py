@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 from lumen.formats.findings import Findings, broken
 from lumen.formats.fll.drafts import Draft, operators, ranged
 from lumen.formats.fll.words import SHAPES, plain
-from lumen.language.controllers import WEIGHTED
+from lumen.language.controllers import TERMS, WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.rules import Word
 
-_COMMENT = re.compile(r"\(\*|//[^\n]*")
+_COMMENT = re.compile(r"(?P<open>\(\*|/\*)|//[^\n]*")
 _OPEN = re.compile(r"(VAR_INPUT|VAR_OUTPUT|FUZZIFY|DEFUZZIFY|RULEBLOCK)\b", re.IGNORECASE)
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _POINT = re.compile(rf"\(\s*({_NUMBER})\s*,\s*({_NUMBER})\s*\)")
@@ -70,8 +70,8 @@ def _without_comments(text: str) -> str:
     parts, at = [], 0
     while match := _COMMENT.search(text, at):
         end = match.end()
-        if match[0] == "(*":
-            close = text.find("*)", end)
+        if match["open"]:
+            close = text.find("*)" if match["open"] == "(*" else "*/", end)
             end = len(text) if close < 0 else close + 2
         parts += [text[at : match.start()], re.sub(r"[^\n]", " ", text[match.start() : end])]
         at = end
@@ -178,7 +178,7 @@ class _Reader:
             self.findings.lost(place, f"`{section.name}` has no range", "write: RANGE := (0 .. 10);")
             reach = [0.0, 1.0]
         else:
-            message = f"the range of `{section.name}` is that of its terms' points"
+            message = f"the range of `{section.name}` is that of its terms"
             self.findings.changed(place, message, "write: RANGE := (0 .. 10);")
         spec["range"] = ranged(min(reach), max(reach))
 
@@ -202,7 +202,7 @@ class _Reader:
         spec.update(operators({"aggregation": said or None}, {"aggregation": "maximum"}))
 
     def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: Statement) -> list[float]:
-        """The x of its points, to know how far the variable reaches."""
+        """Where it begins and ends, to know how far the variable reaches."""
         points = [float(number) for point in _POINT.findall(said) for number in point]
         words = said.split()
         numbers = [float(word) for word in words[1:] if re.fullmatch(_NUMBER, word)]
@@ -219,7 +219,7 @@ class _Reader:
         if words[0].lower() in ("gbell", "sigm"):  # jFuzzyLogic's order
             numbers = [*numbers[-1:], *numbers[:-1]]
         self.draft.term(variable, spec, name, kind, numbers, self.at(statement))
-        return []
+        return _reach(kind, numbers)
 
     def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: Statement) -> list[float]:
         """A value for outputs; for a set it has no width."""
@@ -243,3 +243,13 @@ class _Reader:
             return self.place(begin + min(word.offset, len(match[1])), len(word.text))
 
         return self.draft.rule(match[1], self.at(statement), spot)
+
+
+def _reach(kind: str, parameters: list[float]) -> list[float]:
+    """Where a shape begins and ends, a gaussian 3 sigma from its mean; nothing for those that go on without end."""
+    match kind, parameters:
+        case "gaussian", [mean, sigma, *_]:
+            return [mean - 3 * abs(sigma), mean + 3 * abs(sigma)]
+        case (("triangle" | "trapezoid" | "rectangle" | "ramp" | "s-shape" | "z-shape" | "pi-shape"), _):
+            return parameters[: len(TERMS[kind])]
+    return []

@@ -1,43 +1,22 @@
 """An engine in FuzzyLite Language as the data of a controller file.
 
-FuzzyLite 6 to 8 (fuzzylite.com): a line is `key: value`, `#` begins a comment, and an engine is its head, then input
-variables, output variables and rule blocks.
+FuzzyLite 6 to 8 (fuzzylite.com): an engine is its head, then input variables, output variables and rule blocks.
 """
 
-from collections.abc import Iterator
 from math import inf, isfinite, nan
-from typing import Any, NamedTuple
+from typing import Any
 
 from lumen.formats.findings import Findings, broken
 from lumen.formats.fll.drafts import Draft, operators, ranged
 from lumen.formats.fll.formulas import read_formula
+from lumen.formats.fll.lines import Line, Lines, Part
 from lumen.formats.fll.words import ACTIVATED, METHODS, NORMS, SHAPES, plain
 from lumen.language.controllers import ACTIVATIONS, S_NORMS, T_NORMS, WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.rules import Word
 
-MAX_LINES = 20_000
-
-_PARTS = ("Engine", "InputVariable", "OutputVariable", "RuleBlock")
 _SIDES = {"InputVariable": "inputs", "OutputVariable": "outputs"}
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
-
-
-class Line(NamedTuple):
-    """`key: value`, and where each of them stands; `offset` is the value's first column from 0."""
-
-    key: str
-    value: str
-    row: int
-    column: int
-    offset: int
-
-
-class Part(NamedTuple):
-    """An engine's head, a variable or a block: its first line, and the others."""
-
-    head: Line
-    lines: list[Line]
 
 
 def read_fll(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
@@ -50,11 +29,11 @@ def read_fll(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
     return _Reader(file, findings).engine(text), findings.diagnostics
 
 
-class _Reader:
+class _Reader(Lines):
     """Reads one file."""
 
     def __init__(self, file: str, findings: Findings) -> None:
-        self.file, self.findings = file, findings
+        super().__init__(file, findings)
         self.draft = Draft(file, findings)
 
     def engine(self, text: str) -> dict[str, Any]:
@@ -71,46 +50,6 @@ class _Reader:
             if part.head.key == "RuleBlock":
                 self.block(part)
         return self.draft.result()
-
-    def parts(self, text: str) -> Iterator[Part]:
-        part: Part | None = None
-        for line in self.lines(text):
-            if line.key in _PARTS:
-                if part:
-                    yield part
-                part = Part(line, [])
-            elif part:
-                part.lines.append(line)
-            else:
-                self.lost(line, f"`{line.key}` stands before the engine")
-        if part:
-            yield part
-
-    def lines(self, text: str) -> Iterator[Line]:
-        rows = text.splitlines()
-        if len(rows) > MAX_LINES:
-            raise broken(Place(self.file), "too-large", f"the file has more than {MAX_LINES:,} lines", "split it")
-        for row, source in enumerate(rows, 1):
-            said = source.partition("#")[0].rstrip()
-            if not said.strip():
-                continue
-            column = len(said) - len(said.lstrip())
-            key, colon, value = said.partition(":")
-            offset = len(key) + 1 + len(value) - len(value.lstrip())
-            line = Line(key.strip(), value.strip(), row, column, offset)
-            if colon:
-                yield line
-            else:
-                self.lost(line, "this line can't be read: `key: value` should stand here")
-
-    def place(self, line: Line, offset: int | None = None, length: int | None = None) -> Place:
-        """Of the line's value, or of a part of it."""
-        begin = line.offset + 1 + (offset or 0) if line.value else line.column + 1
-        width = length or max(len(line.value) - (offset or 0), 1) if line.value else max(len(line.key), 1)
-        return Place(self.file, line.row, begin, line.row, begin + width)
-
-    def lost(self, line: Line, message: str, hint: str = "") -> None:
-        self.findings.lost(self.place(line), message, hint)
 
     def head(self, part: Part) -> None:
         for line in part.lines:

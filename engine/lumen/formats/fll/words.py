@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from math import inf
 
 from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, S_NORMS, T_NORMS, TERMS
+from lumen.loading.numbers import LEAST
 
 
 def _camel(word: str) -> str:
@@ -30,5 +31,7 @@ def written(value: float) -> str:
 
 
 def plain(value: float) -> int | float:
-    """A number as the YAML says it: whole ones without a point."""
+    """A number as the YAML says it: whole ones without a point, and 0 for what rounding left of it."""
+    if abs(value) < LEAST:
+        return 0
     return int(value) if abs(value) < 1e15 and value == int(value) else value
