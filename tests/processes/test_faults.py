@@ -10,11 +10,14 @@ from pathlib import Path
 
 import pytest
 
+import lumen
+from lumen.bus import connect
 from lumen.language.commands import Rest
 from lumen.ports import Perform
 from lumen.runtime.keeping import SNAPSHOT
 from tests.processes.troupe import SPEED, Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ
+from tests.waiting import Collector, until
 
 pytestmark = pytest.mark.xdist_group("rabbitmq")
 
@@ -63,6 +66,43 @@ def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_betwe
     assert "this one goes on from there, in dance" in said
     assert again.returncode == 0
     assert "Traceback" not in said
+
+
+DYING = """
+import os, signal, sys
+from lumen.buses.consuming import Consuming
+from lumen.cli.main import main
+from lumen.robots.recording import RecordingRobot
+perform = RecordingRobot.start
+def die(robot, id, command):
+    perform(robot, id, command)
+    os.kill(os.getpid(), signal.SIGKILL)
+RecordingRobot.start = die
+Consuming._acknowledge = lambda *_: None  # the broker never hears that it was handled
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_a_robot_that_is_killed_between_performing_and_saying_so_performs_once(
+    copy: Path, broker: RabbitMQ, start: Start
+) -> None:
+    reports, bus = Collector(), connect(broker.url, lumen.load(copy))
+    bus.subscribe("avatar.NAO.event.command", reports)
+    line = ["run", str(copy), "--robot", "recording", "--bus", broker.url, "--only", "robot"]
+    dying = subprocess.Popen([sys.executable, "-c", DYING, *line], stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+
+    def send() -> None:
+        """As a brain does that hears nothing: again and again, under one id."""
+        bus.publish("avatar.NAO.command", {"id": "once", "type": "motion", "method": "dance"})
+
+    until(lambda: send() or dying.poll() is not None, 60.0)
+    assert dying.returncode == -signal.SIGKILL
+    start("robot", speed="1")
+    states = lambda: [body["state"] for body in reports.bodies]  # noqa: E731
+    until(lambda: send() or states().count("failed") > 1, 60.0)
+    assert set(states()) <= {"accepted", "failed"}
+    assert states().count("accepted") <= 1
+    bus.close()
 
 
 def test_ctrl_c_ends_each_process_cleanly_and_who_waits_says_for_whom(start: Start) -> None:

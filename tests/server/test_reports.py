@@ -1,5 +1,6 @@
 """Commands with an id of their own: reported on, performed once, asked after, called off, overtaken."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -8,6 +9,7 @@ from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.language.commands import Look, Say, Wake
 from lumen.ports import Perform
+from lumen.robots.ledger import Ledger
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import Host
 from tests.exhibits import BODY, messages, project
@@ -192,3 +194,38 @@ def test_many_ids_are_remembered_and_not_all(desk: Desk) -> None:
     known = desk.host.server._orders._reports._known
     assert len(known) == 1_000
     assert "n1199" in known
+
+
+def test_a_robot_that_was_restarted_does_nothing_twice_but_rest(tmp_path: Path) -> None:
+    ends = []
+    for _ in range(2):
+        desk = Desk()
+        desk.host.server.recall(Ledger(tmp_path / "home" / "commands"))
+        desk.order("a", "goodbye")
+        desk.live(0.1)
+        desk.order("b", "rest")
+        desk.live(3.0)
+        ends.append((desk.states("a")[-1], desk.states("b")[-1]))
+        desk.host.close()
+    assert ends == [("cancelled", "finished"), ("failed", "finished")]
+    assert desk.reports.bodies[0]["reason"] == "the robot was restarted since it began that"
+
+
+def test_a_ledger_keeps_the_newest_and_a_line_that_was_cut_short_harms_nobody(tmp_path: Path) -> None:
+    file = tmp_path / "commands"
+    ledger = Ledger(file)
+    for i in range(2_500):
+        ledger.note(f"n\n{i}")
+    assert len(file.read_bytes().splitlines()) <= 2_000
+    with file.open("ab") as end:
+        end.write(b'"n\xff')
+    assert Ledger(file).before[-1] == "n\n2499"
+    assert len(Ledger(file).before) >= 999
+
+
+def test_a_disk_that_takes_nothing_is_told_of_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    (tmp_path / "home").write_text("a file, and no folder")
+    ledger = Ledger(tmp_path / "home" / "commands")
+    for id in ("a", "b"):
+        ledger.note(id)
+    assert [record.getMessage().count("can't be kept in") for record in caplog.records] == [1]

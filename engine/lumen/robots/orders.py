@@ -16,6 +16,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Joints, Message, Perform, Robot, RobotCommand, Sense
 from lumen.robots.dialect import command_from, method_of, own_id, stops, stops_all
+from lumen.robots.ledger import Ledger
 from lumen.robots.reports import CANCELLED, FAILED, FINISHED, UNKNOWN, Errand, Reports
 from lumen.robots.ways import AIM, COMMAND, KEYS, REPORT, STOP, key_of, tell
 
@@ -26,6 +27,7 @@ FRESH = 0.5
 """How old an aim may be [s]: there is a newer one by then."""
 AT_ONCE = 100
 ENDED = "the robot takes no more commands"
+RESTARTED = "the robot was restarted since it began that"
 ASKING = ("cancel", "outcome")
 
 _log = logging.getLogger(__name__)
@@ -64,9 +66,19 @@ class Orders:
         self._reports = Reports(self._tell, self._reply)
         self._numbers = count(1)
         self._language = ""
+        self._ledger = Ledger()
         self._undo: dict[str, tuple[str, Callable[[], None]]] = {}
         for route in (COMMAND, STOP, AIM):
             self._undo[route] = self._listen(route)
+
+    def recall(self, ledger: Ledger) -> None:
+        """Note what is begun from now on; what the process before began has failed, and is not begun again.
+
+        What rests or stops the robot is not noted: that may be done twice.
+        """
+        self._ledger = ledger
+        for id in ledger.before:
+            self._reports.remember(Errand(Message("", None), id, state=FAILED, reason=RESTARTED))
 
     def begin(self) -> None:
         """Start what has come, and tell of what the robot has begun.
@@ -215,6 +227,8 @@ class Orders:
             command = replace(command, language=self._language)
         if self._reports.running >= AT_ONCE and not isinstance(command, Rest | Stop):
             raise RobotError(f"{AT_ONCE} commands are waiting already")
+        if errand.id and not isinstance(command, Rest | Stop):
+            self._ledger.note(errand.id)
         if isinstance(command, Aim):
             self._robot.start(self._number(), command)
             self._reports.change(errand, FINISHED)

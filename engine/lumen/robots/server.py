@@ -16,6 +16,7 @@ from lumen.language.routes import Route
 from lumen.ports import Bus, Image, Robot, RobotCommand, Sense
 from lumen.robots.bodies import body_of, image_body
 from lumen.robots.broadcast import Broadcast, Count, Handed
+from lumen.robots.ledger import Ledger
 from lumen.robots.orders import Orders
 from lumen.robots.ways import NOTICED, RECORDING, TEXT, tell
 
@@ -62,6 +63,10 @@ class Server:
         self._listen(project)
         self._orders = Orders(project, robot, bus, clock, self._given)
         self._closed = False
+
+    def recall(self, ledger: Ledger) -> None:
+        """Perform nothing that the process before had begun, and note what is begun from now on."""
+        self._orders.recall(ledger)
 
     @property
     def counts(self) -> Mapping[str, Count]:

@@ -1,0 +1,65 @@
+"""Which commands a robot has begun, for the process that takes over from one that was killed."""
+
+import json
+import logging
+import os
+from collections import deque
+from contextlib import suppress
+from pathlib import Path
+
+REMEMBERED = 1_000
+"""How many ids are kept."""
+
+_log = logging.getLogger(__name__)
+
+
+class Ledger:
+    """The ids of commands in a file, one to a line, each written before its command is begun; without a file none.
+
+    `before` are those of the process before, the oldest first. The system has what is written, so that a process that
+    is killed loses nothing; a disk that takes nothing is told of once, and the robot obeys all the same.
+    """
+
+    def __init__(self, file: Path | None = None) -> None:
+        self._file, self._lines, self._told = file, 0, False
+        self.before = tuple(self._read())
+
+    def note(self, id: str) -> None:
+        """This command is begun now."""
+        if self._file is None:
+            return
+        if self._lines >= 2 * REMEMBERED:
+            self._shorten()
+        self._write(json.dumps(id) + "\n", os.O_APPEND)
+        self._lines += 1
+
+    def _read(self) -> list[str]:
+        """The ids that are there; a line that was cut short is none."""
+        found: deque[str] = deque(maxlen=REMEMBERED)
+        if self._file is not None:
+            with suppress(OSError), self._file.open(encoding="utf-8", errors="replace") as lines:
+                for line in lines:
+                    self._lines += 1
+                    with suppress(ValueError):
+                        found.append(str(json.loads(line)))
+        return list(found)
+
+    def _shorten(self) -> None:
+        self._lines = 0
+        kept = self._read()
+        self._write("".join(json.dumps(id) + "\n" for id in kept), os.O_TRUNC)
+        self._lines = len(kept)
+
+    def _write(self, text: str, how: int) -> None:
+        assert self._file is not None
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            file = os.open(self._file, os.O_WRONLY | os.O_CREAT | how, 0o600)
+            try:
+                os.write(file, text.encode())
+            finally:
+                os.close(file)
+        except OSError as error:
+            if not self._told:
+                self._told = True
+                _log.warning("which commands were begun can't be kept in %s: %s", self._file, error.strerror)
