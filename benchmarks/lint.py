@@ -2,24 +2,29 @@
 
 Cold is a process of its own, by CPU time, run in turn with `python -c "import yaml, jsonschema"` on the same machine;
 medians. Grown projects have so many behaviours and motions beside the shipped ones. Warm is what `--watch` and an
-editor pay: one file of the project has changed, everything else is remembered.
+editor pay: one value of the project has changed, in a file of each kind, and everything else is remembered. Last comes
+`lumen lint --watch` itself, from the file's replacement to the line that says it waits again. With --mutants N follows
+what lint says of mutants with one mistake: how many findings each gets.
 
-    python benchmarks/lint.py
+    python benchmarks/lint.py [--mutants 2000]
 """
 
-import json
+import gc
 import os
 import platform
+import re
 import resource
+import shutil
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from lumen.loading.files import read_files
+from lumen.loading.files import FOLDERS, read_files
+from lumen.loading.packaged import MAIN_FILE
 from lumen.rules import check_files
 
 ROOT = Path(__file__).parents[1]
@@ -34,6 +39,20 @@ states:
     onDone: idle
     onError: idle
 """
+TURNS = 10
+EDITS = (
+    ("behaviors/tour.yaml", "I am glad", "%d"),
+    ("behaviors/tour.yaml", "after: {", "4%ds"),
+    ("behaviors/stories/silence.yaml", "wait: ", "11.%ds"),
+    ("motions/dance.yaml", "tempo: 13", "%d"),
+    ("motions/goodbye.yaml", "at: 3.2", "%ds"),
+    ("models/passages/sit-straddle.yaml", "at: 2", ".%ds"),
+    ("models/nao.yaml", "speed: 24.6", "%d"),
+    ("fuzzy/head.yaml", "resolution: ", "100%d1"),
+    ("lumen.yaml", "patience: ", "5%ds"),
+    ("schemas/messages/face.recognition.schema.json", "Whose face it is", "%d"),
+)
+"""A value in a file of each kind: what stands before it, and what it is the n-th time."""
 MOTION = """units: {angle: deg}
 start: Stand
 keyframes:
@@ -55,10 +74,17 @@ def main() -> int:
         files = grown(count)
         took = timed(lambda files=files: check_files(ROOT, files))  # type: ignore[misc]
         print(f"  {len(files):5,} files   {took:6.3f} s   {1e3 * took / len(files):.2f} ms a file")
-    print("\nwarm, one file changed, wall time, median and worst of 20:")
-    took = sorted(warm())
-    print(f"  {1e3 * statistics.median(took):.0f} ms, {1e3 * took[-1]:.0f} ms")
+    print(f"\nwarm, one value changed, CPU time, median and worst of {TURNS}:")
+    for file, before, value in EDITS:
+        print(f"  {file:46s} {before:17s} {shown(warm(file, before, value))}")
+    print("\nlumen lint --watch, from saved to said, wall time, median and worst of them all:")
+    print(f"  {shown(watched())}")
     return 0
+
+
+def shown(took: list[float]) -> str:
+    """Median and worst."""
+    return f"{1e3 * statistics.median(took):4.0f} ms {1e3 * max(took):4.0f} ms"
 
 
 def cold() -> tuple[float, float]:
@@ -94,18 +120,62 @@ def timed(work: Callable[[], object]) -> float:
     return time.process_time() - began
 
 
-def warm() -> list[float]:
-    """The times of checks in which only a text of the tour is another than before [s]."""
-    files = read_files(ROOT)
+def warm(file: str, before: str, value: str) -> list[float]:
+    """The times of checks in which a value is another one each time [s of CPU]; garbage is looked for in between."""
+    files, took = read_files(ROOT), []
     check_files(ROOT, files)
-    took = []
-    for n in range(20):
-        changed = files["behaviors/tour.yaml"].replace(b"I am glad to hear that.", b"I am glad to hear that %d." % n)
-        began = time.perf_counter()
-        _, found = check_files(ROOT, {**files, "behaviors/tour.yaml": changed})
-        took.append(time.perf_counter() - began)
-        assert not found, json.dumps([str(d) for d in found])
+    for n in range(TURNS):
+        changed = edited(files[file], before, value, n)
+        gc.collect()
+        gc.disable()
+        took.append(timed(lambda changed=changed: check_files(ROOT, {**files, file: changed})))  # type: ignore[misc]
+        gc.enable()
     return took
+
+
+def watched() -> list[float]:
+    """How long `lumen lint --watch` takes to answer the same edits [s]."""
+    with tempfile.TemporaryDirectory() as name:
+        root = Path(name)
+        shutil.copy(ROOT / MAIN_FILE, root)
+        for folder in FOLDERS:
+            shutil.copytree(ROOT / folder, root / folder)
+        command = [sys.executable, "-m", "lumen", "lint", "--watch", "--format", "concise", name]
+        environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
+            assert process.stdout
+            try:
+                answered(process.stdout)
+                time.sleep(1)  # until it watches
+                return [saved(root, *edit, n, process.stdout) for n in range(3) for edit in EDITS]
+            finally:
+                process.terminate()
+
+
+def saved(root: Path, file: str, before: str, value: str, n: int, said: Iterable[str]) -> float:
+    """How long an edit takes from the file's replacement to its answer [s]."""
+    (root / ".new").write_bytes(edited((root / file).read_bytes(), before, value, n))
+    time.sleep(0.3)  # as people pause: what they saved before has been dealt with
+    began = time.perf_counter()
+    (root / ".new").replace(root / file)
+    answered(said)
+    return time.perf_counter() - began
+
+
+def answered(said: Iterable[str]) -> None:
+    """Returns when it waits for the next change."""
+    for line in said:
+        if "waiting for the next change" in line:
+            return
+    raise SystemExit("lumen lint --watch ended")
+
+
+def edited(content: bytes, before: str, value: str, n: int) -> bytes:
+    """The file with the n-th value behind the text `before`."""
+    text, count = re.subn(f"({re.escape(before)})[\\w.]*", rf"\g<1>{value % n}", content.decode(), count=1)
+    assert count, before
+    assert text.encode() != content, f"{before} is that already"
+    return text.encode()
 
 
 if __name__ == "__main__":

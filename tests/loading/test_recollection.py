@@ -1,15 +1,17 @@
 """What was worked out before is taken again for the same content only."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from lumen.loading import recollection
+from lumen.loading import motions, reading, recollection
 from lumen.loading.files import read_files
 from lumen.loading.recollection import again
 from lumen.rules import check_files
 
 BASE = read_files(Path(__file__).parents[1] / "lint/base")
+NOD = b"keyframes: [{at: 1s, joints: {HeadPitch: 0.1}}, {at: 2s, joints: {HeadPitch: 0}}]\n"
 TURNS = {
     "motions/wave.yaml": (b"at: 1s", b"at: 600ms"),
     "models/tiny.yaml": (b"speed: 800", b"speed: 80"),
@@ -26,7 +28,6 @@ def test_equal_input_is_answered_from_memory_and_other_input_anew() -> None:
         return len(made)
 
     assert [again("slot", given, make) for given in ("a", "a", "b", "b", "a")] == [1, 1, 2, 2, 3]
-    assert [again("worthless", "a", make, worth=lambda _: False) for _ in range(2)] == [4, 5]
 
 
 def test_memory_does_not_grow_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -48,3 +49,37 @@ def test_lint_says_the_same_with_and_without_memory(file: str, monkeypatch: pyte
         assert check_files(Path(), files)[1] == found
     assert remembered[1]
     assert not remembered[3]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "motions_built"),
+    [
+        ("behaviors/stories/hello.yaml", b"title: ", b"title: Oh, ", []),
+        ("behaviors/tour.yaml", b"onError: idle", b"onError: idel", []),
+        ("motions/wave.yaml", b"at: 1s", b"at: 600ms", ["wave", "waves"]),
+        ("models/tiny.yaml", b"speed: 800", b"speed: 801", ["nod", "wave", "waves"]),
+        ("models/tiny.yaml", b"units", b"# its body\nunits", []),
+    ],
+)
+def test_only_what_a_change_touches_is_read_again(
+    file: str, old: bytes, new: bytes, motions_built: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    files = {**BASE, "motions/waves.yaml": b"keyframes: [{play: wave}]\n", "motions/nod.yaml": NOD}
+    assert old in files[file]
+    check_files(Path(), files)
+    read, built = list[str](), list[str]()
+    reader, builder = reading._read, motions.build_motion
+
+    def reads(file: str, *given: Any) -> Any:
+        read.append(file)
+        return reader(file, *given)
+
+    def builds(*given: Any, name: str, **more: Any) -> Any:
+        built.append(name)
+        return builder(*given, name=name, **more)
+
+    monkeypatch.setattr(reading, "_read", reads)
+    monkeypatch.setattr(motions, "build_motion", builds)
+    check_files(Path(), {**files, file: files[file].replace(old, new, 1)})
+    assert read == [file]
+    assert sorted(built) == motions_built

@@ -10,6 +10,7 @@ from lumen.cli.findings import Findings
 from lumen.cli.lint import show, verdict
 from lumen.cli.linting import Asked, Judge
 from lumen.cli.render import render
+from lumen.cli.sweeping import Sweeper, unswept
 from lumen.cli.terminal import coloured, paint
 from lumen.runtime.watcher import Saved, Watcher
 
@@ -30,13 +31,17 @@ def watch(projects: Sequence[Asked], judge: Judge, format: str, ended: Callable[
             watcher.start()
         try:
             _draw(found, format)
+            sweeper = Sweeper()
+            stack.callback(sweeper.close)
             while not ended():
                 latest = dict([changes.get()])
                 while not changes.empty():
                     latest.update([changes.get()])
-                for i, saved in latest.items():
-                    found[i] = judge(projects[i], saved.files)
-                _draw(found, format, time.monotonic() - min(saved.seen for saved in latest.values()))
+                with unswept():
+                    for i, saved in latest.items():
+                        found[i] = judge(projects[i], saved.files)
+                    _draw(found, format, time.monotonic() - min(saved.seen for saved in latest.values()))
+                sweeper()
         except KeyboardInterrupt:
             if sys.stdout.isatty():
                 print()

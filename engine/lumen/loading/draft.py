@@ -1,6 +1,6 @@
 """What has become of a project's files so far."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -56,10 +56,6 @@ class Draft:
         """Everything found so far, each cause once, by file and line."""
         found = [d for r in self.reports.values() for d in r.diagnostics if not r.follows(d.code, d.message)]
         return gathered([*found, *self.loose])
-
-    def contents(self, *beginnings: str) -> Iterator[tuple[str, bytes]]:
-        """The files whose paths begin so."""
-        return ((file, content) for file, content in self.files.items() if file.startswith(beginnings))
 
     def report(self, folder: str, name: str) -> Report:
         """The report of `FOLDER/NAME.yaml`."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import fields
+from functools import partial
 from graphlib import CycleError, TopologicalSorter
 from typing import Any, TypeVar
 
@@ -11,6 +12,7 @@ from lumen.language.motions import Interpolation, Motion
 from lumen.language.robots import Body
 from lumen.loading.keyframes import KeyframeReader
 from lumen.loading.poses import PoseReader
+from lumen.loading.reading import unless_too_deep
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES, seconds
 
@@ -70,7 +72,9 @@ def build_motions(files: Mapping[str, tuple[Any, Report]], body: Body, *, into: 
     built: dict[str, M] = {}
     for name in order:
         data, report = files[name]
-        motion = build_motion(data, report, name=name, body=body, motions=built, broken=files.keys(), into=into)
+        given = (into, body, {played: (built.get(played), played in files) for played in plays[name]})
+        build = partial(build_motion, data, report, name=name, body=body, motions=built, broken=files.keys(), into=into)
+        motion = report.again(("motion", report.document.file), given, partial(unless_too_deep, report, build))
         if motion is not None:
             built[name] = motion
     return {name: built[name] for name in files if name in built}

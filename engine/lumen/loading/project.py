@@ -1,6 +1,6 @@
 """A whole project: all its files built into a `Draft`, and that into a `Project` where nothing is wrong."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any, TypeVar
@@ -18,10 +18,9 @@ from lumen.loading.linking import link
 from lumen.loading.messages import ENDING, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
-from lumen.loading.recollection import again
-from lumen.loading.schema import check_schema
+from lumen.loading.reading import Build, File, read_file
 from lumen.loading.settings import build_settings
-from lumen.loading.source import Report, parse
+from lumen.loading.source import Report
 from lumen.loading.stories import build_story
 
 __all__ = ["FOLDERS", "MAIN_FILE", "Draft", "assemble", "draft", "read_files"]
@@ -41,21 +40,19 @@ _KINDS: Mapping[str, str] = {
 def draft(files: Mapping[str, bytes]) -> Draft:
     """Everything that can be built from these files; it depends on nothing else and never raises for what they say."""
     found = Draft(files)
-    sources = {folder: dict(_sources(found, folder)) for folder in _KINDS}
     if (content := files.get(MAIN_FILE)) is None:
         found.say("missing-file", MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
-    elif (main := _read(found, MAIN_FILE, content, "lumen")) is not None:
-        found.settings = _built(main[1], lambda: build_settings(*main))
-    found.bodies = build_likes(_each(sources["models"], build_body), sources["models"])
-    found.behaviors = _each(sources["behaviors"], lambda *a, name: build_machine(*a, name=name, into=Machine))
-    found.behaviors = link(
-        found.behaviors, {n: found.report("behaviors", n) for n in found.behaviors}, found.names["behaviors"]
-    )
-    found.stories = _each(sources["behaviors/stories"], build_story)
-    found.controllers = _each(sources["fuzzy"], build_controller)
-    passages = _motions(found, "models/passages", sources)
+    elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
+        found.settings = main.built
+    models, behaviors = _each(found, "models", build_body), _each(found, "behaviors", _machine)
+    found.bodies = build_likes(_built(models), {name: (file.data, file.report) for name, file in models.items()})
+    reports = {name: file.report for name, file in behaviors.items()}
+    found.behaviors = link(_built(behaviors), reports, found.names["behaviors"])
+    found.stories = _built(_each(found, "behaviors/stories", build_story))
+    found.controllers = _built(_each(found, "fuzzy", build_controller))
+    passages = _motions(found, "models/passages")
+    found.motions = _motions(found, "motions")
     found.bodies = {name: replace(body, passages=tuple(passages.values())) for name, body in found.bodies.items()}
-    found.motions = _motions(found, "motions", sources)
     _messages(found)
     torn = {d.place.file for d in found.loose if d.severity is Severity.ERROR}
     for file, report in found.reports.items():
@@ -92,9 +89,9 @@ def assemble(found: Draft, root: str) -> Project:
     )
 
 
-def _sources(found: Draft, folder: str) -> Iterator[tuple[str, tuple[Any, Report]]]:
-    """The data and report of each document of a folder, by name."""
-    names = set()
+def _each(found: Draft, folder: str, build: Build[T]) -> dict[str, File[T]]:
+    """What the documents of a folder hold, by name."""
+    names, read = set(), dict[str, File[T]]()
     for file, content in found.files.items():
         path = PurePosixPath(file)
         if str(path.parent) != folder or path.suffix not in (".yaml", ".yml"):
@@ -104,60 +101,44 @@ def _sources(found: Draft, folder: str) -> Iterator[tuple[str, tuple[Any, Report
             found.say("not-read", file, "files that end in .yml are not read", hint, Severity.WARNING)
             continue
         names.add(path.stem)
-        if (read := _read(found, file, content, _KINDS[folder])) is not None:
-            yield path.stem, read
+        if (each := _read(found, file, content, _KINDS[folder], build)) is not None:
+            read[path.stem] = each
     found.names[folder] = frozenset(names)
+    return read
 
 
-def _read(found: Draft, file: str, content: bytes, kind: str) -> tuple[Any, Report] | None:
-    """The checked data of one document and its report, None where it can't be read at all."""
+def _built(files: Mapping[str, File[T]]) -> dict[str, T]:
+    """What was built of these files; one that holds too little for that is left out."""
+    return {name: file.built for name, file in files.items() if file.built is not None}
+
+
+def _read(found: Draft, file: str, content: bytes, kind: str, build: Build[T]) -> File[T] | None:
+    """What one document holds, None where it can't be read at all."""
     if isinstance(content, Unreadable):
         hint = "put a readable file there, or delete it"
         found.say("unreadable-file", file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)
         return None
-    document, diagnostics = again(("parse", file), content, lambda: parse(file, content))
+    read, diagnostics = read_file(file, content, kind, build)
     found.loose += diagnostics
-    if document is None:
-        return None
-    report = found.reports[file] = Report(document)
-    return check_schema(document, kind, report), report
+    if read is not None:
+        found.reports[file] = read.report
+    return read
 
 
-def _each(sources: Mapping[str, tuple[Any, Report]], build: Callable[..., T | None]) -> dict[str, T]:
-    built: dict[str, T] = {}
-    for name, (data, report) in sources.items():
-        item = _built(report, lambda d=data, r=report, n=name: build(d, r, name=n))  # type: ignore[misc]
-        if item is not None:
-            built[name] = item
-    return built
+def _machine(data: Any, report: Report, *, name: str) -> Machine | None:
+    return build_machine(data, report, name=name, into=Machine)
 
 
-def _motions(found: Draft, folder: str, folders: Mapping[str, Mapping[str, tuple[Any, Report]]]) -> dict[str, Motion]:
+def _motions(found: Draft, folder: str) -> dict[str, Motion]:
     """The motions of a folder, which can be read only where the robot's body is known."""
-    sources = folders[folder]
+    files: Mapping[str, File[None]] = _each(found, folder, lambda data, report, name: None)
     only = next(iter(found.bodies)) if found.settings is None and len(found.bodies) == 1 else ""
     model = found.settings.model if found.settings else only
-    reports = [report for _, report in sources.values()]
-    if model not in found.bodies or not reports:
+    if model not in found.bodies:
         return {}
-    for report in reports:
-        report.lost |= found.report("models", model).lost
-    given = tuple(found.contents(folder, "models", MAIN_FILE))
-    return again(
-        (folder,),
-        given,
-        lambda: _built(reports[0], lambda: build_motions(sources, found.bodies[model])) or {},
-        worth=lambda _: not any(report.diagnostics for report in reports),
-    )
-
-
-def _built(report: Report, build: Callable[[], T | None]) -> T | None:
-    """What `build` makes; a file may nest more deeply than Python can follow."""
-    try:
-        return build()
-    except RecursionError:
-        report("too-large", (), "the file is nested too deeply to be read", hint="use fewer levels")
-        return None
+    for file in files.values():
+        file.report.lost |= found.report("models", model).lost
+    return build_motions({name: (file.data, file.report) for name, file in files.items()}, found.bodies[model])
 
 
 def _messages(found: Draft) -> None:

@@ -8,22 +8,21 @@ from typing import Any, TypeVar
 
 T = TypeVar("T")
 
-MAX_SLOTS = 5_000
+MAX_SLOTS = 10_000
 
 _last: dict[Hashable, tuple[Any, Any]] = {}
 
 
-def again(slot: Hashable, given: Hashable, make: Callable[[], T], *, worth: Callable[[T], bool] = lambda _: True) -> T:
+def again(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
     """What `make` made in this slot when last given an equal `given`, else what it makes now.
 
-    `given` is all that the result depends on. What is not `worth` it is made anew each time.
+    `given` is all that the result depends on.
     """
     known = _last.get(slot)
     if known is not None and known[0] == given:
         return known[1]  # type: ignore[no-any-return]
     made = make()
-    if worth(made):
-        if len(_last) >= MAX_SLOTS:
-            _last.clear()
-        _last[slot] = given, made
+    if len(_last) >= MAX_SLOTS:
+        _last.clear()
+    _last[slot] = given, made
     return made

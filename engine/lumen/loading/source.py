@@ -6,20 +6,20 @@ at the author's text by the path of the node.
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
 from math import inf, nan
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import yaml
 
 from lumen.language.diagnostics import Diagnostic, Path, Place, Related, Severity
+from lumen.loading.recollection import again
+
+T = TypeVar("T")
 
 MAX_DEPTH = 100
 MAX_NODES = 200_000
-REMEMBERED = 100_000
-"""Bytes of a file above which it is read every time."""
 
 _NULL = frozenset(("", "~", "null", "Null", "NULL"))
 _BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
@@ -122,6 +122,25 @@ class Report:
             others = tuple(Related(self.document.place(where, key=True), what) for where, what in related)
             self.diagnostics.append(Diagnostic(code, message, place, hint, severity, others, cause, root))
 
+    def copy(self) -> "Report":
+        """Another report that says the same, and to which more can be said."""
+        other = Report(self.document)
+        other.take(self)
+        return other
+
+    def take(self, other: "Report") -> None:
+        """Say what the other says, and nothing else."""
+        self.document = other.document
+        self.diagnostics = [*other.diagnostics]
+        self.pruned, self.lost, self.missed = {*other.pruned}, {*other.lost}, {*other.missed}
+
+    def again(self, slot: Hashable, given: Any, make: Callable[[], T]) -> T:
+        """What `make` made and said here when last given the same of the same file, else what it makes and says now."""
+        before = (self.document.text, [*self.diagnostics], {*self.pruned}, {*self.lost}, {*self.missed})
+        made, after = again(slot, (before, given), lambda: (make(), self.copy()))
+        self.take(after)
+        return made
+
     def broken(self, path: Path) -> bool:
         """Whether the node at `path`, one above it or one in it, was pruned."""
         return any(lost[: len(path)] == path[: len(lost)] for lost in self.pruned)
@@ -135,18 +154,10 @@ class Report:
 def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
     """The document in `content`, or None, and what is wrong with it; never raises for what the file holds.
 
-    It depends on nothing else, so that a file of ordinary size that did not change is not read again.
+    It depends on nothing else, so that a file that did not change is not read again.
     """
-    document, found = (_remembered if len(content) <= REMEMBERED else _parsed)(file, content)
-    return document, list(found)
-
-
-def _parsed(file: str, content: bytes) -> tuple[Document | None, tuple[Diagnostic, ...]]:
-    document, found = _read(file, content)
-    return document, tuple(found)
-
-
-_remembered = lru_cache(maxsize=2_000)(_parsed)
+    document, found = again(("parse", file), content, lambda: _read(file, content))
+    return document, [*found]
 
 
 def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:

@@ -1,5 +1,6 @@
 """Motions: what they ask of the robot's joints on the way from key to key."""
 
+from dataclasses import replace
 from functools import partial
 from math import ceil
 
@@ -8,7 +9,6 @@ from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
 from lumen.loading.draft import Draft
-from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.recollection import again
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES
@@ -22,14 +22,14 @@ def check(draft: Draft) -> None:
     """Report where a joint would be too fast, or beyond its limits between two keys or beside another joint."""
     if draft.body is None:
         return
-    given = tuple(draft.contents("motions", "models", MAIN_FILE))
+    body = replace(draft.body, passages=())
     motions = [("motions", motion) for motion in draft.motions.values()]
     for folder, motion in [*motions, *((PASSAGES, passage) for passage in draft.body.passages)]:
         report = draft.report(folder, motion.name)
         if report.diagnostics:
             continue
         unit = value_at(report, ("units", "angle")) or "rad"
-        fast, far = again(("excess", folder, motion.name), given, partial(_excesses, motion, draft.body))
+        fast, far = again(("excess", folder, motion.name), (motion, body), partial(_excesses, motion, body))
         for excess in fast:
             _too_fast(report, excess, unit, draft.body)
         for excess in far:

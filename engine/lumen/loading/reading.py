@@ -1,0 +1,54 @@
+"""One file of a project, from its bytes to what is built of it: done once while it stays as it is."""
+
+from collections.abc import Callable
+from pathlib import PurePosixPath
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+
+from lumen.language.diagnostics import Diagnostic
+from lumen.loading.recollection import again
+from lumen.loading.schema import check_schema
+from lumen.loading.source import Report, parse
+
+T = TypeVar("T")
+B = TypeVar("B", covariant=True)
+
+
+class Build(Protocol[B]):
+    """Makes something of a document's checked data; what is wrong with it is reported."""
+
+    def __call__(self, data: Any, report: Report, *, name: str) -> B | None: ...
+
+
+class File(NamedTuple, Generic[T]):
+    """A document's checked data, its report, and what was built of it, None where it holds too little for that."""
+
+    data: Any
+    report: Report
+    built: T | None
+
+
+def read_file(file: str, content: bytes, kind: str, build: Build[T]) -> tuple[File[T] | None, list[Diagnostic]]:
+    """What a file holds, None where it can't be read at all, and what is wrong with its text.
+
+    Its report is the caller's own, to which more may be said; all else is shared with whoever reads the same.
+    """
+    read, found = again(("file", file), content, lambda: _read(file, content, kind, build))
+    return read and read._replace(report=read.report.copy()), found
+
+
+def _read(file: str, content: bytes, kind: str, build: Build[T]) -> tuple[File[T] | None, list[Diagnostic]]:
+    document, found = parse(file, content)
+    if document is None:
+        return None, found
+    report, name = Report(document), PurePosixPath(file).stem
+    data = check_schema(document, kind, report)
+    return File(data, report, unless_too_deep(report, lambda: build(data, report, name=name))), found
+
+
+def unless_too_deep(report: Report, build: Callable[[], T | None]) -> T | None:
+    """What `build` makes; a file may nest more deeply than Python can follow."""
+    try:
+        return build()
+    except RecursionError:
+        report("too-large", (), "the file is nested too deeply to be read", hint="use fewer levels")
+        return None
