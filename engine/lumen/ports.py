@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.events import Event
 from lumen.language.motions import Motion
-from lumen.language.routes import Route
+from lumen.language.routes import Route, Size
 from lumen.language.stories import Visitor
 
 
@@ -26,12 +26,22 @@ class Sense(StrEnum):
     BATTERY = "battery"
 
 
+class Pixels(Protocol):
+    """Renders or fetches a frame: Shape (height, width, 3), uint8 RGB.
+
+    `size` [px] is that of the images wanted now, None for the camera's own. A robot that can't give it for a frame that
+    is taken already gives that frame as it is, and the next ones in that size.
+    """
+
+    def __call__(self, size: Size | None = None) -> "NDArray[np.uint8]": ...
+
+
 @dataclass(frozen=True, slots=True)
 class Image:
-    """A frame that is rendered or fetched only when `pixels` is called: Shape (height, width, 3), uint8 RGB."""
+    """A frame that is made only when `pixels` is called."""
 
     time: float
-    pixels: "Callable[[], NDArray[np.uint8]]"
+    pixels: Pixels
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,8 +239,8 @@ class Bus(Protocol):
     def prepare(self, routes: Mapping[str, Route]) -> None:
         """Make ready for `carry` and for subscribing to the routes that come in, so that neither has to wait then.
 
-        This may wait for the network: it is for a thread that nobody waits for. Raises BusError where the broker
-        refuses one of the routes.
+        This may wait for the network: it is for a thread that nobody waits for. From then on subscribing waits for
+        nothing. Raises BusError where the broker refuses one of the routes.
         """
         ...
 

@@ -14,6 +14,7 @@ from lumen.cli.reloading.reloading import Reloading
 from lumen.cli.show import Show
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
+from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.home import Home
@@ -26,9 +27,18 @@ QUIET = 0.06
 class Live:
     """Ticks as fast as it can while it waits for something."""
 
-    def __init__(self, folder: Path, mode: str = "auto", url: str = "memory://", *, apart: bool = False) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        mode: str = "auto",
+        url: str = "memory://",
+        *,
+        project: Project | None = None,
+        seen: str = "",
+        apart: bool = False,
+    ) -> None:
         self.folder = folder
-        project = lumen.load(folder)
+        project = project or lumen.load(folder)
         self.robot = RecordingRobot(project.body)
         self.show = Show(project, Cast(self.robot, SimulatedClock(self.robot.advance, 20.0), self.robot), url)
         self.told = StringIO()
@@ -38,7 +48,7 @@ class Live:
         assert self.home.hold()
         self.records = Records(self.home)
         self.reloading = Reloading(
-            self.show, transcript, mode=mode, records=self.records, quiet=QUIET, budget=0.5, apart=apart
+            self.show, transcript, mode=mode, records=self.records, quiet=QUIET, budget=0.5, seen=seen, apart=apart
         )
         self.show.exhibition.parts.append(self.reloading.tick)
         self.show.closing[:0] = [self.reloading.close, self.home.release]

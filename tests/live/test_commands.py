@@ -1,18 +1,32 @@
 """What an operator may ask of a running exhibition, and what is answered."""
 
-import json
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from lumen.bus import connect
+from lumen.buses.consuming import Consuming
+from lumen.interpreters.statechart import Step
 from lumen.language.commands import Say
+from lumen.runtime.exhibition import Observer
 from tests.live.shows import Live
 from tests.rabbitmq import RabbitMQ
 
 SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
 WAVE = "                - {play: goodbye}\n"
+
+
+class Ears(Observer):
+    """Keeps the names of the events that the behaviour hears."""
+
+    def __init__(self) -> None:
+        self.heard: list[str] = []
+
+    def stepped(self, step: Step) -> None:
+        self.heard.append(step.event.name if step.event else "")
 
 
 @pytest.fixture
@@ -165,10 +179,23 @@ def test_stop_is_heard_by_the_behaviour(live: Live) -> None:
 
 
 @pytest.mark.xdist_group("rabbitmq")
-def test_the_same_on_a_broker(copy: Path, broker: RabbitMQ) -> None:
+def test_the_same_on_a_broker_for_which_no_tick_waits(
+    copy: Path, broker: RabbitMQ, monkeypatch: pytest.MonkeyPatch
+) -> None:
     one = Live(copy, url=broker.url)
-    one.edit(SORRY, PARDON)
+    waiting: list[threading.Thread] = []
+    usual = Consuming._await
+    monkeypatch.setattr(Consuming, "_await", lambda *given: (waiting.append(threading.current_thread()), usual(*given)))
+    one.edit("routes:\n", "routes:\n  load: {key: lumen.load, direction: in, event: load}\n", "lumen.yaml")
     one.until_told("in force")
+    assert waiting
     assert one.ask("status")["revision"] == 1
-    json.dumps(one.ask("rollback"))
+    one.edit("key: lumen.load,", "key: lumen.burden,", "lumen.yaml")
+    one.until(lambda: one.verdicts.count("applied") == 2)
+    assert one.ask("rollback")["verdict"] == "applied"
+    assert threading.current_thread() not in waiting
+    ears, other = Ears(), connect(broker.url)
+    one.show.exhibition.observers.append(ears)
+    one.until(lambda: other.publish("lumen.load", {}) or "load" in ears.heard)
+    other.close()
     one.show.close()

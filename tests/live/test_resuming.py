@@ -14,7 +14,8 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
-from lumen.cli.reloading.premises import LATELY, Premises
+from lumen.cli.reloading.comeback import LATELY
+from lumen.cli.reloading.premises import Premises
 from lumen.interpreters.statechart import freeze
 from lumen.language.commands import Track
 from lumen.loading.files import read_files

@@ -20,6 +20,9 @@ from lumen.ports import Handler
 
 PREFETCH = 64
 PATIENCE = 5.0
+TURN = 1.0
+STALL = 0.5
+"""By how much a turn may take longer [s] before this process counts as having stood still."""
 LEAVING = 2.0
 """How long a queue that nothing comes to any more is read on [s]: what was in it has come by then."""
 OTHERWISE = 406
@@ -84,8 +87,10 @@ class Consuming(Link):
         self._prepared: dict[str, Subscription] = {}
         self._settling: set[str] = set()
         self._changing = threading.Lock()
+        self._hurried = False
         self._epoch = 0
         self._acknowledged = 0
+        self._turned = self._since = time.monotonic()
 
     def begin(self) -> None:
         self._epoch += 1
@@ -96,7 +101,10 @@ class Consuming(Link):
             self._bind(subscription)
 
     def serve(self) -> bool:
-        self.process(1.0)
+        now = time.monotonic()
+        self._since = self._turned if now - self._turned > TURN + STALL else now
+        self._turned = now
+        self.process(TURN)
         return not self.ending.is_set()
 
     def subscriptions(self) -> list[Subscription]:
@@ -106,12 +114,14 @@ class Consuming(Link):
     def add(self, pattern: str, handler: Handler, route: Route | None = None) -> Subscription:
         """Subscribe; returns when the binding is in force, at once where the broker is away (it is made on its return).
 
-        What was prepared is in force already. Raises BusError where the broker refuses it.
+        Raises BusError where the broker refuses it. Whoever has ever prepared can't wait: what was prepared is in force
+        already, the rest as soon as the broker has answered; what it refuses is logged.
         """
         if subscription := self._claimed(pattern, handler):
             return subscription
         subscription = self._subscribed(pattern, handler, route)
-        self._await(subscription)
+        if not self._hurried:
+            self._await(subscription)
         return subscription
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
@@ -119,6 +129,7 @@ class Consuming(Link):
 
         Raises BusError where the broker refuses one.
         """
+        self._hurried = True
         with self._changing:
             taken = {s.pattern for s in self._subscriptions}
             old, self._prepared = self._prepared, {}
@@ -228,6 +239,8 @@ class Consuming(Link):
 
     def _refused(self, subscription: Subscription, refusal: str) -> None:
         subscription.refusal, subscription.active = refusal, False
+        if self._hurried and subscription.handler is not None:
+            _log.error("the broker at %s refuses to let us read `%s`: %s", self.address, subscription.pattern, refusal)
         with self._changing:
             if subscription in self._subscriptions:
                 self._subscriptions.remove(subscription)
@@ -345,6 +358,14 @@ class Consuming(Link):
             kept = body if len(body) <= MAX_BYTES else body[: MAX_BYTES + 1]
             key, number, again = method.routing_key, method.delivery_tag, method.redelivered
             subscription.received += 1
-            self._receive(Delivery(subscription, key, kept, properties, number, self._epoch, again, time.monotonic()))
+            self._receive(Delivery(subscription, key, kept, properties, number, self._epoch, again, self._arrival()))
 
         return arrived
+
+    def _arrival(self) -> float:
+        """When what is received now came at the earliest [s, monotonic], where this process stood still meanwhile.
+
+        Who wakes up in the middle of a turn may see only in the next one what came in this one.
+        """
+        now = time.monotonic()
+        return self._since if now - self._since > TURN + STALL else now

@@ -70,13 +70,13 @@ class Performance:
                 self._claim()
             if video:
                 film(show, video)
-            self._settle(mode)
+            reloading = self._settle(mode)
             self._introduce(speed)
             folder = None if self._story else home_of(self._premises.root)
             begun = {module.name for module in join(show, folder, self._transcript.line, paced=speed != "max")}
             if self._presence:
                 self._presence.parts = tuple(p for p in self._presence.parts if p not in MODULES or p in begun)
-            self._start(language, fresh=fresh)
+            self._start(reloading, language, fresh=fresh)
             sweeper = Sweeper()
             show.after.append(sweeper)
             show.closing.append(sweeper.close)
@@ -86,6 +86,7 @@ class Performance:
             took = time.monotonic() - began
         finally:
             show.close()
+        self._premises.ended(show.exhibition.project)
         self._premises.close(forget=not self._leaving)
         return self._summary(now, took, video)
 
@@ -113,22 +114,30 @@ class Performance:
         if presence.came:
             self._show.trace.standing(self._show.exhibition.runtime.snapshot)
 
-    def _settle(self, mode: str) -> None:
+    def _settle(self, mode: str) -> Reloading:
         """Be found by other terminals, and take saved files."""
         show, records = self._show, self._premises.records
         self._premises.open(show.bus, self._url, show.exhibition.project)
         reloading = Reloading(
-            show, self._transcript, mode=mode, records=records, applied=self._premises.announce, apart=True
+            show,
+            self._transcript,
+            mode=mode,
+            records=records,
+            applied=self._premises.announce,
+            seen=self._premises.refused,
+            apart=True,
         )
         show.exhibition.parts.append(reloading.tick)
         show.closing.insert(0, reloading.close)
         if records.keeper and self._story is None:
             show.after.append(lambda now: records.keep(show.exhibition))
+        return reloading
 
-    def _start(self, language: str, *, fresh: bool) -> None:
+    def _start(self, reloading: Reloading, language: str, *, fresh: bool) -> None:
         """Enter the initial states, or go on where a run ended that nobody meant to end."""
         show = self._show
         found = "" if fresh or self._story else self._premises.resumption(show.exhibition.project)
+        reloading.begin(self._premises.news)
         if isinstance(found, str):
             print(found, end="\n" * bool(found))
             show.start(language)

@@ -3,7 +3,6 @@
 import argparse
 import os
 import signal
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,17 +10,15 @@ from lumen.cli.apart.choosing import parts_of
 from lumen.cli.cast import ROBOTS, SPEEDS, VOICES, Cast, cast
 from lumen.cli.choosing import home_of, stories_of
 from lumen.cli.performance import Performance
+from lumen.cli.reloading.booting import boot
 from lumen.cli.reloading.premises import Premises
 from lumen.cli.reloading.reloading import MODES
-from lumen.cli.report import report
-from lumen.errors import ProjectError, UsageError
+from lumen.errors import BusError, ModuleError, RobotError, UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.loading.units import seconds
-from lumen.rules import check_files
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -54,12 +51,15 @@ def run(options: argparse.Namespace) -> int:
     premises = Premises(root, guest=bool(parts) and "brain" not in parts)
     try:
         return _run(options, root, premises, parts)
+    except (BusError, RobotError, ModuleError):
+        premises.records.annul()
+        raise
     finally:
         premises.close(forget=False)
 
 
 def _run(options: argparse.Namespace, root: Path, premises: Premises, parts: tuple[str, ...]) -> int:
-    project = _load(root, premises, last_good=options.last_good)
+    project = boot(root, premises, last_good=options.last_good)
     story = _story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
         raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
@@ -90,24 +90,6 @@ def _voice(options: argparse.Namespace, chosen: Cast, language: str) -> Callable
     from lumen.cli.voice import voiced  # nobody else needs espeak-ng
 
     return voiced(chosen, options.voice, options.sound, language)
-
-
-def _load(root: Path, premises: Premises, *, last_good: bool) -> Project:
-    """The project in that folder; where its files have errors and that is wanted, the last good one."""
-    files = read_files(root)
-    project, diagnostics = check_files(root, files)
-    if project:
-        premises.begin(project, files)
-        return project
-    good = premises.last_good()
-    if good is None:
-        raise ProjectError(diagnostics)
-    if not last_good:
-        print("`lumen run --last-good` starts with the last files that had no errors.", file=sys.stderr)
-        raise ProjectError(diagnostics)
-    report(diagnostics)
-    print("\nTHE FILES HAVE ERRORS: IT STARTS WITH THE LAST THAT HAD NONE, AND NOT WITH YOURS.\n", file=sys.stderr)
-    return good
 
 
 def _story(project: Project, name: str | None) -> Story | None:

@@ -80,13 +80,19 @@ class BrainPart:
         show.closing.insert(0, troubles.close)
         self._premises.open(show.bus, self._url, self.project)
         reloading = Reloading(
-            show, self._transcript, mode=self._mode, records=records, applied=self._premises.announce, apart=True
+            show,
+            self._transcript,
+            mode=self._mode,
+            records=records,
+            applied=self._premises.announce,
+            seen=self._premises.refused,
+            apart=True,
         )
         show.exhibition.parts.append(reloading.tick)
         show.closing.insert(0, reloading.close)
         if records.keeper:
             show.after.append(lambda _: records.keep(show.exhibition))
-        self._start()
+        self._start(reloading)
         if self._premises.home:
             self._premises.home.write(SESSION, json.dumps({"session": self.robot.session}).encode())
 
@@ -117,9 +123,10 @@ class BrainPart:
     def close(self) -> None:
         self.show.close()
 
-    def _start(self) -> None:
+    def _start(self, reloading: Reloading) -> None:
         """Enter the initial states, or go on where a brain ended that nobody meant to end."""
         found = "" if self._fresh else self._premises.resumption(self.project)
+        reloading.begin(self._premises.news)
         if isinstance(found, str):
             print(found, end="\n" * bool(found), flush=True)
             self.show.start(self._language)

@@ -55,6 +55,7 @@ def start(
     signal.signal(signal.SIGTERM, lambda *_: process.interrupt(2, leave=True))
     code = process.run(period)
     if brain:
+        premises.ended(brain.project)
         premises.close(forget=not process.leaving)
     return code
 

@@ -14,14 +14,16 @@ MOST = 100
 """Changes and diagnostics that a bulletin lists."""
 OPEN = ("waiting", "judging")
 """Verdicts after which another one follows."""
+START = "start"
 
 
 @dataclass
 class Bulletin:
     """One verdict on files: `unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run`, `status`.
 
-    `who` asked for it: `files`, `command`, `probation`. `before` and `after` are hashes of bundles, `restart` sentences
-    about what comes into force only then, `took` times [s] by what took them. `back`: the files ran before.
+    `who` asked for it: `files`, `command`, `probation`, or the `start` of a run on other files than those before.
+    `before` and `after` are hashes of bundles, `restart` sentences about what comes into force only then, `took` times
+    [s] by what took them. `back`: the files ran before.
     """
 
     verdict: str
@@ -46,7 +48,8 @@ class Bulletin:
 
     @property
     def restart(self) -> list[str]:
-        return [str(change) for change in self.changes if change.risk is Risk.RESTART]
+        """What comes into force only when the exhibition is started anew."""
+        return [str(change) for change in self.changes if change.risk is Risk.RESTART and self.who != START]
 
     def lines(self) -> Iterator[str]:
         """What a person is told, the reasons before the verdict."""
@@ -66,7 +69,8 @@ class Bulletin:
             case "rolled back":
                 yield f"{self.reason}: back to the files before, revision {self.revision}"
             case "refused":
-                yield f"refused: {self._why()}the exhibition goes on as it was"
+                goes_on = "the last good files run" if self.who == START else "the exhibition goes on as it was"
+                yield f"refused: {self._why()}{goes_on}"
             case "waiting":
                 yield f"waiting for `{self.waiting_for}`: {self.reason} (`lumen reload --now` does not wait)"
             case "staged":
@@ -94,6 +98,10 @@ class Bulletin:
         hint = f" ({self.hint})" if self.hint else ""
         return f"{self.reason}{hint}; " if self.reason else ""
 
+    def _took(self) -> dict[str, float]:
+        judged = {"loading": self.judged.loading, "stories": self.judged.playing} if self.judged else {}
+        return {**judged, **self.took}
+
     def to_json(self) -> dict[str, Any]:
         """The body on `lumen.config.status`, and the entry in the journal."""
         found: dict[str, Any] = {
@@ -111,16 +119,16 @@ class Bulletin:
         if self.judged:
             found["diagnostics"] = [d.to_json() for d in self.judged.diagnostics[:MOST]]
             found["stories"] = [told(rehearsal) for rehearsal in self.judged.failed]
-            found["took"] = {"loading": self.judged.loading, "stories": self.judged.playing, **self.took}
+        if took := self._took():
+            found["took"] = took
         named = {"waiting_for": self.waiting_for, "reason": self.reason, "hint": self.hint, "notes": list(self.notes)}
         return {**found, **{name: value for name, value in named.items() if value}, **self.more}
 
 
-def refusal_of(refusal: Refusal, project: Project, who: str) -> Bulletin:
-    """A refusal with the place in the new files where it could be said."""
+def reason_of(refusal: Refusal, project: Project) -> str:
+    """Why it can't be, with the place in the new files where it could be said."""
     place = project.place(f"behaviors/{refusal.behavior}.yaml", refusal.where) if refusal.behavior else None
-    reason = f"{place}: {refusal.reason}" if place else refusal.reason
-    return Bulletin("refused", who, after=project.hash, reason=reason, hint=refusal.hint)
+    return f"{place}: {refusal.reason}" if place else refusal.reason
 
 
 def what_for(verdict: Wait | Refusal) -> str:

@@ -1,6 +1,7 @@
 """The first seconds of a bundle: where it fails in them, the one before comes back."""
 
 import logging
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -22,14 +23,15 @@ class Probation:
 
     A failure is an exception out of the interpreter or of what performs its commands, or a behaviour that does not come
     to rest. It brings back `good`, the bundle that has stood its probation, by the plan from the new to the old one;
-    the event that failed happens again under it. `before` is what ran before the last reload. `back` is told.
+    the event that failed happens again under it. `before` is what ran before the last reload. `back` is told. The
+    bundle of the start is on probation, too; there is none to go back to in this run.
     """
 
-    def __init__(self, show: Show, back: Callable[[str, Project], None]) -> None:
+    def __init__(self, show: Show, back: Callable[[str, Project, float], None]) -> None:
         self._show, self._back = show, back
         self.good = _lean(show.exhibition.project)
         self.before: Project | None = None
-        self._until: float | None = None
+        self._until: float | None = show.exhibition.clock.now() + PERIOD
         show.exhibition.rescue = self._rescue
 
     def begin(self, before: Project, now: float) -> None:
@@ -48,15 +50,15 @@ class Probation:
         return None if self._until is None else max(0.0, round(self._until - now, 3))
 
     def _rescue(self, error: Exception) -> Sequence[Command] | None:
-        if self._until is None:
-            return None
-        self._until = None
         bad = self._show.exhibition.project
+        if self._until is None or self.good.hash == bad.hash:
+            return None
+        self._until, began = None, time.perf_counter()
         good = live(bad, self.good)
         _log.debug("a reload failed", exc_info=error)
         commands = self._show.rescue(good, self._plan(good))
         self.before = _lean(bad)
-        self._back(str(error) or repr(error), bad)
+        self._back(str(error) or repr(error), bad, time.perf_counter() - began)
         return commands
 
     def _plan(self, good: Project) -> Plan:

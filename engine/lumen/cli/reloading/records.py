@@ -9,6 +9,7 @@ from lumen.runtime.exhibition import Exhibition
 from lumen.runtime.home import Home
 from lumen.runtime.journal import Journal
 from lumen.runtime.keeping import Keeper
+from lumen.runtime.trials import Trials
 
 _log = logging.getLogger(__name__)
 
@@ -17,8 +18,9 @@ class Records:
     """The records in a home; without one (another run of the same project has it) nothing is written."""
 
     def __init__(self, home: Home | None) -> None:
-        self._told = False
+        self._told, self._trial = False, ""
         self.keeper = Keeper(home) if home else None
+        self.trials = Trials(home) if home else None
         self.journal = Journal(home.folder if home else None)
 
     def write(self, entry: Mapping[str, Any]) -> None:
@@ -29,10 +31,27 @@ class Records:
         if self.keeper:
             self.keeper.store(files)
 
+    def begin(self, hash: str) -> None:
+        """This bundle is in force now, and on trial."""
+        self._trial = hash
+        if self.trials:
+            self.trials.begin(hash)
+
     def approve(self, hash: str) -> None:
         """A bundle has stood its probation."""
-        if self.keeper:
+        if self.keeper and self.trials:
             self.keeper.approve(hash)
+            self.trials.acquit(hash)
+
+    def died(self, hash: str) -> int:
+        """How often the exhibition ended before this bundle had stood its probation."""
+        return self.trials.count(hash) if self.trials else 0
+
+    def annul(self) -> None:
+        """The exhibition ends, for nothing that its files could help."""
+        if self.trials and self._trial:
+            self.trials.annul(self._trial)
+        self._trial = ""
 
     def prune(self, *projects: Project | None) -> None:
         """Forget all bundles but these."""

@@ -1,7 +1,7 @@
 """Saved files on a running exhibition: taken where they are good, reported where they are not."""
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -32,7 +32,8 @@ class Reloading:
     """Has saved files judged, and stages every good bundle; hears what operators ask for.
 
     `apart` is whether files are judged in another process. `quiet` [s] and `budget` [s] are those of the watcher and of
-    stories; `applied` is told of each bundle that comes in force.
+    stories; `applied` is told of each bundle that comes in force. `seen` is the hash of files that are there and not to
+    be taken until they change, where those are not the ones that run.
     """
 
     def __init__(
@@ -43,6 +44,7 @@ class Reloading:
         mode: str = "auto",
         records: Records | None = None,
         applied: Callable[[Project], None] = lambda _: None,
+        seen: str = "",
         apart: bool = False,
         quiet: float = QUIET,
         budget: float = BUDGET,
@@ -60,7 +62,7 @@ class Reloading:
             Path(project.root),
             read_files(Path(project.root)),
             lambda saved: self._judge(judge, saved),
-            hash=project.hash,
+            hash=seen or project.hash,
             quiet=quiet,
             hints=mode != "off",
             leisure=lambda judged, urgent: self._advise(judge, judged, urgent),
@@ -77,6 +79,12 @@ class Reloading:
     @property
     def _running(self) -> Project:
         return self._show.exhibition.project
+
+    def begin(self, news: Iterable[Bulletin]) -> None:
+        """The exhibition starts; `news` are the reloads that this is."""
+        self._records.begin(self._running.hash)
+        for bulletin in news:
+            self._herald.tell(bulletin)
 
     def close(self) -> None:
         self._undo()

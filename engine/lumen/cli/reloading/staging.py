@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from lumen.cli.reloading.bulletin import Bulletin, refusal_of, what_for
+from lumen.cli.reloading.bulletin import Bulletin, reason_of, what_for
 from lumen.cli.reloading.judging import Judged
 from lumen.cli.reloading.orders import Order
 from lumen.cli.reloading.probation import Probation
@@ -85,8 +85,9 @@ class Staging:
                 bulletin.reason, bulletin.notes = "it would be in force at once", notes
             case Wait(reason, what):
                 bulletin.reason = f"it would wait for `{what}`: {reason}"
-            case Refusal():
-                bulletin = refusal_of(verdict, staged.project, "command")
+            case Refusal(hint=hint):
+                bulletin.verdict, bulletin.reason = "refused", reason_of(verdict, staged.project)
+                bulletin.hint = hint
         order.answer({**bulletin.to_json(), "lines": list(bulletin.lines())})
 
     def tick(self, now: float) -> None:
@@ -125,6 +126,7 @@ class Staging:
     def _apply(self, staged: Staged, plan: Plan, now: float) -> None:
         before, began = self.running, time.perf_counter()
         self._show.apply(staged.project, plan)
+        self._records.begin(staged.project.hash)
         self.staged = None
         self.revision += 1
         self.probation.begin(before, now)
@@ -142,24 +144,25 @@ class Staging:
             waited = f"`{verdict.what}` is still under way after {self.running.patience:g} s ({verdict.reason})"
             self._refuse(staged, waited, "`lumen reload --now` does not wait", keep=True)
         else:
-            self.staged = None
-            self._herald.tell(refusal_of(verdict, staged.project, staged.who), staged.orders)
+            self._refuse(staged, reason_of(verdict, staged.project), verdict.hint)
 
     def _refuse(self, staged: Staged, reason: str, hint: str = "", *, keep: bool = False) -> None:
         self.staged = staged if keep else None
         bulletin = self._about(staged, "refused")
         bulletin.reason, bulletin.hint = reason, hint
+        bulletin.took = {"waiting": time.monotonic() - staged.since}
         self._herald.tell(bulletin, staged.orders)
         staged.orders = []
 
-    def _rolled_back(self, reason: str, bad: Project) -> None:
-        """The probation has brought back the bundle before."""
+    def _rolled_back(self, reason: str, bad: Project, took: float) -> None:
+        """The probation has brought back the bundle before, in so much time [s]."""
         self.staged = None
         self.revision += 1
         found = changes(bad, self.running)
         bulletin = Bulletin("rolled back", "probation", bad.hash, self.running.hash, self.revision, found)
-        bulletin.reason = f"the new files failed: {reason}"
+        bulletin.reason, bulletin.took = f"the new files failed: {reason}", {"applying": took}
         self._herald.tell(bulletin)
+        self._applied(self.running)
 
     def _about(self, staged: Staged, verdict: str) -> Bulletin:
         hashes = self.running.hash, staged.project.hash

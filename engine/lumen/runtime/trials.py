@@ -1,0 +1,55 @@
+"""Which bundles were begun with and have not lasted: a crash loop is noticed by the start that comes after it."""
+
+import json
+
+from lumen.runtime.home import Home
+
+TRIALS = "trials.json"
+VERSION = 1
+DEATHS = 2
+"""How often a bundle may end the exhibition within its probation before a start does something else."""
+MOST = 20
+"""How many bundles are remembered, the latest."""
+
+
+class Trials:
+    """Counts in a home how often each bundle came in force and ended the exhibition before it had stood its probation.
+
+    A count is written before the bundle is in force, for who crashes writes nothing.
+    """
+
+    def __init__(self, home: Home) -> None:
+        self._home = home
+
+    def begin(self, hash: str) -> None:
+        """From now on this bundle is on trial."""
+        counts = self._counts()
+        counts[hash] = counts.pop(hash, 0) + 1
+        self._write(counts)
+
+    def acquit(self, hash: str) -> None:
+        """This bundle has lasted."""
+        counts = self._counts()
+        if counts.pop(hash, 0):
+            self._write(counts)
+
+    def annul(self, hash: str) -> None:
+        """The last trial of this bundle ended for nothing that it could help."""
+        counts = self._counts()
+        if left := counts.pop(hash, 0):
+            self._write({**counts, hash: left - 1} if left > 1 else counts)
+
+    def count(self, hash: str) -> int:
+        """How often it did not last."""
+        return self._counts().get(hash, 0)
+
+    def _counts(self) -> dict[str, int]:
+        try:
+            data = json.loads(self._home.read(TRIALS) or b"")
+            return {str(hash): int(count) for hash, count in data["bundles"].items()}
+        except (ValueError, TypeError, KeyError, AttributeError):
+            return {}
+
+    def _write(self, counts: dict[str, int]) -> None:
+        latest = dict(list(counts.items())[-MOST:])
+        self._home.write(TRIALS, json.dumps({"version": VERSION, "bundles": latest}).encode())

@@ -1,0 +1,151 @@
+"""Which files a start begins with, what it says of that, and where it is written."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.cli.main import main
+from lumen.cli.reloading.booting import boot
+from lumen.cli.reloading.premises import Premises
+from lumen.cli.show import Show
+from lumen.errors import BusError
+from lumen.loading.files import read_files
+from lumen.runtime.home import Home, home_of
+from lumen.runtime.journal import Journal
+from lumen.runtime.trials import DEATHS, MOST, Trials
+from tests.live.shows import Live
+
+TOUR = "behaviors/tour.yaml"
+SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
+
+
+def save(folder: Path, old: str, new: str) -> None:
+    text = (folder / TOUR).read_text("utf-8")
+    assert old in text
+    (folder / TOUR).write_text(text.replace(old, new), "utf-8")
+
+
+def journal(folder: Path) -> list[dict[str, Any]]:
+    return list(Journal(home_of(folder)).entries())
+
+
+@pytest.fixture
+def run(copy: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The words that run the copy for a moment while nobody types."""
+    monkeypatch.setattr(sys, "stdin", None)
+    return ["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "1s"]
+
+
+def fail_with(monkeypatch: pytest.MonkeyPatch, hash: str, error: Exception) -> None:
+    """From now on these files end whatever runs on them."""
+    usual = Show.tick
+
+    def tick(show: Show) -> float:
+        if show.exhibition.project.hash == hash:
+            raise error
+        return usual(show)
+
+    monkeypatch.setattr(Show, "tick", tick)
+
+
+def test_files_that_end_every_start_give_way_to_the_last_good_ones(
+    copy: Path, run: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(run) == 0
+    good = lumen.load(copy).hash
+    save(copy, SORRY, PARDON)
+    bad = lumen.load(copy).hash
+    fail_with(monkeypatch, bad, ZeroDivisionError("a fault of ours"))
+    for _ in range(DEATHS):
+        with pytest.raises(ZeroDivisionError):
+            main(run)
+    capsys.readouterr()
+    for _ in range(DEATHS + 1):
+        assert main(run) == 0
+        told = capsys.readouterr()
+        assert "THESE FILES ENDED THE EXHIBITION 2 TIMES" in told.err
+        assert "refused: these files ended the exhibition 2 times" in told.out.replace("\n" + " " * 18, " ")
+        entry = journal(copy)[-1]
+        assert (entry["verdict"], entry["who"], entry["before"], entry["after"]) == ("refused", "start", good, bad)
+    save(copy, PARDON, "en: What was that?")
+    assert main(run) == 0
+    assert "THESE FILES" not in capsys.readouterr().err
+
+
+def test_what_a_start_has_left_aside_is_taken_once_it_changes(copy: Path) -> None:
+    before = lumen.load(copy)
+    save(copy, SORRY, PARDON)
+    one = Live(copy, project=before, seen=lumen.load(copy).hash)
+    one.live(40.0)
+    assert one.show.exhibition.project is before
+    assert one.verdicts == []
+    save(copy, PARDON, "en: What was that?")
+    one.until_told("in force")
+    one.show.close()
+
+
+def test_a_fault_of_the_world_is_no_fault_of_the_files(
+    copy: Path, run: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hash = lumen.load(copy).hash
+    fail_with(monkeypatch, hash, BusError("the broker is gone"))
+    for _ in range(DEATHS):
+        assert main(run) == 2
+    assert Trials(Home(home_of(copy))).count(hash) == 0
+
+
+def test_bad_files_and_last_good_are_journaled(copy: Path, run: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(run) == 0
+    save(copy, "onDone: any_question", "onDone: any_questoin")
+    assert main([*run, "--last-good"]) == 0
+    told = capsys.readouterr()
+    assert "THE FILES HAVE ERRORS: IT STARTS WITH THE LAST GOOD ONES" in told.err
+    assert "did you mean `any_question`?" in told.out
+    [entry] = journal(copy)
+    assert (entry["verdict"], entry["who"]) == ("refused", "start")
+    assert entry["diagnostics"][0]["code"] == "unknown-state"
+
+
+def test_a_start_on_newer_files_is_a_reload_and_journaled(copy: Path, run: list[str]) -> None:
+    one = Live(copy)
+    before = one.show.exhibition.project.hash
+    one.records.store(read_files(copy))
+    one.greet()
+    one.records.keep(one.show.exhibition)
+    one.show.close()
+    save(copy, SORRY, PARDON)
+    assert main(run) == 0
+    [entry] = journal(copy)
+    assert (entry["verdict"], entry["who"]) == ("applied", "start")
+    assert (entry["before"], entry["after"]) == (before, lumen.load(copy).hash)
+    assert entry["changes"]
+    assert entry["took"]
+
+
+def test_how_often_files_did_not_last_is_remembered_of_the_latest(tmp_path: Path) -> None:
+    home = Home(tmp_path)
+    trials = Trials(home)
+    for number in range(2 * MOST):
+        trials.begin(f"bundle {number}")
+    assert [trials.count(f"bundle {number}") for number in (0, MOST - 1, MOST, 2 * MOST - 1)] == [0, 0, 1, 1]
+    trials.begin("bundle 39")
+    trials.annul("bundle 39")
+    assert trials.count("bundle 39") == 1
+    trials.acquit("bundle 39")
+    assert trials.count("bundle 39") == 0
+    for damaged in (b"", b"[]", b"{", b'{"bundles": 7}', b'{"bundles": {"a": "b"}}'):
+        home.write("trials.json", damaged)
+        assert trials.count("bundle 30") == 0
+
+
+def test_where_nothing_else_is_known_to_be_good_the_files_are_tried_again(copy: Path) -> None:
+    premises = Premises(copy)
+    first = boot(copy, premises, last_good=False)
+    for _ in range(DEATHS):
+        premises.records.begin(first.hash)
+    assert boot(copy, premises, last_good=False).hash == first.hash
+    assert premises.news == []
+    premises.close(forget=False)
