@@ -8,10 +8,12 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
+import pika
 import pytest
 
 import lumen
 from lumen.bus import connect
+from lumen.cli.main import main
 from lumen.language.commands import Rest
 from lumen.ports import Perform
 from lumen.runtime.keeping import SNAPSHOT
@@ -40,6 +42,22 @@ def start(copy: Path, broker: RabbitMQ) -> Iterator[Start]:
             return process  # type: ignore[no-any-return]
 
         yield run
+
+
+class Dead:
+    """What comes to `lumen.dead` from now on."""
+
+    def __init__(self, url: str) -> None:
+        self._connection = pika.BlockingConnection(pika.URLParameters(url))
+        self._channel = self._connection.channel()
+        self._queue = self._channel.queue_declare("", exclusive=True).method.queue
+        self._channel.queue_bind(self._queue, "lumen.dead")
+
+    def next(self) -> bytes:
+        return self._channel.basic_get(self._queue, auto_ack=True)[2] or b""
+
+    def close(self) -> None:
+        self._connection.close()
 
 
 def motions(member: Member) -> list[str]:
@@ -103,6 +121,27 @@ def test_a_robot_that_is_killed_between_performing_and_saying_so_performs_once(
     assert set(states()) <= {"accepted", "failed"}
     assert states().count("accepted") <= 1
     bus.close()
+
+
+def test_a_robot_that_hangs_is_lost_and_does_nothing_late_when_it_goes_on(
+    troupe: Troupe, start: Start, capsys: pytest.CaptureFixture[str]
+) -> None:
+    brain, robot = troupe.join("brain"), start("robot")
+    troupe.until(lambda: "idle" in brain.states)
+    dead = Dead(troupe.url)
+    os.kill(robot.pid, signal.SIGSTOP)
+    troupe.ear.publish("avatar.NAO.command", {"id": "late", "type": "motion", "method": "goodbye"}, ttl=2.0)
+    troupe.until(lambda: "robot_lost" in brain.states)
+    main(["doctor", str(troupe.folder), "--bus", troupe.url])
+    assert "?? robot: somebody takes `command`, but NAO does not say that it is there" in capsys.readouterr().out
+    os.kill(robot.pid, signal.SIGCONT)
+    troupe.until(lambda: b'"late"' in dead.next())
+    troupe.until(lambda: "idle" in brain.states)
+    robot.send_signal(signal.SIGTERM)
+    said = robot.communicate(timeout=20)[0]
+    assert "rests: it stood still for " in said
+    assert "goodbye" not in said
+    dead.close()
 
 
 def test_ctrl_c_ends_each_process_cleanly_and_who_waits_says_for_whom(start: Start) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from lumen.bus import Bus, connect
+from lumen.bus import Bus, BusError, connect
 from lumen.cli.apart.guard import Guard
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Track
 from lumen.language.events import Event
@@ -132,6 +132,30 @@ def test_a_robot_rests_when_its_brain_is_gone_and_tells_the_next_one(hall: Hall)
     again.close()
     live(6.0)
     assert [command for _, command in robot.performed] == [Rest(), Rest()]
+
+
+def test_a_robot_that_stood_still_rests_first_and_then_follows_its_brain_on(hall: Hall) -> None:
+    robot, presence, brain = RecordingRobot(BODY), hall.presence("robot"), hall.presence("brain")
+    noticed: list[Event] = []
+    told: list[str] = []
+    guard = Guard(robot, presence, noticed.append, told.append, lambda: hall.time)
+    presence.settle()
+    brain.settle()
+    hall.live(1.0, presence, brain)
+    guard.tick(hall.time)
+    hall.live(8.0, brain)
+    guard.tick(hall.time)
+    robot.advance(0.1)
+    assert [command for _, command in robot.performed] == [Rest()]
+    assert told[-1] == "rests: it stood still for 8.0 s"
+    hall.live(1.0, presence, brain)
+    guard.tick(hall.time)
+    assert (guard.follows, noticed) == (brain.session, [])
+    other = hall.presence("robot")
+    other.settle()
+    hall.live(1.0, presence, brain, other)
+    with pytest.raises(BusError, match=r"stood still, and by now process \d+ on .* is it: this one ends"):
+        guard.tick(hall.time)
 
 
 class Line:

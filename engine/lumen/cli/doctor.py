@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from lumen.bus import connect
 from lumen.buses.probing import Probe
 from lumen.buses.validated import by_key
+from lumen.cli.attendance import Attendance
 from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
@@ -21,6 +22,7 @@ from lumen.language.routes import Direction, Route
 from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.ports import Bus
+from lumen.robots.ways import COMMAND, key_of
 from lumen.rules import check_files
 
 LISTENING = 2.0
@@ -73,7 +75,9 @@ def _broker(url: str, project: Project | None) -> Iterator[Finding]:
             return
         yield from _permissions(probe, project)
         with closing(connect(url)) as bus:
+            attendance = Attendance(bus, project)
             yield from _life(bus, project)
+            yield from _obeying(probe, attendance, project)
         yield from _served(probe, project)
 
 
@@ -128,6 +132,20 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
     skew = min(skews, key=abs)
     text = f"this machine's clock and the robot's are {abs(skew):.1f} s apart"
     yield Finding("clocks", "warning" if abs(skew) > SKEW else "ok", text)
+
+
+def _obeying(probe: Probe, attendance: Attendance, project: Project) -> Iterator[Finding]:
+    """Whether who takes the robot's commands is alive."""
+    route = project.routes.get(COMMAND)
+    if route is None or not probe.served(key_of(project, COMMAND), route).readers:
+        return
+    if attendance.robot():
+        yield Finding("robot", "ok", f"{project.robot} is there")
+    else:
+        text = (
+            f"somebody takes `{COMMAND}`, but {project.robot} does not say that it is there: end a process that hangs"
+        )
+        yield Finding("robot", "warning", text)
 
 
 def _served(probe: Probe, project: Project) -> Iterator[Finding]:

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 
+from lumen.errors import BusError
 from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.ports import Robot
-from lumen.runtime.presence import BRAIN, HERE, LEAVES, LOST, Peer, Presence, told
+from lumen.runtime.presence import BRAIN, HERE, LEAVES, LOST, ROBOT, Peer, Presence, told
 
 PATIENCE = 5.0
 """How long a brain may be silent before its robot rests [s]."""
@@ -14,7 +15,8 @@ PATIENCE = 5.0
 class Guard:
     """Watches over the brain that the robot follows; `follows` is its session, empty where there is none.
 
-    A brain that comes back, or another one, is told by `notice` for how long nobody was there (`brain.lost`).
+    A brain that comes back, or another one, is told by `notice` for how long nobody was there (`brain.lost`). A robot
+    that itself stood still for so long that its brain has lost it rests before it does anything else.
     """
 
     def __init__(
@@ -29,19 +31,35 @@ class Guard:
         self._robot, self._presence, self._notice, self._tell, self._clock = robot, presence, notice, tell, clock
         self._last: float | None = None
         self._resting = False
+        self._ticked, self._woke = clock(), 0.0
 
     def tick(self, now: float) -> None:
-        """Look after the brain at `now` [s] on the robot's clock."""
-        followed = self._presence.get(self.follows) if self.follows else None
+        """Look after the brain at `now` [s] on the robot's clock.
+
+        Raises BusError where the robot stood still, and another process has taken its place.
+        """
         at = self._clock()
+        if at - self._ticked > LOST:
+            self._wake(at)
+        self._ticked = at
+        if self._woke and (other := self._presence.find(ROBOT)):
+            raise BusError(f"this robot stood still, and by now {told(other)} is it: this one ends")
+        followed = self._presence.get(self.follows) if self.follows else None
         if followed:
-            self._last = followed.heard
-        gone = followed is None or followed.state == LEAVES or at - followed.heard > LOST
+            self._last = max(followed.heard, self._woke)
+        gone = followed is None or followed.state == LEAVES or self._last is None or at - self._last > LOST
         if gone and (brain := self._presence.find(BRAIN)) and brain.state == HERE:
             self._follow(brain, now)
         elif gone and self._last is not None and not self._resting and at - self._last > PATIENCE:
             self._resting = True
             self._tell(f"rests: its brain is gone for {PATIENCE:g} s")
+            self._robot.start("guard", Rest())
+
+    def _wake(self, at: float) -> None:
+        """What it was doing is nobody's wish any more; the brain has as long as ever to be heard again."""
+        self._woke = at
+        if self.follows:
+            self._tell(f"rests: it stood still for {at - self._ticked:.1f} s")
             self._robot.start("guard", Rest())
 
     def _follow(self, brain: Peer, now: float) -> None:
