@@ -5,16 +5,25 @@ import time
 import pytest
 
 from lumen.errors import UsageError
-from lumen.language.commands import Posture, Rest
+from lumen.language.commands import Posture, Rest, Say
+from lumen.language.motions import Motion
 from lumen.ports import Perform
 from tests.processes.troupe import Troupe, alone, deeds
 from tests.relay import Relay
+from tests.waiting import Collector
 
 pytestmark = pytest.mark.xdist_group("rabbitmq")
 
 
 def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
+    photo = troupe.folder / "motions" / "photo.yaml"
+    cues = "{at: 1.4s, pose: pose, say: {en: Cheese, id: Senyum}, sound: sounds/shutter.wav}"
+    photo.write_text(photo.read_text("utf-8").replace("{at: 1.4s, pose: pose}", cues), "utf-8")
+    (photo.parent.parent / "sounds").mkdir()
+    (photo.parent.parent / "sounds" / "shutter.wav").write_bytes(b"RIFF")
     expected = alone(troupe.folder, "short")
+    noticed = Collector()
+    troupe.ear.subscribe("avatar.NAO.event.noticed", noticed)
     troupe.speed = "2"
     robot = troupe.join("robot")
     troupe.join("motion")
@@ -27,7 +36,16 @@ def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
     assert project
     played = [command.motion for _, command in robot.body.performed if isinstance(command, Perform)]
     assert [motion.name for motion in played] == ["photo", "goodbye"]
+    assert [c.text for _, c in robot.body.performed if isinstance(c, Say)].count("Cheese") == 1
+    told = [body["data"]["kind"] for body in noticed.bodies if body["name"] == "cue"]
+    assert sorted(told) == ["say", "sound"]
+    assert any(deed.get("text") == "Cheese" for deed in expected if isinstance(deed, dict)), expected
     assert [m.tracks for m in played] == [project.motions[m.name].tracks for m in played]
+    assert [cues_of(m) for m in played] == [cues_of(project.motions[m.name]) for m in played]
+
+
+def cues_of(motion: Motion) -> list[tuple[float, str, object]]:
+    return [(cue.time, cue.kind, cue.value) for cue in motion.cues]
 
 
 @pytest.mark.soak
