@@ -1,37 +1,81 @@
-"""How fast the simulated NAO lives: with all that drives it, against bare `mj_step` of the same model and moment.
+"""How fast the simulated NAO lives: with all that drives it, against bare `mj_step` of the same moments.
 
     python benchmarks/simulation.py
 
-CPU time of one thread; each line is the median of several runs. Standing is the dearest state: both soles bear load.
+CPU time of the whole process, simulated seconds for each of them. What the servos were told is kept while the robot
+lives, and then told again to a bare `mj_step` from the same beginning, which ends in the same state, bit by bit.
 """
 
 import platform
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from statistics import median
 from time import perf_counter, process_time
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
 
 import lumen
+from lumen.cli.cast import Cast
+from lumen.cli.rehearsal import rehearse
+from lumen.clocks.simulated import SimulatedClock
 from lumen.language.commands import Walk
+from lumen.language.projects import Project
+from lumen.language.routes import SIZES, Size
 from lumen.language.stories import Visitor
 from lumen.ports import Image, Perform, RobotCommand, Sense
 from lumen.robots.simulation import SimulatedRobot, available
+from lumen.robots.simulation.world import PERIOD, World
 
 ROOT = Path(__file__).parent.parent
-SECONDS, REPEATS = 5.0, 5
+SECONDS = 20.0
+BEGINNING = mujoco.mjtState.mjSTATE_INTEGRATION
+
+Told = list[tuple[NDArray[np.float64], NDArray[np.float64]]]
+"""For each control period where the servos were to go, and what they could give."""
 
 
-def factor(live: Callable[[], object], seconds: float = SECONDS) -> float:
-    """Simulated seconds per second of CPU time."""
+def against_bare(name: str, robot: SimulatedRobot, live: Callable[[], object]) -> None:
+    """Print how fast the robot lives through `live`, and how fast bare steps go through the same."""
+    world = robot.world
+    told: Told = []
+    beginning = np.zeros(mujoco.mj_stateSize(world.model, BEGINNING))
+    mujoco.mj_getState(world.model, world.data, beginning, BEGINNING)
+    _listen(world, told)
+    begin = process_time()
     live()
-    times = []
-    for _ in range(REPEATS):
-        begin = process_time()
-        live()
-        times.append(process_time() - begin)
-    return seconds / median(times)
+    took = process_time() - begin
+    del world.step
+    bare, time = _bare(world, beginning, told), PERIOD * len(told)
+    print(
+        f"{name:<18} {time / took:6.1f} x real time   bare {time / bare:6.1f} x   {bare / took:.2f} of bare", flush=True
+    )
+
+
+def _listen(world: World, told: Told) -> None:
+    """Keep what the servos are told from now on."""
+    step, data, most = world.step, world.data, world.model.actuator_forcerange
+
+    def listening() -> None:
+        told.append((data.ctrl.copy(), most.copy()))
+        step()
+
+    world.step = listening  # type: ignore[method-assign]
+
+
+def _bare(world: World, beginning: NDArray[np.float64], told: Told) -> float:
+    """The CPU time [s] of bare steps through what the servos were told."""
+    model, data, steps = world.model, mujoco.MjData(world.model), round(PERIOD / world.model.opt.timestep)
+    mujoco.mj_setState(model, data, beginning, BEGINNING)
+    mujoco.mj_forward(model, data)
+    begin = process_time()
+    for goal, most in told:
+        data.ctrl[:], model.actuator_forcerange[:] = goal, most
+        mujoco.mj_step(model, data, steps)
+    took = process_time() - begin
+    assert np.array_equal(data.qpos, world.data.qpos), "these were other moments"
+    return took
 
 
 def sensing(robot: SimulatedRobot) -> None:
@@ -46,24 +90,30 @@ def sensing(robot: SimulatedRobot) -> None:
             robot.face()
 
 
-def performing(robot: SimulatedRobot, command: RobotCommand) -> float:
-    """Simulated seconds per second of CPU time through a command."""
+def performing(robot: SimulatedRobot, command: RobotCommand) -> None:
+    """Live through a command, to its good end."""
     robot.start("it", command)
-    begin, start = process_time(), robot.time
     while not (answers := [event.name for event in robot.poll() if event.name.endswith(".command.it")]):
         robot.advance(0.02)
     assert answers == ["done.command.it"]
-    return (robot.time - start) / (process_time() - begin)
 
 
-def frame(robot: SimulatedRobot) -> float:
-    """Time to draw a camera image [s]."""
+def touring(project: Project, robot: SimulatedRobot) -> None:
+    """The story of a whole visit, with everything on the bus but images."""
+    blind = replace(project, routes={name: route for name, route in project.routes.items() if name != Sense.IMAGE})
+    clock = SimulatedClock(robot.advance)
+    rehearsal = rehearse(blind, project.stories[project.story], Cast(robot, clock, robot))
+    assert rehearsal.failed is None, rehearsal.failed
+
+
+def frame(robot: SimulatedRobot, size: Size) -> float:
+    """Time to draw a camera image of that size [s]."""
     image = robot.read(Sense.IMAGE)
     assert isinstance(image, Image)
-    image.pixels()
+    image.pixels(size)
     begin = perf_counter()
     for _ in range(20):
-        image.pixels()
+        image.pixels(size)
     return (perf_counter() - begin) / 20
 
 
@@ -74,26 +124,21 @@ def main() -> None:
     robot = SimulatedRobot(project.body, ROOT / "models", project.hall)
     robot.advance(0.02)
     standing = perf_counter()
-    robot.place(Visitor())
-    robot.advance(1.0)
-    model, data = robot.world.model, robot.world.data
-    steps = round(SECONDS / model.opt.timestep)
-    bare = factor(lambda: mujoco.mj_step(model, data, steps))
-    alone = factor(lambda: robot.advance(SECONDS))
-    sensed = factor(lambda: sensing(robot))
-    danced = performing(robot, Perform(project.motions["dance"]))
-    walked = performing(robot, Walk(0.2))
     print(
         f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, MuJoCo {mujoco.__version__}"
     )
     print(f"project loaded in {loaded - begin:.2f} s, robot standing {standing - loaded:.2f} s later")
-    print(f"bare mj_step             {bare:6.1f} x real time")
-    print(f"robot, standing          {alone:6.1f} x   {alone / bare:.2f} of bare")
-    print(f"robot, senses, visitor   {sensed:6.1f} x   {sensed / bare:.2f} of bare")
-    print(f"robot, dancing           {danced:6.1f} x   {danced / bare:.2f} of bare")
-    print(f"robot, walking           {walked:6.1f} x   {walked / bare:.2f} of bare")
-    reason = available()
-    print(f"camera image             {reason or f'{1000 * frame(robot):6.1f} ms at 320 x 240'}")
+    robot.place(Visitor())
+    robot.advance(1.0)
+    against_bare("standing", robot, lambda: robot.advance(SECONDS))
+    against_bare("standing, senses", robot, lambda: sensing(robot))
+    against_bare("walking", robot, lambda: performing(robot, Walk(0.2)))
+    against_bare("dancing", robot, lambda: performing(robot, Perform(project.motions["dance"])))
+    visited = SimulatedRobot(project.body, ROOT / "models", project.hall, stage=project.stage)
+    against_bare("a whole tour", visited, lambda: touring(project, visited))
+    for size in () if available() else SIZES[1:3]:
+        print(f"camera image       {1000 * frame(robot, size):6.1f} ms at {size}")
+    print(available() or "", end="\n" * bool(available()))
     robot.close()
 
 

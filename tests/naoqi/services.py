@@ -299,12 +299,15 @@ class ALVideoDevice:
     def __init__(self, world: World) -> None:
         self._world = world
         self.handles: list[str] = ["lumen_7", "other_0"]
+        self._resolution = 1
 
     def getSubscribers(self) -> list[str]:
         return self.handles
 
     def subscribeCamera(self, name: str, camera: int, resolution: int, space: int, fps: int) -> str:
         self._world.note("subscribeCamera", name, camera, resolution, space, fps)
+        if resolution != self._resolution:
+            self._resolution, self._world.size = resolution, (160 * 2**resolution, 120 * 2**resolution)
         self.handles.append(f"{name}_{len(self.handles)}")
         return self.handles[-1]
 

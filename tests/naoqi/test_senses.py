@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lumen.language.commands import Posture
+from lumen.language.routes import Size
 from lumen.ports import Battery, Image, Joints, Sense, Tactile
 from lumen.robots.naoqi.instruments import INERTIAL, SOLES, device
 from tests.naoqi.conftest import Live
@@ -53,6 +54,14 @@ def test_an_image_of_another_size_is_none(robot: Lockstep, caplog: pytest.LogCap
         assert robot.read(Sense.IMAGE) is None
         assert robot.read(Sense.IMAGE) is None
     assert sum("160 x 120 x 3, not of 320 x 240 x 3" in record.getMessage() for record in caplog.records) == 1
+
+
+def test_images_of_the_size_that_is_wanted_come_after_the_next(robot: Lockstep) -> None:
+    assert image(robot).pixels(Size(640, 480)).shape == (240, 320, 3)
+    assert image(robot).pixels(Size(640, 480)).shape == (480, 640, 3)
+    assert image(robot).pixels().shape == (480, 640, 3)
+    assert image(robot).pixels().shape == (240, 320, 3)
+    until(lambda: sum(name.startswith("lumen") for name in robot.nao.camera.handles) == 1)
 
 
 def test_a_bumper_has_two_sides(robot: Lockstep) -> None:

@@ -17,6 +17,7 @@ from lumen.buses.validated import validated
 from lumen.errors import BusError, RobotError
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.language.routes import SIZES
 from lumen.ports import Message, Reading, Sense
 from lumen.robots.server import Server
 from tests.exhibits import TACTILE, messages, project
@@ -53,6 +54,18 @@ def test_an_image_is_a_jpeg_in_a_data_uri() -> None:
     assert body["contentSize"] == len(data)
     assert {body[k] for k in ("uploadDate", "dateCreated", "dateModified", "datePublished")} == {DATE}
     assert (body["name"], body["contentType"], body["time"]) == ("0", "image/jpeg", 0.0)
+
+
+def test_the_route_says_how_large_an_image_is_and_a_reload_changes_that() -> None:
+    route, asked = PROJECT.routes["image"], Collector()
+    stand = Stand(routes={"image": replace(route, size=SIZES[2])})
+    stand.robot.pixels = lambda size=None: (asked(size), FRAME)[1]
+    stand.server.sample(0.0)
+    until(lambda: stand.server.counts["image"].published == 1)
+    stand.server.use(project(routes={"image": replace(route, size=SIZES[0])}))
+    stand.server.sample(1.0)
+    stand.server.close()
+    assert asked.messages == [(640, 480), (160, 120)]
 
 
 def test_every_sense_keeps_its_own_period() -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.language.robots import Body
+from lumen.language.routes import Size
 from lumen.language.stories import Visitor
 from lumen.ports import Image, Sense
 from lumen.robots.simulation import SimulatedRobot
@@ -38,6 +39,16 @@ def test_the_camera_sees_the_visitor_s_face_where_it_is_said_to_be(robot: Simula
     changed = np.abs(with_visitor - without).sum(axis=2) > 40
     assert changed[108:134, 150:170].mean() > 0.9
     assert not changed[:, :60].any()
+
+
+def test_an_image_is_as_large_as_is_asked_for_and_shows_the_same(robot: SimulatedRobot) -> None:
+    robot.place(Visitor())
+    robot.advance(0.1)
+    reading = image(robot)
+    small, large = reading.pixels().astype(int), reading.pixels(Size(640, 480)).astype(int)
+    assert large.shape == (480, 640, 3)
+    shrunk = large.reshape(240, 2, 320, 2, 3).mean(axis=(1, 3))
+    assert np.abs(shrunk - small).mean() < 4
 
 
 def test_another_thread_draws_the_moment_of_the_reading(robot: SimulatedRobot) -> None:

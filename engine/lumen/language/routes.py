@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import NamedTuple
 
 from lumen.language.diagnostics import Path
 
@@ -49,14 +50,32 @@ STALE = 10.0
 """How long no command should wait [s]: the people around the robot have moved by then."""
 
 
+class Size(NamedTuple):
+    """Of a picture [px]."""
+
+    width: int
+    height: int
+
+    def __str__(self) -> str:
+        return f"{self.width} x {self.height}"
+
+
+SIZES = tuple(Size(320 * n // 2, 240 * n // 2) for n in (1, 2, 4, 8))
+"""What NAO's cameras give: NAOqi's kQQVGA to k4VGA."""
+
+FASTEST = 0.033
+"""The time between two images of NAO's cameras [s]: 30 a second."""
+
+
 @dataclass(frozen=True, slots=True)
 class Route:
     """A row of the route table in `lumen.yaml`.
 
     `key` may hold `{robot}`. `schema` names a file of `schemas/messages/`. `event` is the event that a message
-    becomes for the behaviour. `every` [s] is the period of a sense, `ttl` [s] the time to live, `keep` how many
-    messages wait at most, `latency` [s] how old a body without a `time` is taken to be. `must_arrive`: who sends it
-    keeps it until the broker has it, who takes it gives it back unless it was handled.
+    becomes for the behaviour. `every` [s] is the period of a sense, `size` that of its images, None for the camera's
+    own; `ttl` [s] the time to live, `keep` how many messages wait at most, `latency` [s] how old a body without a
+    `time` is taken to be. `must_arrive`: who sends it keeps it until the broker has it, who takes it gives it back
+    unless it was handled.
     """
 
     name: str
@@ -65,6 +84,7 @@ class Route:
     schema: str = ""
     event: str = ""
     every: float | None = None
+    size: Size | None = None
     ttl: float | None = None
     keep: int | None = None
     carried: Carried = Carried.TELEMETRY

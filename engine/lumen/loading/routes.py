@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Path
-from lumen.language.routes import COMMAND, STOP, Carried, Direction, Route
+from lumen.language.routes import COMMAND, STOP, Carried, Direction, Route, Size
 from lumen.loading.source import Report
 from lumen.loading.units import seconds
 
@@ -32,6 +32,7 @@ def build_route(name: str, data: Mapping[str, Any], report: Report, where: Path)
         schema=data.get("schema", ""),
         event=data.get("event", ""),
         every=duration(data, "every", report, where, positive=True),
+        size=_size(data),
         ttl=duration(data, "ttl", report, where, positive=True),
         keep=int(data["keep"]) if "keep" in data else None,
         carried=carried,
@@ -39,6 +40,10 @@ def build_route(name: str, data: Mapping[str, Any], report: Report, where: Path)
         latency=LATENCY if latency is None else latency,
         where=where,
     )
+
+
+def _size(data: Mapping[str, Any]) -> Size | None:
+    return Size(*map(int, data["size"].split("x"))) if "size" in data else None
 
 
 def duration(data: Mapping[str, Any], key: str, report: Report, where: Path, *, positive: bool = False) -> float | None:

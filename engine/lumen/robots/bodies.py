@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
+from lumen.language.routes import Size
 from lumen.ports import Battery, Image, Joints, Sonar, Tactile
 
 if TYPE_CHECKING:
@@ -32,13 +33,13 @@ def body_of(reading: Joints | Sonar | Tactile | Battery) -> dict[str, Any]:
             return {"percentage": percentage, "isPlugged": plugged, "isCharging": charging, "time": time}
 
 
-def image_body(image: Image, number: int, date: str) -> dict[str, Any]:
-    """The body of a frame: `number` counts frames, `date` is when it was taken (ISO 8601).
+def image_body(image: Image, number: int, date: str, size: Size | None = None) -> dict[str, Any]:
+    """The body of a frame of that size: `number` counts frames, `date` is when it was taken (ISO 8601).
 
     Renders and compresses, so call it from the thread that owns the camera. Raises RobotError where the robot can't
     give a picture.
     """
-    jpeg = _jpeg(image.pixels())
+    jpeg = _jpeg(image.pixels(size) if size else image.pixels())
     return {
         "name": str(number),
         "contentType": "image/jpeg",

@@ -180,4 +180,5 @@ class Server:
             self._bus.publish(route.key_for(self._project.robot), body, ttl=route.ttl)
 
     def _picture(self, image: Image) -> dict[str, Any]:
-        return image_body(image, next(self._frames), self._date())
+        route = self._routes.get(Sense.IMAGE)
+        return image_body(image, next(self._frames), self._date(), route.size if route else None)

@@ -6,7 +6,18 @@ from urllib.parse import urlsplit
 
 from lumen.language.commands import Track
 from lumen.language.diagnostics import did_you_mean, has_errors
-from lumen.language.routes import COMMAND, HEARD, JOINT, MEANINGS, STALE, Carried, Direction, Route
+from lumen.language.routes import (
+    COMMAND,
+    FASTEST,
+    HEARD,
+    IMAGE,
+    JOINT,
+    MEANINGS,
+    STALE,
+    Carried,
+    Direction,
+    Route,
+)
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.events import descriptors, hears
@@ -34,6 +45,7 @@ def check(draft: Draft) -> None:
             continue
         _ways(draft, report, route)
         _carried(report, route)
+        _pictures(report, route)
         if route.schema:
             references.look_up(report, (*route.where, "schema"), "message", route.schema)
         if route.event:
@@ -72,6 +84,16 @@ def _carried(report: Report, route: Route) -> None:
                 )
 
 
+def _pictures(report: Report, route: Route) -> None:
+    """Only a camera has a size, and it takes so many images a second."""
+    if route.size and route.name != IMAGE:
+        message = f"`{route.name}` has no size: only the images on the route `{IMAGE}` have"
+        find(report, "beyond-camera", (*route.where, "size"), message, "delete `size`", key=True)
+    if route.name == IMAGE and route.every and route.every < FASTEST:
+        message = f"an image every {1000 * route.every:g} ms is more than the camera takes, 30 a second"
+        find(report, "beyond-camera", (*route.where, "every"), message, f"{1000 * FASTEST:g}ms is the shortest")
+
+
 def _missing(draft: Draft, routes: Mapping[str, Route], report: Report) -> None:
     """Routes that a behaviour counts on without naming them."""
     if has_errors(draft.diagnostics):
@@ -82,7 +104,8 @@ def _missing(draft: Draft, routes: Mapping[str, Route], report: Report) -> None:
         for name, needed, what in ((JOINT, tracks, "uses `track`"), (HEARD, waits, "waits for `heard`")):
             if needed and name not in routes and name not in report.lost:
                 message = f"`{behavior}` {what}, and there is no route `{name}`: {MEANINGS[name]}"
-                find(report, "missing-route", ("routes",), message, f"write a row `{name}:`", key=True)
+                hint, cause = f"write a row `{name}:`", f"name {name}"
+                find(report, "missing-route", ("routes",), message, hint, key=True, cause=cause)
 
 
 def _key(report: Report, route: Route) -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from lumen.errors import RobotError
 from lumen.language.robots import Body
+from lumen.language.routes import SIZES, Size
 from lumen.ports import Battery, Image, Joints, Reading, Sense, Sonar, Tactile
 from lumen.robots.naoqi.link import Link
 
@@ -16,9 +17,9 @@ if TYPE_CHECKING:
 
 NAME = "lumen"
 TOP, RGB = 0, 11
-RESOLUTIONS = {(160, 120): 0, (320, 240): 1, (640, 480): 2, (1280, 960): 3}
-RATE = 15
-"""Images a second."""
+RESOLUTIONS = {size: number for number, size in enumerate(SIZES)}
+RATE = 30
+"""Images a second: the route says how many of them are fetched."""
 FRAMES = 100
 """Of how many images the fastest tells how the robot's clock stands to ours."""
 
@@ -76,6 +77,8 @@ class Instruments:
         self._felt = [*motors, *(device(f"InertialSensor/{name}") for name in INERTIAL), *map(device, SOLES)]
         self._touches = {name: [device(d) for d in TOUCHES[name]] for name in body.tactile if name in TOUCHES}
         self._handle = ""
+        self._own = Size(body.camera.width, body.camera.height)
+        self._size = self._wanted = self._own
         self._behind: deque[float] = deque(maxlen=FRAMES)
 
     def reader(self, sense: Sense) -> Callable[[], Reading]:
@@ -98,8 +101,7 @@ class Instruments:
 
     def end(self) -> None:
         """Let go of camera and sonars."""
-        if self._handle:
-            self._link.post("ALVideoDevice", "unsubscribe", self._handle).wait(0.5)
+        self._let_go(0.5)
         if self._link.has("ALSonar"):
             self._link.post("ALSonar", "unsubscribe", NAME).wait(0.5)
 
@@ -134,6 +136,9 @@ class Instruments:
 
     def image(self) -> Image:
         """The newest frame of the top camera, at its time on our clock."""
+        if self._wanted != self._size:
+            self._let_go()
+            self._size = self._wanted
         handle = self._handle or self._subscribe()
         try:
             found = self._link.ask("ALVideoDevice", "getImageRemote", handle)
@@ -143,11 +148,12 @@ class Instruments:
             raise
         self._link.post("ALVideoDevice", "releaseImage", handle)
         self._behind.append(self._clock() - stamp)
-        width, height = self._body.camera.width, self._body.camera.height
+        width, height = self._size
 
-        def shaped() -> "NDArray[np.uint8]":
+        def shaped(size: Size | None = None) -> "NDArray[np.uint8]":
             import numpy as np
 
+            self._wanted = size or self._own
             return np.frombuffer(pixels, np.uint8).reshape(height, width, 3)
 
         return Image(stamp + min(self._behind), shaped)
@@ -167,12 +173,16 @@ class Instruments:
         whole = temperature if len(temperature) == motors else ()
         return whole, _known(zip(INERTIAL, inertial, strict=True)), _known(zip(SOLES, soles, strict=True))
 
+    def _let_go(self, patience: float = 0.0) -> None:
+        """Unsubscribe from the camera, and wait so long [s] for that."""
+        if self._handle:
+            self._link.post("ALVideoDevice", "unsubscribe", self._handle).wait(patience)
+        self._handle = ""
+
     def _subscribe(self) -> str:
-        camera = self._body.camera
-        size = (camera.width, camera.height)
-        if size not in RESOLUTIONS:
-            raise RobotError(f"NAO's camera has no images of {size[0]} x {size[1]}")
-        arguments = (NAME, TOP, RESOLUTIONS[size], RGB, RATE)
+        if self._size not in RESOLUTIONS:
+            raise RobotError(f"NAO's camera has no images of {self._size}")
+        arguments = (NAME, TOP, RESOLUTIONS[self._size], RGB, RATE)
         self._handle = str(self._link.ask("ALVideoDevice", "subscribeCamera", *arguments) or "")
         if not self._handle:
             raise RobotError("the camera can't be subscribed to: too many others have it")
@@ -183,10 +193,8 @@ class Instruments:
         if not isinstance(found, Sequence) or len(found) < 7:
             raise RobotError("the camera gave no image: somebody else has unsubscribed it, or it is not there")
         width, height, layers, _, seconds, microseconds, pixels = found[:7]
-        camera = self._body.camera
-        if (width, height, layers) != (camera.width, camera.height, 3):
-            wanted = f"{camera.width} x {camera.height} x 3"
-            raise RobotError(f"the camera gave an image of {width} x {height} x {layers}, not of {wanted}")
+        if (width, height, layers) != (*self._size, 3):
+            raise RobotError(f"the camera gave an image of {width} x {height} x {layers}, not of {self._size} x 3")
         if not isinstance(pixels, bytes | bytearray) or len(pixels) != width * height * layers:
             raise RobotError(f"the camera gave {len(pixels) if pixels else 0} bytes for {width} x {height} x {layers}")
         return bytes(pixels), float(seconds) + float(microseconds) / 1e6

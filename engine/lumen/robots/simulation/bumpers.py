@@ -1,14 +1,9 @@
 """The bumpers at the tips of the feet: what they run into presses them."""
 
-from typing import TYPE_CHECKING
-
 import mujoco
+import numpy as np
 
 from lumen.robots.simulation.model import ROBOT
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 FEET = {"LSole": "LeftBumper", "RSole": "RightBumper"}
 
@@ -24,21 +19,22 @@ class Bumpers:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self._model, self._data = model, data
-        self._solid = model.geom_contype == _SOLID
+        self._solid = set(np.flatnonzero(model.geom_contype == _SOLID).tolist())
         self._feet = {model.geom(f"{ROBOT}/{foot}").id: bumper for foot, bumper in FEET.items()}
 
     def pressed(self) -> set[str]:
         """Those that are pressed now."""
-        pairs = self._data.contact.geom
-        if not len(pairs) or not self._solid[pairs].any():
+        touching = self._data.contact.geom
+        if self._solid.isdisjoint(touching.ravel().tolist()):
             return set()
+        pairs = [set(pair) for pair in touching.tolist()]
         return {
             bumper for i, pair in enumerate(pairs) for foot, bumper in self._feet.items() if self._at(i, pair, foot)
         }
 
-    def _at(self, i: int, pair: "NDArray[np.int32]", foot: int) -> bool:
+    def _at(self, i: int, pair: set[int], foot: int) -> bool:
         """Whether a contact is one of that foot's tip with something solid."""
-        if foot not in pair or not self._solid[pair].any():
+        if foot not in pair or self._solid.isdisjoint(pair):
             return False
         body = self._model.geom_bodyid[foot]
         ahead = self._data.xmat[body].reshape(3, 3)[:, 0]

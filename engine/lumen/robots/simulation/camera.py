@@ -2,6 +2,7 @@
 
 from lumen.interpreters.projection import project
 from lumen.language.robots import Camera
+from lumen.language.routes import Size
 from lumen.ports import Image
 from lumen.robots.simulation.model import ROBOT
 from lumen.robots.simulation.rendering import CAMERA, Pixels, Scene, Studio, available
@@ -23,8 +24,8 @@ class TopCamera:
             return None
         studio, camera, scene = self._studio, self._camera, Scene.of(self._world.model, self._world.data)
 
-        def pixels() -> Pixels:
-            return studio.draw(scene, NAME, camera.width, camera.height)
+        def pixels(size: Size | None = None) -> Pixels:
+            return studio.draw(scene, NAME, *(size or (camera.width, camera.height)))
 
         return Image(now, pixels)
 

@@ -29,16 +29,18 @@ class Envelope:
         follow a coupled limit in time, the joint that narrows it waits.
         """
         reach = self.speed * dt
-        result: Angles = np.clip(last + np.clip(goal - last, -reach, reach), self.low, self.high)
+        result: Angles = np.maximum(np.minimum(goal, last + reach), last - reach)
+        np.minimum(np.maximum(result, self.low, out=result), self.high, out=result)
         for joint, on, limit in self._coupled:
+            before, held, most = last.item(on), last.item(joint), reach.item(joint)
+            way, wanted = result.item(on) - before, result.item(joint)
             for share in (1.0, 0.5, 0.25, 0.0):
-                angle = last[on] + share * (result[on] - last[on])
-                low, high = coupled_range(limit, float(angle))
-                inside = min(max(float(result[joint]), low), high)
-                if share == 0.0 or abs(inside - last[joint]) <= reach[joint]:
+                low, high = coupled_range(limit, before + share * way)
+                inside = min(max(wanted, low), high)
+                if share == 0.0 or abs(inside - held) <= most:
                     break
-            result[on] = angle
-            result[joint] = min(max(inside, last[joint] - reach[joint]), last[joint] + reach[joint])
+            result[on] = before + share * way
+            result[joint] = min(max(inside, held - most), held + most)
         for follower, leader in self._shared:
             result[follower] = result[leader]
         return result

@@ -23,7 +23,8 @@ class Sonars:
         self._model, self._data, self._sensor = model, data, sensor
         self._rays = _cone(sensor.cone / 2)
         self._noise = np.random.default_rng(seed)
-        self._hit = np.zeros(1, dtype=np.int32)
+        self._distances = np.zeros(len(self._rays))
+        self._hit = np.zeros(len(self._rays), dtype=np.int32)
 
     def measure(self) -> tuple[float, float]:
         """Left and right; the farthest that can be heard where nothing is."""
@@ -31,14 +32,14 @@ class Sonars:
 
     def _side(self, name: str) -> float:
         site = self._data.site(f"{ROBOT}/{name}")
-        rays = self._rays @ site.xmat.reshape(3, 3).T
-        found = [self._ray(site.xpos, ray) for ray in rays]
-        nearest = min((d for d in found if d >= 0), default=self._sensor.maximum)
+        rays = (self._rays @ site.xmat.reshape(3, 3).T).ravel()
+        farthest, found = self._sensor.maximum, self._distances
+        mujoco.mj_multiRay(
+            self._model, self._data, site.xpos, rays, _ECHOING, 1, -1, self._hit, found, None, found.size, farthest
+        )
+        nearest = float(np.min(found, initial=farthest, where=found >= 0))
         heard = round((nearest + self._noise.normal(0, NOISE)) / RESOLUTION) * RESOLUTION
         return round(min(max(heard, self._sensor.minimum), self._sensor.maximum), 3)
-
-    def _ray(self, origin: NDArray[np.float64], direction: NDArray[np.float64]) -> float:
-        return float(mujoco.mj_ray(self._model, self._data, origin, direction, _ECHOING, 1, -1, self._hit))
 
 
 def _cone(half: float) -> NDArray[np.float64]:
