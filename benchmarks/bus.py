@@ -142,7 +142,8 @@ def sink(channel: Any) -> None:
 
 def round_trip(url: str) -> None:
     """A command and its answer, one after the other."""
-    for name, ask in (("ours", asking(url)), ("pika", asking_raw(url))):
+    for name, asks in (("ours", asking), ("pika", asking_raw)):
+        ask = asks(url)
         times = []
         for _ in range(600):
             began = time.perf_counter()
@@ -159,7 +160,7 @@ def asking(url: str) -> Iterator[None]:
         bus.carry({KEY: COMMAND})
     came = threading.Semaphore(0)
     answer: Callable[[Bus], Callable[[Any], None]] = lambda bus: lambda m: bus.reply(m, "command finished")  # noqa: E731
-    server.subscribe(KEY, answer(server))
+    undo = server.subscribe(KEY, answer(server))
     client.subscribe(ANSWER, lambda message: came.release())
     try:
         while True:
@@ -168,6 +169,7 @@ def asking(url: str) -> Iterator[None]:
             yield
     finally:
         client.close()
+        undo()  # and with it the queue, which would keep what pika sends next
         server.close()
 
 

@@ -18,12 +18,13 @@ from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
 from lumen.language.projects import Project
-from lumen.language.routes import Direction, Route
+from lumen.language.routes import Direction
 from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.ports import Bus
 from lumen.robots.ways import COMMAND, key_of
 from lumen.rules import check_files
+from lumen.runtime.delegating import ROUTE as MOTION
 
 LISTENING = 2.0
 SKEW = 1.0
@@ -149,18 +150,21 @@ def _obeying(probe: Probe, attendance: Attendance, project: Project) -> Iterator
 
 
 def _served(probe: Probe, project: Project) -> Iterator[Finding]:
-    alone: list[str] = []
-    must: dict[str, Route] = {
-        key: route for key, route in by_key(project).items() if route.must_arrive and route.direction is Direction.IN
-    }
-    for key, route in must.items():
+    """Which routes that must arrive somebody takes; only a motion module may be missing."""
+    taken: list[str] = []
+    for key, route in by_key(project).items():
+        if not route.must_arrive or route.direction is not Direction.IN:
+            continue
         served = probe.served(key, route)
-        if not served.readers:
+        if served.readers:
+            taken.append(route.name)
+        elif route.name == MOTION:
+            yield Finding("routes", "note", "there is no motion module: the brain does its work")
+        else:
             waiting = f", and {served.waiting} messages wait" if served.waiting else ""
-            alone.append(route.name)
             yield Finding("routes", "warning", f"nobody serves `{route.name}` ({key}){waiting}")
-    if must and not alone:
-        yield Finding("routes", "ok", f"{_names([route.name for route in must.values()])} served")
+    if taken:
+        yield Finding("routes", "ok", f"{_names(taken)} served")
 
 
 def _skew(body: Any) -> float | None:
