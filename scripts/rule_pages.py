@@ -115,7 +115,7 @@ def main() -> None:
         (DOCS / name).write_text(text, encoding="utf-8")
     for stale in {file.name for file in DOCS.glob("*.md")} - written().keys():
         (DOCS / stale).unlink()
-    print(f"wrote {len(written())} pages to {DOCS.relative_to(ROOT)}", file=sys.stderr)  # noqa: T201
+    print(f"wrote {len(written())} pages to {DOCS.relative_to(ROOT)}", file=sys.stderr)
 
 
 if __name__ == "__main__":
