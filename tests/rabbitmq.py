@@ -21,7 +21,7 @@ from pathlib import Path
 import pytest
 
 PREFIX = Path("/usr/lib/rabbitmq/lib")
-READY = 60.0
+READY = 180.0
 HASHING = "rabbit_password_hashing_sha256"
 
 

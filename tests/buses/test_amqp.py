@@ -10,7 +10,9 @@ import pika
 import pytest
 
 from lumen.bus import Bus, BusError, Message, connect
+from lumen.buses.amqp import CLOSING
 from tests.rabbitmq import RabbitMQ
+from tests.relay import Relay
 from tests.waiting import Collector, until
 
 pytestmark = pytest.mark.xdist_group("rabbitmq")
@@ -134,16 +136,16 @@ def test_a_text_of_type_text_plain_is_a_text(bus: Bus, stranger: Any) -> None:
 
 
 def test_a_slow_handler_costs_no_heartbeat(broker: RabbitMQ, caplog: pytest.LogCaptureFixture) -> None:
-    bus, seen, release = connect(broker.url + "?heartbeat=1"), Collector(), threading.Event()
+    bus, seen, release = connect(broker.url + "?heartbeat=2"), Collector(), threading.Event()
 
     def slow(message: Message) -> None:
         seen(message)
-        assert release.wait(20)
+        assert release.wait(60)
 
     bus.subscribe("lumen.a", slow)
     bus.publish("lumen.a", 1)
     seen.wait(1)
-    beats = time.monotonic() + 4.0
+    beats = time.monotonic() + 7.0
     until(lambda: time.monotonic() > beats)
     bus.publish("lumen.a", 2)
     release.set()
@@ -152,11 +154,18 @@ def test_a_slow_handler_costs_no_heartbeat(broker: RabbitMQ, caplog: pytest.LogC
     assert "lost" not in caplog.text
 
 
-def test_a_publisher_does_not_wait_for_a_broker_that_is_busy(bus: Bus) -> None:
-    began = time.monotonic()
+def test_a_publisher_does_not_wait_for_a_broker_that_hears_nothing(broker: RabbitMQ, bus: Bus) -> None:
+    relay, seen = Relay(broker.port), Collector()
+    far = connect(f"amqp://guest:guest@127.0.0.1:{relay.port}/")
+    bus.subscribe("lumen.a", seen)
+    relay.cut()
     for i in range(1000):
-        bus.publish("lumen.a", i)
-    assert time.monotonic() - began < 1.0
+        far.publish("lumen.a", i)
+    assert seen.bodies == []
+    relay.mend()
+    assert seen.wait(1000) == list(range(1000))
+    far.close()
+    relay.close()
 
 
 def test_a_flood_arrives_whole(bus: Bus) -> None:
@@ -215,5 +224,5 @@ def test_closing_while_the_broker_is_away_takes_no_longer_than_promised(caplog: 
     bus.publish("lumen.a", "for nobody")
     began = time.monotonic()
     bus.close()
-    assert time.monotonic() - began < 8.0
+    assert time.monotonic() - began < 4 * CLOSING
     assert "1 messages unsent" in caplog.text

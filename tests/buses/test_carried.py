@@ -9,6 +9,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, BusError, Message, Refused, connect
+from lumen.buses.consuming import PATIENCE, PREFETCH
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
@@ -72,7 +73,7 @@ def test_of_telemetry_the_newest_wins_where_a_handler_is_slow(opened: Open) -> N
     def slow(message: Message) -> None:
         seen(message)
         busy.set()
-        assert go.wait(20)
+        assert go.wait(60)
 
     bus.subscribe("lumen.newest", slow)
     other.publish("lumen.newest", -1)
@@ -80,6 +81,8 @@ def test_of_telemetry_the_newest_wins_where_a_handler_is_slow(opened: Open) -> N
     for i in range(500):
         other.publish("lumen.newest", i)
     other.close()
+    (subscription,) = [s for s in bus._way.consuming.subscriptions() if s.handler is slow]  # type: ignore[attr-defined]
+    until(lambda: subscription.received >= PREFETCH)
     go.set()
     until(lambda: seen.bodies[-1] == 499)
     assert len(seen.bodies) <= 10
@@ -90,7 +93,7 @@ def test_old_telemetry_is_not_handed_on(opened: Open) -> None:
 
     def slow(message: Message) -> None:
         seen(message)
-        assert go.wait(20)
+        assert go.wait(60)
 
     bus.subscribe("lumen.old", slow)
     for i in range(3):
@@ -173,7 +176,7 @@ def test_a_stop_waits_behind_nothing(opened: Open) -> None:
 
     def work(message: Message) -> None:
         busy.set()
-        assert go.wait(20)
+        assert go.wait(60)
 
     bus.subscribe(slow.key, work)
     bus.subscribe(stop.key, seen)
@@ -181,10 +184,8 @@ def test_a_stop_waits_behind_nothing(opened: Open) -> None:
     assert busy.wait(20)
     for _ in range(200):
         sender.publish(slow.key, "x" * 100_000)
-    began = time.monotonic()
     sender.publish(stop.key, "stop")
-    seen.wait(1)
-    assert time.monotonic() - began < 1.0
+    assert seen.wait(1) == ["stop"]
     go.set()
 
 
@@ -282,7 +283,7 @@ def test_what_was_prepared_is_subscribed_to_without_waiting_for_the_network(brok
     bus.carry({way.key: way for way in ways})
     for way in ways:
         bus.subscribe(way.key, seen)
-    assert time.monotonic() - began < 0.05
+    assert time.monotonic() - began < PATIENCE, "nothing comes through a relay that is cut"
     for way in ways:
         sender.publish(way.key, way.key)
     sender.close()

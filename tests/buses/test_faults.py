@@ -12,6 +12,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, Message, connect
+from lumen.buses.consuming import PATIENCE
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
@@ -87,7 +88,7 @@ def test_a_broker_that_is_killed_and_started_again_loses_and_doubles_nothing(cap
     finally:
         broker.stop()
     said = [record.getMessage() for record in caplog.records]
-    assert sum("is lost: StreamLostError" in text or "is lost: ConnectionClosed" in text for text in said) == 2
+    assert sum(" is lost: " in text for text in said) == 2
     assert sum(text.startswith("the broker") and text.endswith("is back") for text in said) == 2, (
         "once for each of the two buses, whatever they are made of"
     )
@@ -105,7 +106,7 @@ def live_through_a_power_cut(broker: RabbitMQ) -> None:
     began = time.monotonic()
     reader.subscribe("lumen.fault.later", later)
     sender.publish("lumen.fault.later", "stale", ttl=0.001)
-    assert time.monotonic() - began < 1.0
+    assert time.monotonic() - began < PATIENCE, "who subscribes and sends waits for no broker that is away"
     sent = sending.sent
     until(lambda: sending.sent > sent + 50)
     broker.start()

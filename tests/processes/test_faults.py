@@ -80,7 +80,7 @@ def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_betwe
     assert not visitor.process.failed
     assert motions(robot) == ["dance", "goodbye"]
     again.send_signal(signal.SIGTERM)
-    said = again.communicate(timeout=20)[0]
+    said = again.communicate(timeout=60)[0]
     assert "this one goes on from there, in dance" in said
     assert again.returncode == 0
     assert "Traceback" not in said
@@ -138,7 +138,7 @@ def test_a_robot_that_hangs_is_lost_and_does_nothing_late_when_it_goes_on(
     troupe.until(lambda: b'"late"' in dead.next())
     troupe.until(lambda: "idle" in brain.states)
     robot.send_signal(signal.SIGTERM)
-    said = robot.communicate(timeout=20)[0]
+    said = robot.communicate(timeout=60)[0]
     assert "rests: it stood still for " in said
     assert "goodbye" not in said
     dead.close()
@@ -152,7 +152,7 @@ def test_ctrl_c_ends_each_process_cleanly_and_who_waits_says_for_whom(start: Sta
         said = [process.stdout.readline(), process.stdout.readline()]
         lines.append(said[1].strip())
         process.send_signal(signal.SIGINT)
-        rest = process.communicate(timeout=20)[0]
+        rest = process.communicate(timeout=60)[0]
         assert process.returncode == 0, rest
         assert "Traceback" not in rest
     assert lines == ["waiting for the robot on avatar.NAO.command"] * 3
@@ -170,7 +170,7 @@ def test_the_whole_tour_in_four_processes(troupe: Troupe, start: Start) -> None:
     assert deeds(troupe.trace.bodies) == expected
     for process in others:
         process.send_signal(signal.SIGTERM)
-        rest = process.communicate(timeout=20)[0]
+        rest = process.communicate(timeout=60)[0]
         assert process.returncode == 0, rest
         assert "Traceback" not in rest
 
@@ -198,9 +198,7 @@ def test_a_broker_that_is_killed_mid_tour_and_comes_back(copy: Path) -> None:
         brain, visitor = troupe.join("brain", story="dancing"), troupe.join("visitor", story="dancing")
         troupe.until(lambda: "dance" in motions(robot))
         broker.kill()
-        troupe.live(8.0)
-        assert "robot_lost" in brain.states
-        assert isinstance(robot.body.performed[-1][1], Rest)
+        troupe.until(lambda: "robot_lost" in brain.states and isinstance(robot.body.performed[-1][1], Rest))
         before = motions(robot)
         broker.start()
         troupe.until(lambda: {"offer", "watching"} <= brain.states, 120.0)

@@ -216,10 +216,9 @@ def test_a_slow_subscriber_keeps_the_loop_waiting_for_a_tick_at_most() -> None:
     stand.bus.subscribe("avatar.NAO.data.joint", slow)
     stand.server.sample(0.0)
     assert inside.wait(20)
-    began, processor = time.monotonic(), time.process_time()
-    assert not any(stand.server.settle() for _ in range(50))
-    assert time.monotonic() - began < 0.5
-    assert time.process_time() - processor < 0.5
+    began = time.monotonic()
+    assert not any(stand.server.settle(0.4) for _ in range(50))
+    assert time.monotonic() - began < 10.0, "it waits once, and not each time"
     for i in range(1, 50):
         stand.server.sample(i * 0.02)
     assert len(stand.server._leaving) <= 8
