@@ -165,6 +165,17 @@ def test_the_doctor_finds_what_a_user_may_not(
 
 
 @pytest.mark.xdist_group("rabbitmq")
+def test_who_may_not_send_is_told_so_in_one_line(broker: RabbitMQ, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["topic", "pub", "--project", str(ROOT), "--bus", broker.url_of("eyes")]
+    assert main([*words, "command", '{"method": "rest"}']) == 2
+    said = capsys.readouterr()
+    assert "refuses to let us send `avatar.NAO.command`: ACCESS_REFUSED" in said.err
+    assert said.err.count("\n") == 1
+    assert main([*words, "face", '{"x": 160, "y": 120}']) == 0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.xdist_group("rabbitmq")
 @pytest.mark.parametrize(
     ("url", "says"),
     [

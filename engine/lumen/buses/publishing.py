@@ -154,12 +154,12 @@ class Publishing(Link):
         _log.warning("nobody takes what is sent on `%s`%s", key, hint if "mean" in hint else "")
 
     def _make(self, name: str, work: Callable[[Call, Any], None]) -> None:
-        """Make something on the broker once; where it refuses, all goes on without."""
+        """Make something on the broker once; where it refuses, as it does to a module with few rights, all goes on."""
         if name in self._declared or name in self._refused:
             return
         if refusal := self.connection.attempt(work):
             self._refused.add(name)
-            _log.warning("the broker at %s does not let us make what keeps `%s`: %s", self.address, name, refusal)
+            _log.info("the broker at %s does not let us make what keeps `%s`: %s", self.address, name, refusal)
         else:
             self._declared.add(name)
 

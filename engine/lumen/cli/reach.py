@@ -17,10 +17,11 @@ from lumen.runtime.home import DOOR, Home, home_of, homes
 
 
 class Reached(NamedTuple):
-    """A running exhibition's bus, and the key under which its robot takes commands."""
+    """A running exhibition's bus, the key under which its robot takes commands, and its broker's address, if any."""
 
     bus: Bus
     command: str
+    broker: str = ""
 
 
 def configure_reach(parser: argparse.ArgumentParser) -> None:
@@ -36,11 +37,11 @@ def reach(options: argparse.Namespace) -> Reached:
     found = _running(root)
     url = options.bus or os.environ.get("LUMEN_BUS") or ("" if found is None else str(found.get("bus", "")))
     if url and not url.startswith("memory:"):
-        return Reached(connect(url), _command(root, found))
+        return Reached(connect(url), _command(root, found), url)
     if found is None:
         settings = draft(read_files(root)).settings
         if settings and not settings.bus.startswith("memory:"):
-            return Reached(connect(settings.bus), _command(root, None))
+            return Reached(connect(settings.bus), _command(root, None), settings.bus)
         raise BusError(f"no exhibition of {root} runs on this machine: start it with `lumen run`, or say --bus URL")
     return Reached(LocalBus(Address.of(found)), _command(root, found))
 

@@ -6,6 +6,7 @@ import queue
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import closing
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -61,8 +62,11 @@ def run(options: argparse.Namespace) -> int:
     """0, or for `pub --wait` 1 where no answer came."""
     _check_words(options)
     project = _project(options)
-    bus = reach(options).bus
+    reached = reach(options)
+    bus = reached.bus
     try:
+        if options.what == "pub" and reached.broker:
+            _check_right(reached.broker, _key(options.words[0], project))
         return {"list": _list, "echo": _echo, "pub": _pub, "hz": _hz, "bw": _bw}[options.what](options, bus, project)
     finally:
         bus.close()
@@ -72,6 +76,15 @@ def _check_words(options: argparse.Namespace) -> None:
     wanted = next(verb.split()[1:] for verb in VERBS if verb.split()[0] == options.what)
     if len(options.words) != len(wanted):
         raise UsageError(f"write `lumen topic {' '.join([options.what, *wanted])}`")
+
+
+def _check_right(broker: str, key: str) -> None:
+    """Raises BusError where the broker does not let this user send under that key."""
+    from lumen.buses.probing import Probe  # with pika: only where there is a broker
+
+    with closing(Probe(broker)) as probe:
+        if reason := probe.writing(key):
+            raise BusError(f"the broker at {probe.address} refuses to let us send `{key}`: {reason}")
 
 
 def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
