@@ -4,6 +4,7 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from lumen.errors import RobotError
@@ -67,3 +68,30 @@ def test_a_body_without_postures_and_joints_is_told_what_it_lacks(body: Body, mo
 def test_a_timestep_longer_than_the_time_between_two_commands_is_told(body: Body, models: Path) -> None:
     hall = changed(models, "hall.xml", ('timestep="0.002"', 'timestep="0.05"'))
     assert "a timestep of at most 0.01 s" in trouble(body, models, hall)
+
+
+def test_a_timestep_that_would_lose_time_is_told(body: Body, models: Path) -> None:
+    hall = changed(models, "hall.xml", ('timestep="0.002"', 'timestep="0.003"'))
+    assert "a timestep that fits into 0.01 s" in trouble(body, models, hall)
+
+
+def test_what_stands_nowhere_is_told_by_its_name(body: Body, models: Path) -> None:
+    hall = changed(models, "hall.xml", ('pos="0 0 0.25"', 'pos="0 0 nan"'))
+    assert "no place that is a number: podium" in trouble(body, models, hall)
+
+
+@pytest.mark.parametrize(("file", "content"), [("nao/head.obj", "v 1 2 x"), ("hall/planks.png", "no picture")])
+def test_a_broken_mesh_or_texture_is_told_by_its_own_name(
+    body: Body, models: Path, tmp_path: Path, file: str, content: str
+) -> None:
+    broken = Path(shutil.copytree(models, tmp_path / "models"))
+    (broken / file).write_text(content)
+    reason = trouble(body, broken)
+    assert Path(file).name in reason
+    assert "pymjcf_debug" not in reason
+
+
+def test_a_simulation_that_has_become_unstable_ends_instead_of_beginning_anew(robot: SimulatedRobot) -> None:
+    robot.world.data.qvel[:] = np.nan
+    with pytest.raises(RobotError, match="unstable"):
+        robot.advance(0.2)

@@ -1,5 +1,6 @@
 """The robot in its hall, as one dm_control model."""
 
+import re
 from dataclasses import dataclass
 from math import degrees
 from pathlib import Path
@@ -58,8 +59,13 @@ def compiled(world: mjcf.RootElement) -> mjcf.Physics:
     try:
         return mjcf.Physics.from_mjcf_model(world)
     except Exception as error:  # the compiler raises whatever it stumbles over
-        reason = " ".join(str(error).split())
-        raise RobotError(f"MuJoCo can't build the robot in its hall: {reason}") from error
+        raise RobotError(f"MuJoCo can't build the robot in its hall: {_plain(error)}") from error
+
+
+def _plain(error: Exception) -> str:
+    """What the compiler says, without dm_control's advice, its names of files and the lines of its own XML."""
+    reason = " ".join(str(error).split()).rpartition("Error: ")[2]
+    return re.sub(r"-[0-9a-f]{40}(?=\.)|, id \d+, line \d+", "", reason)
 
 
 def _complain(what: str, lacks: list[str]) -> None:

@@ -38,8 +38,11 @@ def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
         found.append('mocap="true" at its body `visitor`')
     if visitor is not None and not visitor.geom:
         found.append("a geom in its body `visitor`")
-    if (hall.option.timestep or 0.0) > STEPS:
+    timestep = hall.option.timestep or STEPS
+    if timestep > STEPS:
         found.append(f"a timestep of at most {STEPS:g} s")
+    elif abs(STEPS / timestep - round(STEPS / timestep)) > 1e-6:
+        found.append(f"a timestep that fits into {STEPS:g} s a whole number of times")
     return found
 
 

@@ -117,7 +117,10 @@ class SimulatedRobot:
         self._repertoire.voice = voice
 
     def advance(self, dt: float) -> None:
-        """Live `dt` [s] of physics, in whole control periods: what is left over is lived next time."""
+        """Live `dt` [s] of physics, in whole control periods: what is left over is lived next time.
+
+        Raises RobotError where the models let the simulation become unstable.
+        """
         self._until += dt
         while self.time + PERIOD <= self._until + 1e-9:
             self._tick()
@@ -225,6 +228,7 @@ class SimulatedRobot:
             self._events.append(Event("fallen", {}, now))
         if self._ticks % _CONDITION_EVERY == 0:
             world = self.world
+            world.check()
             self._events += self.condition.live(world.torques, world.speeds, _CONDITION_EVERY * PERIOD, now)
             self._exhaust()
 

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from lumen.errors import RobotError
 from lumen.language.robots import Body
 from lumen.robots.simulation.limits import Angles
 from lumen.robots.simulation.model import ROBOT, Variation, compiled, load
@@ -15,6 +16,10 @@ from lumen.robots.simulation.model import ROBOT, Variation, compiled, load
 PERIOD = 0.01
 """Time between two commands to the joints [s]."""
 
+_UNSTABLE = [
+    int(w)
+    for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
+]
 _FEET = (f"{ROBOT}/LSole", f"{ROBOT}/RSole")
 
 
@@ -42,6 +47,7 @@ class World:
         self._accelerometer = self.model.sensor(f"{ROBOT}/accelerometer").adr[0]
         self._torso_axes = self.data.xmat[self.torso]
         self._substeps = round(PERIOD / self.model.opt.timestep)
+        self._warnings = self.data.warning.number
         self._start: NDArray[np.float64] = self.data.qpos[self._root : self._root + 7].copy()
 
     def step(self) -> None:
@@ -49,6 +55,11 @@ class World:
         mujoco.mj_step2(self.model, self.data)
         mujoco.mj_step(self.model, self.data, self._substeps - 1)
         mujoco.mj_step1(self.model, self.data)
+
+    def check(self) -> None:
+        """Raises RobotError where MuJoCo has met numbers that are none, or too large to be true."""
+        if self._warnings[_UNSTABLE].any():
+            raise RobotError("the simulation has become unstable: look at the places, sizes and forces in models/")
 
     @property
     def angles(self) -> Angles:
@@ -95,7 +106,8 @@ class World:
     def set_up(self, angles: Mapping[str, float]) -> None:
         """Put the robot on its stage in this posture, both soles flat, the point between its feet at the stage's site.
 
-        Only for the beginning of a run: nothing moves the robot but its motors afterwards.
+        Only for the beginning of a run: nothing moves the robot but its motors afterwards. Raises RobotError where
+        something in the hall is nowhere.
         """
         data, root = self.data, self._root
         data.qpos[self._angles] = [angles[name] for name in self.body.joints]
@@ -109,6 +121,13 @@ class World:
         data.qpos[root : root + 3] += self._start[:3] - middle
         data.ctrl[self.actuators] = data.qpos[self._angles][self.driven]
         self.physics.forward()
+        lost = [self.model.geom(i).name or "one without a name" for i in _nowhere(data.geom_xpos)]
+        if lost:
+            raise RobotError(f"these geoms in models/ stand at no place that is a number: {', '.join(lost)}")
+
+
+def _nowhere(places: NDArray[np.float64]) -> NDArray[np.intp]:
+    return np.flatnonzero(~np.isfinite(places).all(axis=1))
 
 
 def _upright(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
