@@ -1,12 +1,13 @@
 """Makes every picture of the documentation from the shipped project, at honest physics.
 
-    python docs/pictures/make.py [tour] [head] [motions] [walk] [postures] [fuzzy] [loop]
+    python docs/pictures/make.py [tour] [head] [sides] [motions] [walk] [postures] [fuzzy] [loop]
 
 `tour` is the README's picture, mid-dance in the shipped story. `head` is the paper's Fig. 13 and 14: the top camera's
 image when the visitor's face is first seen, and once the head has turned to it; a cross marks the image's centre, a
-ring the face. `motions` is a strip of each motion. `walk` is a strip of `walk: {x: 0.2}`,
-`postures` one of each way down to the floor and up again. `fuzzy` draws the head controller, one evaluation of it, and
-the paper's erratum against it; `loop` the closed loop, and prints its numbers.
+ring the face. `sides` is the robot from three sides. `motions` is a sheet of each motion, at the moments that differ
+most. `walk` is a strip of `walk: {x: 0.2}`, `postures` one of each way down to the floor and up again. `fuzzy` draws
+the head controller, one evaluation of it, and the paper's erratum against it; `loop` the closed loop, and prints its
+numbers.
 """
 
 import argparse
@@ -14,10 +15,12 @@ import io
 import math
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from PIL import Image, ImageDraw
+import mujoco
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
 
 import lumen
 from lumen.cli.cast import Cast
@@ -25,7 +28,9 @@ from lumen.cli.show import Show
 from lumen.clocks.simulated import SimulatedClock
 from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
 from lumen.fuzzy import Controller
+from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Posture, Walk
+from lumen.language.motions import Motion
 from lumen.language.projects import Project
 from lumen.ports import Image as Frame
 from lumen.ports import Perform, Sense
@@ -36,14 +41,17 @@ HERE = Path(__file__).parent
 MID_DANCE = 7.0
 STRIP = 8
 WALK = 5.4
+LONG = 14.0
+SIDES = {"front": 20.0, "right": -75.0, "back": 205.0}
+FLOOR, MIDDLE, DISTANCE = 0.5, 0.27, 1.05
 
 
 def robot_of(project: Project) -> SimulatedRobot:
     return SimulatedRobot(project.body, Path(project.root) / "models", project.hall, stage=project.stage)
 
 
-def picture(robot: SimulatedRobot, camera: str, width: int, height: int) -> Image.Image:
-    """What a camera of the hall sees now."""
+def picture(robot: SimulatedRobot, camera: str | mujoco.MjvCamera, width: int, height: int) -> Image.Image:
+    """What a camera sees now, one of the hall or another."""
     studio = Studio(robot.world.model, Quality(shadows=4096, samples=4))
     pixels = studio.draw(Scene.of(robot.world.model, robot.world.data), camera, width, height)
     studio.close()
@@ -110,51 +118,86 @@ def mark(robot: SimulatedRobot, face: tuple[float, float], centre: tuple[float, 
     return image
 
 
+def near(robot: SimulatedRobot, size: tuple[int, int], label: str = "", around: float = 35.0) -> Image.Image:
+    """The robot from nearby, wherever it has moved to, with words in the corner; `around` it [deg] from its front."""
+    world = robot.world
+    camera = mujoco.MjvCamera()
+    camera.lookat[:] = (*world.data.xpos[world.torso][:2], FLOOR + MIDDLE)
+    camera.distance, camera.azimuth, camera.elevation = DISTANCE, 180.0 + around, -12.0
+    shot = picture(robot, camera, *size)
+    font = ImageFont.load_default(size=15)
+    ImageDraw.Draw(shot).text((8, 5), label, font=font, fill="white", stroke_width=2, stroke_fill="black")
+    return shot
+
+
+def sheet(shots: Sequence[Image.Image], columns: int) -> Image.Image:
+    """Pictures of one size in rows."""
+    width, height = shots[0].size
+    whole = Image.new("RGB", (width * columns, height * math.ceil(len(shots) / columns)))
+    for i, shot in enumerate(shots):
+        whole.paste(shot, (width * (i % columns), height * (i // columns)))
+    return whole
+
+
+def sides(project: Project) -> None:
+    """The robot from its front, from its left and from behind."""
+    robot = robot_of(project)
+    robot.advance(1.0)
+    shots = [near(robot, (360, 420), label, around) for label, around in SIDES.items()]
+    sheet(shots, len(shots)).save(HERE / "sides.png", optimize=True)
+    robot.close()
+
+
+def moments(project: Project, motion: Motion, count: int) -> list[float]:
+    """The times [s] of the poses of a motion that differ most from each other."""
+    course = Trajectory(motion, project.body.postures[motion.start or "Stand"])
+    times = np.arange(0.1, motion.duration, 0.1)
+    poses = np.array([[course.sample(t).get(name, 0.0) for name in motion.tracks] for t in times])
+    chosen = [0]
+    while len(chosen) < count:
+        apart = np.array([np.abs(poses - poses[i]).sum(axis=1) + 0.3 * np.abs(times - times[i]) for i in chosen])
+        chosen.append(int(apart.min(axis=0).argmax()))
+    return sorted(float(times[i]) for i in chosen)
+
+
 def motions(project: Project) -> None:
-    width, height = 200, 260
     for name, motion in project.motions.items():
-        robot = robot_of(project)
-        strip = Image.new("RGB", (width * STRIP, height))
-        robot.start("c1", Posture(motion.start or "Stand", 1.0))
-        robot.advance(2.0)
-        robot.start("c2", Perform(motion))
-        for i in range(STRIP):
-            robot.advance(motion.duration / (STRIP + 1))
-            strip.paste(picture(robot, "close", width, height), (width * i, 0))
-        strip.save(HERE / f"motion_{name}.png", optimize=True)
+        robot, shots, before = robot_of(project), [], 0.0
+        perform(robot, Posture(motion.start or "Stand", 1.0))
+        robot.start("c", Perform(motion))
+        for at in moments(project, motion, 12 if motion.duration > LONG else 6):
+            robot.advance(at - before)
+            shots.append(near(robot, (250, 300), f"{at:.1f} s"))
+            before = at
+        sheet(shots, 6).save(HERE / f"motion_{name}.png", optimize=True)
         robot.close()
 
 
 def walk(project: Project) -> None:
-    width, height = 200, 260
-    robot = robot_of(project)
-    strip = Image.new("RGB", (width * STRIP, height))
+    robot, shots = robot_of(project), []
     robot.start("c1", Walk(-0.15))
     robot.advance(WALK)
     robot.start("c2", Walk(0.2))
-    for i in range(STRIP):
-        strip.paste(picture(robot, "close", width, height), (width * i, 0))
+    for _ in range(STRIP):
+        shots.append(picture(robot, "close", 200, 260))
         robot.advance(WALK / (STRIP - 1))
-    strip.save(HERE / "walk.png", optimize=True)
+    sheet(shots, STRIP).save(HERE / "walk.png", optimize=True)
     robot.close()
 
 
 def postures(project: Project) -> None:
     """A row for each passage between two postures: the robot before it, on its way, and after it."""
-    width, height, count = 200, 170, 7
-    rows = list(project.body.passages)
-    sheet = Image.new("RGB", (width * count, height * len(rows)))
-    for row, passage in enumerate(rows):
+    shots, count = [], 7
+    for passage in project.body.passages:
         robot = robot_of(project)
         perform(robot, Posture(passage.start, 1.0))
         robot.start("c", Posture(passage.end, 1.0))
         for column in range(count):
-            shot = picture(robot, "close", width, height)
-            ImageDraw.Draw(shot).text((6, 4), f"{passage.start} to {passage.end}" if not column else "", fill="black")
-            sheet.paste(shot, (width * column, height * row))
+            label = f"{column * (passage.duration + 0.4) / (count - 1):.1f} s"
+            shots.append(near(robot, (220, 180), label if column else f"{passage.start} to {passage.end}"))
             robot.advance((passage.duration + 0.4) / (count - 1))
         robot.close()
-    sheet.save(HERE / "postures.png", optimize=True)
+    sheet(shots, count).save(HERE / "postures.png", optimize=True)
 
 
 def perform(robot: SimulatedRobot, command: Posture) -> None:
@@ -185,6 +228,7 @@ PICTURES = {
     "loop": loop,
     "tour": tour,
     "head": head,
+    "sides": sides,
     "motions": motions,
     "walk": walk,
     "postures": postures,

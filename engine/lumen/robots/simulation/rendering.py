@@ -65,8 +65,8 @@ class Studio:
         self._model, self._quality = model, quality
         self._local = threading.local()
 
-    def draw(self, scene: Scene, camera: str, width: int, height: int) -> Pixels:
-        """The scene through a camera of the model."""
+    def draw(self, scene: Scene, camera: str | mujoco.MjvCamera, width: int, height: int) -> Pixels:
+        """The scene through a camera of the model, or one anywhere."""
         cameras: dict[tuple[int, int], _Canvas] = self._local.__dict__.setdefault("canvases", {})
         canvas = cameras.get((width, height))
         if canvas is None:
@@ -93,7 +93,7 @@ class _Canvas:
         atexit.register(self.close)  # after mujoco's own, and so before it: then OpenGL would be gone
         self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = bool(quality.shadows)
 
-    def draw(self, scene: Scene, camera: str) -> Pixels:
+    def draw(self, scene: Scene, camera: str | mujoco.MjvCamera) -> Pixels:
         model, data = self._model, self._data
         data.qpos[:] = scene.positions
         data.mocap_pos[:], data.mocap_quat[:] = scene.visitor_place, scene.visitor_turn
