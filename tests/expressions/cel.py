@@ -10,20 +10,7 @@ from cel_expr_python.ext import ext_strings
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions import Node, Scope, compile_expression, unparse
-from lumen.interpreters.expressions.tree import (
-    Binary,
-    Call,
-    Choice,
-    Entries,
-    Field,
-    Index,
-    Items,
-    Literal,
-    Logic,
-    Name,
-    Unary,
-    children,
-)
+from lumen.interpreters.expressions.tree import Binary, Call, Field, Span, children
 
 ENVIRONMENT = cel.NewEnv(
     variables=dict.fromkeys(("context", "event", "state"), cel.Type.DYN), extensions=[ext_strings.ExtStrings()]
@@ -56,34 +43,16 @@ def by_cel(source: str, scope: Scope) -> Outcome:
     return "value", value
 
 
-def printed(node: Node) -> str:
-    """The expression as CEL writes it, with every bracket."""
-    match node:
-        case Literal():
-            return f"({unparse(node)})"
-        case Name(name=name):
-            return name
-        case Field(base=base, name=name):
-            return f"{printed(base)}.{name}"
-        case Index(base=base, key=key):
-            return f"{printed(base)}[{printed(key)}]"
-        case Items(items=items):
-            return f"[{', '.join(map(printed, items))}]"
-        case Entries(keys=keys, values=values):
-            pairs = zip(keys, values, strict=True)
-            return "{" + ", ".join(f"{unparse(Literal(key))}: {printed(value)}" for key, value in pairs) + "}"
-        case Unary(sign=sign, operand=operand):
-            return f"({sign}{printed(operand)})"
-        case Binary(sign=sign, left=left, right=right):
-            return f"({printed(left)} {sign} {printed(right)})"
-        case Logic(sign=sign, operands=operands):
-            return f"({f' {sign} '.join(map(printed, operands))})"
-        case Choice(condition=condition, then=then, otherwise=otherwise):
-            return f"({printed(condition)} ? {printed(then)} : {printed(otherwise)})"
-        case Call(function=function, arguments=(first, *rest)) if function in METHODS:
-            return f"{printed(first)}.{METHODS[function]}({', '.join(map(printed, rest))})"
-        case Call(function=function, arguments=arguments):
-            return f"{function}({', '.join(map(printed, arguments))})"
+def in_cel(part: Any) -> Any:
+    """A tree, or a part of one, with CEL's methods in place of our functions."""
+    match part:
+        case Call(function=function, arguments=arguments) if function in METHODS:
+            return Call(f".{METHODS[function]}", in_cel(arguments))
+        case tuple():
+            return tuple(map(in_cel, part))
+        case Span():
+            return type(part)(*(in_cel(getattr(part, name)) for name in type(part).__match_args__))
+    return part
 
 
 def same(one: Outcome, other: Outcome) -> bool:
@@ -106,7 +75,7 @@ def compare(node: Node, scope: Scope) -> bool:
     AssertionError where it has not, though all its parts have, and it is not in the table of docs/expressions.md.
     """
     alike = not [child for child in children(node) if not compare(child, scope)]
-    ours, theirs = by_lumen(unparse(node), scope), by_cel(printed(node), scope)
+    ours, theirs = by_lumen(unparse(node), scope), by_cel(unparse(in_cel(node)), scope)
     if same(ours, theirs):
         return True
     assert not alike or is_meant(node, scope, ours, theirs), f"{unparse(node)}: {ours}, and {theirs} in CEL"

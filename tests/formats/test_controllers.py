@@ -176,7 +176,7 @@ def test_what_an_engine_can_not_bring_is_listed_at_its_words() -> None:
         "19:25 this rule is left out: here the name of an input should stand, not `then`",
         "21:12 a rule block that is switched off is left out",
     ]
-    assert data["outputs"]["b"]["terms"] == {"few": {"function": "((x < (0.5)) * ((1) - x)) + pow(sin(pi), 2)"}}
+    assert data["outputs"]["b"]["terms"] == {"few": {"function": "(x < 0.5) * (1 - x) + pow(sin(pi), 2)"}}
     assert data["operators"] == {"activation": {"method": "highest", "rules": 2}}
     assert data["rules"] == ["if a is low then b is few with 0.5"]
 

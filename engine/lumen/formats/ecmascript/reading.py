@@ -8,7 +8,7 @@ from lumen.formats.ecmascript.kinds import UNKNOWN, is_float, kind
 from lumen.formats.ecmascript.methods import FUNCTIONS, SIGNS, method
 from lumen.formats.ecmascript.parsing import ScriptError, parse_script
 from lumen.formats.ecmascript.presence import is_data, known, negated
-from lumen.formats.ecmascript.printing import text_of
+from lumen.interpreters.expressions import unparse
 from lumen.interpreters.expressions.kinds import BOOLEAN, LIST, MAP, NULL, NUMBER, TEXT
 from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_INT, MAX_SOURCE, MIN_INT
 from lumen.interpreters.expressions.tree import (
@@ -66,7 +66,7 @@ def printed(tree: Node) -> str:
     """The text of one of our trees; raises ScriptError where it is longer or deeper than an expression may be."""
     if any(level > MAX_DEPTH for _, level in walk(tree)):
         raise ScriptError("it has too many levels")
-    text = text_of(tree)
+    text = unparse(tree)
     if len(text) > MAX_SOURCE:
         raise ScriptError(f"it becomes longer than {MAX_SOURCE:,} characters")
     return text

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 from lumen.formats.ecmascript.kinds import is_float, kind
 from lumen.formats.ecmascript.methods import SAME
-from lumen.formats.ecmascript.printing import text_of
 from lumen.formats.ecmascript.words import ScriptError
-from lumen.interpreters.expressions import parse_expression
+from lumen.interpreters.expressions import parse_expression, unparse
 from lumen.interpreters.expressions.kinds import LIST, MAP, TEXT
 from lumen.interpreters.expressions.tree import (
     Binary,
@@ -49,7 +48,7 @@ class Vocabulary(NamedTuple):
 def write_expression(source: str, vocabulary: Vocabulary) -> Written:
     """One of our expressions in ECMAScript; raises ScriptError where it uses the context or the event as a whole."""
     writer = _Writer(vocabulary)
-    text = text_of(writer.node(parse_expression(source)))
+    text = unparse(writer.node(parse_expression(source)))
     return Written(text, tuple(dict.fromkeys(writer.foreign)))
 
 

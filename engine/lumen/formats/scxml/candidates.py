@@ -4,8 +4,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from lumen.formats.ecmascript.printing import text_of
-from lumen.interpreters.expressions import parse_expression
+from lumen.interpreters.expressions import parse_expression, unparse
 from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_SOURCE
 from lumen.interpreters.expressions.tree import Binary, Call, Field, Literal, Logic, Name, Node, walk
 
@@ -96,6 +95,6 @@ def _narrowed(name: str, general: str, row: Row) -> Row | None:
         guard = parse_expression(row["guard"])
         more = guard.operands if isinstance(guard, Logic) and guard.sign == "&&" else (guard,)
         asked = Logic("&&", (asked, *more))
-    text = text_of(asked)
+    text = unparse(asked)
     fits = len(text) <= MAX_SOURCE and all(level <= MAX_DEPTH for _, level in walk(asked))
     return {"guard": text, **{key: value for key, value in row.items() if key != "guard"}} if fits else None

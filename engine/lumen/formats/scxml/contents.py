@@ -8,12 +8,12 @@ from typing import Any
 from lumen.formats.durations import duration, milliseconds
 from lumen.formats.ecmascript import ScriptError, parse_script, read_condition, read_value
 from lumen.formats.ecmascript.constants import constant
-from lumen.formats.ecmascript.printing import text_of
 from lumen.formats.findings import Findings
 from lumen.formats.scxml.assignments import assignments
 from lumen.formats.scxml.context import Context, written
 from lumen.formats.scxml.elements import LUMEN, Element
 from lumen.formats.scxml.templates import plain_template, template_of
+from lumen.interpreters.expressions import unparse
 from lumen.interpreters.expressions.tree import Literal
 
 Action = dict[str, Any]
@@ -112,7 +112,7 @@ class Contents:
         read = constant(parse_script(source), _NOT_CONSTANT)
         if read is not _NOT_CONSTANT:
             return quoted(read)
-        return text_of(read_value(source, self.context.names))
+        return unparse(read_value(source, self.context.names))
 
     def _if(self, element: Element) -> Iterator[Action]:
         branches: list[tuple[Element, list[Element]]] = [(element, [])]
@@ -174,7 +174,7 @@ class Contents:
         """The data of a `<send>` or `<donedata>`: names, parameters, or content; None without any."""
         found: dict[str, Any] = {}
         for name in element.get("namelist").split():
-            found[name] = text_of(read_value(name, self.context.names))
+            found[name] = unparse(read_value(name, self.context.names))
         for param in element.of("param"):
             source = param.get("expr") if "expr" in param.attributes else param.get("location")
             found[param.get("name")] = self.value(source)
@@ -191,7 +191,7 @@ def quoted(value: Any) -> Any:
     """A value of ours that is this JSON: its texts become expressions."""
     match value:
         case str():
-            return text_of(Literal(value))
+            return unparse(Literal(value))
         case list():
             return [quoted(item) for item in value]
         case Mapping():

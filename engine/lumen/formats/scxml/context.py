@@ -8,10 +8,10 @@ from typing import Any
 from lumen.formats.ecmascript import Names, ScriptError, parse_script, read_value
 from lumen.formats.ecmascript.constants import constant
 from lumen.formats.ecmascript.kinds import UNKNOWN, kind
-from lumen.formats.ecmascript.printing import text_of
 from lumen.formats.findings import Findings
 from lumen.formats.scxml.elements import Element
 from lumen.formats.scxml.outline import STATES, Outline
+from lumen.interpreters.expressions import unparse
 from lumen.interpreters.expressions.kinds import kind_of
 
 _UNFIT = re.compile(r"\W+", re.ASCII)
@@ -80,7 +80,7 @@ class Context:
             value = constant(tree, _NOTHING)
             if value is not _NOTHING:
                 return value
-            self.late[self.keys[element.get("id")]] = text_of(read_value(source, self.names))
+            self.late[self.keys[element.get("id")]] = unparse(read_value(source, self.names))
         except ScriptError as error:
             self.findings.lost(element.place, f"the first value of `{element.get('id')}`, `{source}`: {error}")
         return None

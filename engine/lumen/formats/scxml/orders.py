@@ -6,12 +6,11 @@ from typing import Any
 
 from lumen.formats.durations import duration
 from lumen.formats.ecmascript import ScriptError, Vocabulary, write_expression
-from lumen.formats.ecmascript.printing import text_of
 from lumen.formats.findings import Report
 from lumen.formats.plain import plain_action, plain_value
 from lumen.formats.scxml.templates import expression_of
 from lumen.formats.scxml.xml import Tag
-from lumen.interpreters.expressions import parse_expression
+from lumen.interpreters.expressions import parse_expression, unparse
 from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import Assign, CancelSend, Expression, If, LogText, Raise, Send, Step, Value
 
@@ -96,8 +95,8 @@ class Orders:
             case tuple():
                 return f"[{', '.join(map(self.value, value))}]"
             case Mapping():
-                return "{" + ", ".join(f"{text_of(Literal(k))}: {self.value(v)}" for k, v in value.items()) + "}"
-        return text_of(Literal(plain_value(value)))
+                return "{" + ", ".join(f"{unparse(Literal(k))}: {self.value(v)}" for k, v in value.items()) + "}"
+        return unparse(Literal(plain_value(value)))
 
     def literal(self, value: Any) -> str:
         """JSON as ECMAScript."""
@@ -105,9 +104,9 @@ class Orders:
             case list() | tuple():
                 return f"[{', '.join(map(self.literal, value))}]"
             case Mapping():
-                pairs = (f"{text_of(Literal(str(k)))}: {self.literal(v)}" for k, v in value.items())
+                pairs = (f"{unparse(Literal(str(k)))}: {self.literal(v)}" for k, v in value.items())
                 return "{" + ", ".join(pairs) + "}"
-        return text_of(Literal(value))
+        return unparse(Literal(value))
 
 
 def is_constant(source: str) -> bool:

@@ -4,10 +4,9 @@ import re
 
 from lumen.formats.ecmascript import Names, ScriptError, Vocabulary, parse_script, write_expression
 from lumen.formats.ecmascript.kinds import kind
-from lumen.formats.ecmascript.printing import text_of
 from lumen.formats.ecmascript.reading import Reading, printed
 from lumen.formats.scxml.elements import Element
-from lumen.interpreters.expressions import split_template
+from lumen.interpreters.expressions import split_template, unparse
 from lumen.interpreters.expressions.kinds import TEXT
 from lumen.interpreters.expressions.templates import Hole
 from lumen.interpreters.expressions.tree import Binary, Literal, Node
@@ -50,7 +49,7 @@ def expression_of(text: str, vocabulary: Vocabulary) -> tuple[str, tuple[str, ..
     """The ECMAScript of our text, and what in it only Lumen knows; raises ScriptError."""
     parts = split_template(text)
     if not any(isinstance(part, Hole) for part in parts):
-        return text_of(Literal(text)), ()
+        return unparse(Literal(text)), ()
     pieces, foreign = [], list[str]()
     for part in parts:
         if isinstance(part, Hole):
@@ -58,7 +57,7 @@ def expression_of(text: str, vocabulary: Vocabulary) -> tuple[str, tuple[str, ..
             foreign += written.foreign
             pieces.append(written.text if len(parts) == 1 else f"({written.text})")
         else:
-            pieces.append(text_of(Literal(part)))
+            pieces.append(unparse(Literal(part)))
     start = ["''"] if isinstance(parts[0], Hole) and len(parts) > 1 else []
     return " + ".join([*start, *pieces]), tuple(foreign)
 

@@ -154,11 +154,23 @@ class Builder:
         return self.call("both" if sign == "&&" else "either", *(ast.Lambda(nothing, o) for o in operands))
 
     def has(self, target: Node) -> ast.expr:
+        """`has(a.b.c)`: a map that has the next key, one after another; without a call where they are Python's own."""
         keys: list[ast.expr] = []
         while isinstance(target, Field | Index):
             keys.append(ast.Constant(target.name) if isinstance(target, Field) else self.node(target.key))
             target = target.base
-        return self.call("has", self.node(target), *reversed(keys))
+        return self.reaches(self.node(target), keys[::-1])
+
+    def reaches(self, base: ast.expr, keys: list[ast.expr]) -> ast.expr:
+        if not keys or not isinstance(keys[0], ast.Constant):
+            return self.call("has", base, *keys)
+        value, again = self.named(base)
+        inside = ast.Compare(keys[0], [ast.In()], [again])
+        if keys[1:]:
+            following = self.reaches(ast.Subscript(again, keys[0], ast.Load()), keys[1:])
+            inside = ast.BoolOp(ast.And(), [inside, following])
+        is_map = ast.Compare(self.call("type", value), [ast.Is()], [_load("map")])
+        return ast.IfExp(is_map, inside, self.call("has", again, *keys))
 
     def binary(self, sign: str, left: Node, right: Node) -> ast.expr:
         if sign in ("==", "!=") and isinstance(right, Literal):

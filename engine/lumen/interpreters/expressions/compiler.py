@@ -48,7 +48,8 @@ _HELPERS = [*SIGNS.values(), "truth", "negation", "negative", "item", "has", "bo
 _NAMES: dict[str, Any] = (
     {name: getattr(values, name) for name in _HELPERS}
     | {f"call_{name}": function.call for name, function in FUNCTIONS.items()}
-    | {"type": type, "numbers": frozenset((int, float)), "both": both, "either": either, "__builtins__": {}}
+    | {"type": type, "map": dict, "numbers": frozenset((int, float))}
+    | {"both": both, "either": either, "__builtins__": {}}
 )
 
 

@@ -1,6 +1,6 @@
-"""From the tree of an expression back to its text."""
+"""From the tree of an expression back to its text, with as few brackets as its meaning allows."""
 
-import json
+from collections.abc import Iterable
 
 from lumen.interpreters.expressions.tree import (
     Binary,
@@ -17,38 +17,87 @@ from lumen.interpreters.expressions.tree import (
     Unary,
 )
 
+_CHOICE, _OR, _AND, _RELATION, _SUM, _PRODUCT, _UNARY, _POSTFIX = range(1, 9)
+_ARITHMETIC = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "%": _PRODUCT}
+_ESCAPES = {"\\": "\\\\", "'": "\\'", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+
 
 def unparse(node: Node) -> str:
-    """The expression as text; parsed again it is the same tree."""
+    """The expression as text; parsed again it is the same tree.
+
+    Other languages with these operators (CEL, ECMAScript) print with it too: a call of `.name` is that of a method.
+    """
     match node:
-        case Literal(value=str() as value):
-            return json.dumps(value, ensure_ascii=False).replace("\x7f", r"\x7f")
         case Literal(value=value):
-            return json.dumps(value)
+            return _literal(value)
         case Name(name=name):
             return name
         case Field(base=base, name=name):
-            return f"{_operand(base)}.{name}"
+            return f"{_at_least(_POSTFIX, base)}.{name}"
         case Index(base=base, key=key):
-            return f"{_operand(base)}[{unparse(key)}]"
+            return f"{_at_least(_POSTFIX, base)}[{unparse(key)}]"
         case Items(items=items):
-            return f"[{', '.join(map(unparse, items))}]"
+            return f"[{_listed(items)}]"
         case Entries(keys=keys, values=values):
             pairs = zip(keys, values, strict=True)
-            return "{" + ", ".join(f"{unparse(Literal(k))}: {unparse(v)}" for k, v in pairs) + "}"
+            return "{" + ", ".join(f"{_literal(key)}: {unparse(value)}" for key, value in pairs) + "}"
         case Unary(sign=sign, operand=operand):
-            return sign + _operand(operand)
+            return _unary(sign, operand)
         case Binary(sign=sign, left=left, right=right):
-            return f"{_operand(left)} {sign} {_operand(right)}"
+            own = _ARITHMETIC.get(sign, _RELATION)
+            first = _at_least(own + (own == _RELATION), left)
+            return f"{first} {sign} {_at_least(own + 1, right)}"
         case Logic(sign=sign, operands=operands):
-            return f" {sign} ".join(map(_operand, operands))
+            own = _AND if sign == "&&" else _OR
+            return f" {sign} ".join(_at_least(own + 1, operand) for operand in operands)
         case Choice(condition=condition, then=then, otherwise=otherwise):
-            return f"{_operand(condition)} ? {_operand(then)} : {_operand(otherwise)}"
+            return f"{_at_least(_OR, condition)} ? {_at_least(_OR, then)} : {unparse(otherwise)}"
+        case Call(function=function, arguments=arguments) if function.startswith("."):
+            return f"{_at_least(_POSTFIX, arguments[0])}{function}({_listed(arguments[1:])})"
         case Call(function=function, arguments=arguments):
-            return f"{function}({', '.join(map(unparse, arguments))})"
+            return f"{function}({_listed(arguments)})"
 
 
-def _operand(node: Node) -> str:
+def _listed(nodes: Iterable[Node]) -> str:
+    return ", ".join(map(unparse, nodes))
+
+
+def _unary(sign: str, operand: Node) -> str:
+    """With brackets around a sign or a number: `-1` is a number by itself, and `!!x` is `x` to some CELs."""
+    text = _at_least(_POSTFIX, operand)
+    return f"{sign} {text}" if sign.isalpha() else sign + text
+
+
+def _at_least(power: int, node: Node) -> str:
     text = unparse(node)
-    bare = not isinstance(node, Unary | Binary | Logic | Choice) and not text.startswith("-")
-    return text if bare and not text[0].isdigit() else f"({text})"
+    return text if _power(node, text) >= power else f"({text})"
+
+
+def _power(node: Node, text: str) -> int:
+    match node:
+        case Choice():
+            return _CHOICE
+        case Logic(sign=sign):
+            return _AND if sign == "&&" else _OR
+        case Binary(sign=sign):
+            return _ARITHMETIC.get(sign, _RELATION)
+        case Unary():
+            return _UNARY
+        case Literal(value=int() | float()) if not isinstance(node.value, bool):
+            return _UNARY
+    return _POSTFIX
+
+
+def _literal(value: object) -> str:
+    if isinstance(value, str):
+        return "'" + "".join(_escaped(character) for character in value) + "'"
+    return "null" if value is None else repr(value).lower()
+
+
+def _escaped(character: str) -> str:
+    if character in _ESCAPES:
+        return _ESCAPES[character]
+    if character.isprintable():
+        return character
+    code = ord(character)
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else character
