@@ -1,25 +1,36 @@
 """Speech recognition: recordings that hold words, and what is no sound at all."""
 
 import base64
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from lumen.language.projects import Project
 from lumen.modules.ears import Ears
-from lumen.modules.ears.sphinx import resampled
+from lumen.modules.ears.bigrams import arpa
+from lumen.modules.ears.expected import expected
+from lumen.modules.ears.spelling import pronounced
+from lumen.modules.ears.sphinx import Sphinx, resampled
 from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
 from tests.modules.conftest import Stand
 
 Make = Callable[..., Stand]
 STREAM, RECORDING, HEARD = "lumen.audio.wav.stream", "avatar.NAO.data.recording", "lumen.audio.speech.recognition"
+SONG = "can you sing a song please"
 
 
 class Parrot:
     """A recogniser of one's own: says how long the sound was."""
 
     languages = ("en", "id")
+
+    def expect(self, sentences: Sequence[Sequence[str]]) -> None:
+        self.expected = sentences
 
     def recognise(self, sound: Sound) -> str:
         return f"{sound.duration:.2f} seconds" if any(sound.samples) else ""
@@ -115,11 +126,82 @@ def test_another_rate_lasts_as_long() -> None:
     assert set(resampled(sound, 16_000).samples) == {0x10, 0x00}
 
 
-def test_words_that_were_spoken_are_recognised(stand: Make) -> None:
-    """PocketSphinx, offline, by the model that comes in its package; a synthetic voice, said slowly."""
+@pytest.fixture(scope="module")
+def sphinx(project: Project) -> Sphinx:
+    """PocketSphinx, offline, by the model that comes in its package, told what the tour expects."""
+    sphinx = Sphinx()
+    sphinx.expect(expected(project))
+    return sphinx
+
+
+@pytest.mark.parametrize(
+    ("text", "voice"),
+    [
+        (SONG, "en-us"),
+        ("how many joints do you have", "en-us"),
+        ("nama saya budi", "id"),
+    ],
+)
+def test_what_visitors_may_say_is_understood(sphinx: Sphinx, text: str, voice: str) -> None:
+    assert sphinx.recognise(espeak().speak(text, voice, pace=150)) == text
+
+
+def test_silence_is_nothing_also_to_who_expects_something(sphinx: Sphinx) -> None:
+    assert sphinx.recognise(Sound(16_000, bytes(32_000))) == ""
+    assert sphinx.recognise(Sound(16_000, b"")) == ""
+
+
+def test_words_that_were_spoken_are_recognised_on_the_bus(stand: Make, sphinx: Sphinx) -> None:
     here = stand()
-    here.add(Ears(here.project, here.bus, here.told.append))
+    listening(here, sphinx)
     heard = here.listen(HEARD)
-    sound = espeak().speak("go forward ten meters", pace=100)
-    here.bus.publish(STREAM, {"name": "s", "content": sound.text(), "language": "en"})
-    assert "forward" in heard.wait(1)[0]["result"]
+    here.bus.publish(STREAM, {"name": "s", "content": espeak().speak(SONG, "en-us", pace=150).text(), "language": "en"})
+    [said] = heard.wait(1)
+    assert (said["result"], said["language"]) == (SONG, "en")
+
+
+def test_expects_what_the_tour_listens_for_and_what_visitors_say_in_stories(stand: Make, project: Project) -> None:
+    here, parrot = stand(), Parrot()
+    ears = listening(here, parrot)
+    assert ["speak", "english"] in parrot.expected
+    assert ["how", "many", "joints"] in parrot.expected
+    assert ["my", "name", "is", "budi"] in parrot.expected
+    ears.use(replace(project, behaviors={}, stories={}))
+    assert parrot.expected == []
+
+
+def test_another_language_model_for_another_tour(sphinx: Sphinx, project: Project) -> None:
+    sound = espeak().speak("kucing", "id", pace=150)
+    assert sphinx.recognise(sound) != "kucing"
+    sphinx.expect([["kucing"], ["anjing"]])
+    assert sphinx.recognise(sound) == "kucing"
+    sphinx.expect(expected(project))
+
+
+def chances(model: str) -> tuple[dict[str, float], dict[str, float], dict[tuple[str, str], float]]:
+    """Words with their chances, words with the weight of what never followed them, and pairs with their chances."""
+    first, _, second = model.partition("\\2-grams:")
+    ones = [line.split() for line in first.partition("\\1-grams:")[2].split("\n") if line]
+    twos = [line.split() for line in second.partition("\\end")[0].split("\n") if line]
+    words = {word: 10 ** float(chance) for chance, word, _ in ones}
+    return words, {word: 10 ** float(left) for _, word, left in ones}, {(a, b): 10 ** float(p) for p, a, b in twos}
+
+
+@settings(max_examples=30)
+@given(
+    st.lists(st.lists(st.sampled_from("abcde"), min_size=1, max_size=4), min_size=1, max_size=6),
+    st.dictionaries(st.sampled_from("defgh"), st.floats(0.01, 1.0)),
+)
+def test_what_follows_a_word_has_a_chance_of_one_in_all(sentences: list[list[str]], common: dict[str, float]) -> None:
+    words, left, pairs = chances(arpa(sentences, common))
+    for word in left:
+        after = sum(pairs.get((word, b), left[word] * chance) for b, chance in words.items() if b != "<s>")
+        assert after == pytest.approx(1.0, abs=0.01), word
+
+
+@pytest.mark.parametrize(
+    ("word", "sounds"),
+    [("dewi", "D AH W IY"), ("nyanyi", "N Y AA N Y IY"), ("bunga", "B UW NG AA"), ("pantai", "P AA N T AY"), ("'", "")],
+)
+def test_indonesian_is_written_as_it_is_spoken(word: str, sounds: str) -> None:
+    assert pronounced(word) == sounds

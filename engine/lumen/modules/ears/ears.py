@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from lumen.errors import ModuleError
 from lumen.language.modules import EARS
 from lumen.language.projects import Project
+from lumen.modules.ears.expected import expected
 from lumen.modules.ears.recogniser import Recogniser
 from lumen.modules.module import Handler, Module
 from lumen.modules.sound import sound_of
@@ -25,9 +26,14 @@ class Ears(Module):
     ) -> None:
         super().__init__(project, bus, tell)
         self._recogniser = recogniser or _sphinx()
+        self._recogniser.expect(expected(project))
 
     def hears(self) -> Mapping[str, Handler]:
         return {"recording": self._sound, "wav_stream": self._sound}
+
+    def use(self, project: Project) -> None:
+        super().use(project)
+        self._recogniser.expect(expected(project))
 
     def _sound(self, message: Message) -> None:
         body = message.body if isinstance(message.body, dict) else {}
