@@ -9,6 +9,7 @@ from lumen.clocks.virtual import VirtualClock
 from lumen.errors import LumenError, ProjectError, SnapshotError, UsageError
 from lumen.statechart import Event, Interpreter, Machine, Step, due, initial, step
 
+COUNTING = {"assign": {"n": "context.n + 1"}}
 TOUR = {
     "id": "tour",
     "context": {"visits": 0, "visitor": None},
@@ -194,3 +195,31 @@ def test_a_context_that_can_not_be_is_told(context: Any, types: Any, code: str) 
     with pytest.raises(ProjectError) as caught:
         Machine.from_dict({"context": context, "types": types, "states": {"a": None}})
     assert code in {d.code for d in caught.value.diagnostics}
+
+
+def test_a_thousand_and_more_timers_may_end_at_once() -> None:
+    sends = [{"send": {"event": "x", "delay": "1s"}} for _ in range(1500)]
+    data = {"context": {"n": 0}, "states": {"a": {"entry": sends, "on": {"x": {"actions": COUNTING}}}}}
+    it = Interpreter(Machine.from_dict(data))
+    it.start()
+    it.clock.advance(1.0)
+    assert it.context == {"n": 1500}
+
+
+@pytest.mark.parametrize("dt", [-1.0, float("inf"), float("nan")])
+def test_a_time_that_never_passes_is_refused(dt: float) -> None:
+    it = running()
+    with pytest.raises(UsageError, match="can't advance"):
+        it.clock.advance(dt)
+    assert it.clock.now() == 0.0
+
+
+def test_no_time_is_no_later_than_any() -> None:
+    machine = Machine.from_dict({"context": {"n": 0}, "states": {"a": {"on": {"go": {"actions": COUNTING}}}}})
+    for name in ("go", "nobody"):
+        assert step(machine, initial(machine, at=2.0).snapshot, Event(name, at=float("nan"))).snapshot.at == 2.0
+
+
+def test_an_input_that_is_no_map_is_told() -> None:
+    with pytest.raises(UsageError, match="has to be a map"):
+        initial(Machine.from_dict(TOUR), input=["visits"])  # type: ignore[arg-type]

@@ -1,6 +1,9 @@
 """Time that passes when told to, stopping at everything that is due on the way."""
 
+from math import inf
 from typing import Protocol
+
+from lumen.errors import UsageError
 
 
 class Sleeper(Protocol):
@@ -26,7 +29,12 @@ class VirtualClock:
         return self._now
 
     def advance(self, dt: float) -> None:
-        """Let `dt` [s] pass; each sleeper is woken at each of its due times, in their order."""
+        """Let `dt` [s] pass; each sleeper is woken at each of its due times, in their order.
+
+        Raises UsageError for a time that never passes: below 0, infinite, NaN.
+        """
+        if not 0.0 <= dt < inf:
+            raise UsageError(f"a clock can't advance by {dt} s")
         self.wait(self._now + dt)
 
     def wait(self, until: float) -> None:

@@ -165,7 +165,7 @@ class Builder:
         if not keys or not isinstance(keys[0], ast.Constant):
             return self.call("has", base, *keys)
         value, again = self.named(base)
-        inside = ast.Compare(keys[0], [ast.In()], [again])
+        inside: ast.expr = ast.Compare(keys[0], [ast.In()], [again])
         if keys[1:]:
             following = self.reaches(ast.Subscript(again, keys[0], ast.Load()), keys[1:])
             inside = ast.BoolOp(ast.And(), [inside, following])

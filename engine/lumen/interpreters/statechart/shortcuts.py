@@ -97,7 +97,7 @@ class Shortcuts:
         if way is None:
             return None
         hears, rows, groups, moves = way
-        if at < before:
+        if not at >= before:  # earlier, or NaN
             at = before
         machine = self.machine
         heard = {"name": name, "data": data} if hears else None

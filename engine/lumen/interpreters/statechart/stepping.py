@@ -1,9 +1,10 @@
 """The three functions that run a behaviour: `initial`, `step` and `due`."""
 
 from collections.abc import Callable, Iterator, Mapping
+from math import inf
 from typing import Any
 
-from lumen.errors import LumenError, SnapshotError
+from lumen.errors import LumenError, SnapshotError, UsageError
 from lumen.interpreters.statechart.answers import outside
 from lumen.interpreters.statechart.program import compiled
 from lumen.interpreters.statechart.run import LIMIT
@@ -28,6 +29,8 @@ def initial(
     `input` gives context keys other first values; raises UsageError where there is no such key, or it holds another
     type. `epoch` is the local time of day at time 0 [s since midnight], `seed` begins the drawing of alternatives.
     """
+    if input is not None and not isinstance(input, Mapping):
+        raise UsageError(f"the input of `{machine.id}` has to be a map of context keys and values")
     program = compiled(machine)
     context = {**machine.context, **checked(machine.id, program.chart.checks, input or {})}
     before = Snapshot(frozenset(), context, at, language, generator=seed % 2**32, epoch=epoch)
@@ -46,7 +49,7 @@ def step(machine: Machine, snapshot: Snapshot, event: Event) -> Step:
         short = program.shortcuts.step(snapshot, event)
         if short is not None:
             return short
-        session = Session(program, snapshot, event, max(event.at, snapshot.at))
+        session = Session(program, snapshot, event, max(snapshot.at, event.at))
     except KeyError as error:
         raise SnapshotError(f"`{machine.id}` has no state `{error.args[0]}`, which is active in the snapshot") from None
     return session.hear(event)
@@ -68,16 +71,22 @@ def due(snapshot: Snapshot) -> Event | None:
     return found
 
 
+def waiting(snapshot: Snapshot) -> int:
+    """How many timers are set, those of invoked behaviours included."""
+    return len(snapshot.timers) + sum(waiting(child.snapshot) for child in snapshot.invoked.values())
+
+
 def elapse(machine: Machine, current: Callable[[], Snapshot], until: float) -> Iterator[Step]:
     """The steps of every timer that ends until `until` [s], those set on the way included, in order.
 
     `current` gives the snapshot to step from: whoever takes a step may have more happen before the next. Raises
-    LumenError where there is no end of timers of one time, as of a `send` without delay that answers itself.
+    LumenError where there is no end of timers of one time, as of a `send` without delay that answers itself; those
+    that were set before that time do not count.
     """
-    count, last = 0, until
+    left, last = LIMIT, -inf
     while (event := due(current())) and event.at <= until:
-        count = count + 1 if event.at == last else 1
+        left = left - 1 if event.at == last else LIMIT + waiting(current())
         last = event.at
-        if count > LIMIT:
+        if left < 0:
             raise LumenError(f"`{machine.id}` never comes to rest: `{event.name}` is sent over and over without delay")
         yield step(machine, current(), event)
