@@ -17,7 +17,7 @@ from lumen.robots.simulation.instruments import Instruments
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.passage import Stance, Way, lying
-from lumen.robots.simulation.performance import Performance, Speech
+from lumen.robots.simulation.playback import Playback, Speech
 from lumen.robots.simulation.transition import Transition
 from lumen.robots.simulation.voice import Silence, Voice
 from lumen.robots.simulation.walking import Walker
@@ -53,7 +53,7 @@ class Repertoire:
         self._part = part_of(world.body)
         self._stance = Stance(posture)
         self._way: Way | None = None
-        self.playing: Performance | None = None
+        self.playing: Playback | None = None
         self.awake, self.fallen = True, False
         self.voice: Voice = Silence()
 
@@ -61,6 +61,11 @@ class Repertoire:
     def upright(self) -> bool:
         """Whether the robot is on both feet, and means to stay there."""
         return self._stance.upright and not (self._way and self._way.passing)
+
+    @property
+    def posture(self) -> str:
+        """The posture that the robot is in, or on its way from."""
+        return self._stance.posture
 
     def parts(self, command: RobotCommand) -> frozenset[str]:
         """Which parts of the body a command owns."""
@@ -119,7 +124,7 @@ class Repertoire:
         here = self._stance.posture
         if motion.start and motion.start != here and not (self.upright and motion.start in UPRIGHT):
             raise RobotError(f"`{motion.name}` begins in {motion.start}; the robot is in {here}: send it there first")
-        self.playing = Performance(self._motors, self._lights, motion, home, now, self._notice)
+        self.playing = Playback(self._motors, self._lights, motion, home, now, self._notice)
         return self.playing
 
     def _posture(self, name: str, speed: float, now: float) -> Activity:

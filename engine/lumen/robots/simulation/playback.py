@@ -18,7 +18,7 @@ APPROACH, RECOVERY = 1.2, 0.8
 _NEAR = 0.05
 
 
-class Performance:
+class Playback:
     """A motion: to the posture it begins in where the robot is not there, then along its keys, cues beside them.
 
     `home` holds that posture's angles [rad] of the joints that the motion owns; `notice` is told of words and sounds.
