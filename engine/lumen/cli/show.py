@@ -1,6 +1,6 @@
 """An exhibition with everything around it: senses on the bus, a visitor in the hall, files that may change."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import replace
 from datetime import datetime
@@ -96,23 +96,25 @@ class Show(Observer):
         """How another bundle would go on from here, or why it can't; nothing changes."""
         return self.exhibition.plan(staged(project, self._story), now=now, back=back)
 
-    def apply(self, project: Project, plan: Plan) -> None:
-        """Go on with another bundle as planned for this moment.
+    def apply(self, project: Project, plan: Plan, begun: Callable[[], None] = lambda: None) -> None:
+        """Go on with another bundle as planned for this moment; `begun` is called before what that asks for is done.
+
+        Raises what `switch` raises.
+        """
+        old = self.exhibition.project
+        self.switch(project, plan)
+        begun()
+        self.exhibition.perform(plan, old)
+
+    def switch(self, project: Project, plan: Plan) -> None:
+        """Go on with another bundle, and leave undone what that asks for.
 
         Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
         """
-        self._change(self.exhibition.apply, staged(project, self._story), plan)
-
-    def rescue(self, project: Project, plan: Plan) -> Sequence[Command]:
-        """Go on with another bundle in the middle of a tick; what has to be performed for that."""
-        self._change(self.exhibition.switch, staged(project, self._story), plan)
-        return plan.commands
-
-    def _change(self, change: Callable[[Project, Plan], None], project: Project, plan: Plan) -> None:
-        old = self.exhibition.project
+        old, new = self.exhibition.project, staged(project, self._story)
         try:
-            self._use(project)
-            change(project, plan)
+            self._use(new)
+            self.exhibition.switch(new, plan)
         except Exception:
             self._use(old)
             raise

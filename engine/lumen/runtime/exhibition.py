@@ -109,26 +109,30 @@ class Exhibition:
         return self.runtime.plan(project, self._last, now=now, back=back)
 
     def apply(self, project: Project, plan: Plan) -> None:
-        """Go on with another bundle as planned for this moment, between two macrosteps; what that asks for is done.
+        """Go on with another bundle as planned for this moment, between two macrosteps; what that asks for is done."""
+        old = self.project
+        self.switch(project, plan)
+        self.perform(plan, old)
+
+    def switch(self, project: Project, plan: Plan) -> None:
+        """What `apply` does, but for what has to be performed.
 
         Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
         """
         old = self.project
-        self.switch(project, plan)
-        self._perform(plan.leaving, self._last, old)
-        self._perform(plan.entering, self._last)
-
-    def switch(self, project: Project, plan: Plan) -> None:
-        """What `apply` does, but for what has to be performed."""
-        old = self.project
         try:
             self.inbox.listen(project)
             self.tracking.reload(project)
+            self.runtime.apply(project, plan.snapshot)
         except Exception:
             self.inbox.listen(old)
             self.tracking.reload(old)
             raise
-        self.runtime.apply(project, plan.snapshot)
+
+    def perform(self, plan: Plan, old: Project) -> None:
+        """Do what a plan asks for that has been switched to: what is left is left by the old bundle."""
+        self._perform(plan.leaving, self._last, old)
+        self._perform(plan.entering, self._last)
 
     def _stepped(self, step: Step) -> None:
         for observer in self.observers:

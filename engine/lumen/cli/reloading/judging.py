@@ -1,5 +1,6 @@
 """Saved files on trial: loaded, linted, compared with what runs, and played on the recording robot."""
 
+import logging
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -14,6 +15,8 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.files import fingerprint
 from lumen.runtime.watcher import Saved
+
+_log = logging.getLogger(__name__)
 
 BUDGET = 2.0
 """How long the stories that were saved may take, all together [s]."""
@@ -64,9 +67,9 @@ class Judge:
 
     def __call__(self, saved: Saved) -> Judged:
         """What came of them; nothing here raises for what they say."""
-        hash = fingerprint(saved.files)
-        began = time.perf_counter()
+        hash, began = "", time.perf_counter()
         try:
+            hash = fingerprint(saved.files)
             project, diagnostics = self._court.load(saved.files)
             if project is None:
                 return Judged(saved, hash, None, diagnostics, loading=time.perf_counter() - began)
@@ -78,7 +81,7 @@ class Judge:
             took = loaded - began, time.perf_counter() - loaded
             return Judged(saved, hash, project, diagnostics, running, found, failed, "", *took)
         except Exception as error:  # a fault of ours costs the reload, and nothing else
-            return Judged(saved, hash, fault=f"Lumen failed on these files: {error!r}")
+            return Judged(saved, hash, fault=fault_of(error))
 
     def advise(self, judged: Judged, urgent: Callable[[], bool]) -> list[Rehearsal]:
         """The stories of what was changed that would not hold any more, as far as there is leisure to play them."""
@@ -124,3 +127,9 @@ def told(rehearsal: Rehearsal) -> str:
     place = f"{rehearsal.place}: " if rehearsal.place else ""
     failed = rehearsal.failed
     return f"{place}{failed.what if failed else ''}"
+
+
+def fault_of(error: Exception) -> str:
+    """What is said of a fault of ours, with where it was raised in the log."""
+    _log.error("a fault of ours with saved files", exc_info=error)
+    return f"Lumen failed on these files: {error!r}"

@@ -56,10 +56,11 @@ class Probation:
         self._until, began = None, time.perf_counter()
         good = live(bad, self.good)
         _log.debug("a reload failed", exc_info=error)
-        commands = self._show.rescue(good, self._plan(good))
+        plan = self._plan(good)
+        self._show.switch(good, plan)
         self.before = _lean(bad)
         self._back(str(error) or repr(error), bad, time.perf_counter() - began)
-        return commands
+        return plan.commands
 
     def _plan(self, good: Project) -> Plan:
         plan = self._show.plan(good, now=True, back=True)

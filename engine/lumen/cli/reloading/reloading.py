@@ -1,5 +1,6 @@
 """Saved files on a running exhibition: taken where they are good, reported where they are not."""
 
+import logging
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -8,7 +9,7 @@ from pathlib import Path
 from lumen.buses.validated import by_key
 from lumen.cli.rehearsal import Rehearsal
 from lumen.cli.reloading.bulletin import Bulletin
-from lumen.cli.reloading.judging import BUDGET, Judge, Judged, told
+from lumen.cli.reloading.judging import BUDGET, Judge, Judged, fault_of, told
 from lumen.cli.reloading.jury import Here, Jury
 from lumen.cli.reloading.orders import COMMAND, WAITING, Order, answering, order_from
 from lumen.cli.reloading.records import Records
@@ -23,6 +24,8 @@ from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.ports import Message
 from lumen.runtime.watcher import QUIET, Saved, Watcher
+
+_log = logging.getLogger(__name__)
 
 MODES = ("auto", "manual", "off")
 """Take saved files at once; only judge them, and wait for `lumen reload --apply`; leave them alone."""
@@ -92,7 +95,17 @@ class Reloading:
         self._court.close()
 
     def tick(self, now: float) -> None:
-        """Take what was asked, see what the watcher found, and apply what is staged."""
+        """Take what was asked, see what the watcher found, and apply what is staged.
+
+        A fault of ours in any of that costs the reload, and nothing else.
+        """
+        try:
+            self._tick(now)
+        except Exception:
+            _log.exception("the saved files could not be taken")
+            self._staging.drop()
+
+    def _tick(self, now: float) -> None:
         while self._came:
             self._hear(self._came.popleft())
         while not self._watcher.results.empty():
@@ -105,13 +118,16 @@ class Reloading:
 
     def _judge(self, judge: Judge, saved: Saved) -> Judged:
         """On the watcher's thread: routes that come with the files are made ready here, where nobody has to wait."""
-        judged = judge(saved)
-        if judged.good and judged.project:
-            try:
+        judged = Judged(saved, "")
+        try:
+            judged = judge(saved)
+            if judged.good and judged.project:
                 self._bus.prepare(by_key(judged.project))
-            except BusError as error:
-                return replace(judged, fault=f"the bus refuses its routes: {error}")
-            self._records.store(saved.files)
+                self._records.store(saved.files)
+        except BusError as error:
+            return replace(judged, fault=f"the bus refuses its routes: {error}")
+        except Exception as error:
+            return replace(judged, fault=fault_of(error))
         return judged
 
     def _advise(self, judge: Judge, judged: Judged | list[Rehearsal], urgent: Callable[[], bool]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from lumen.cli.reloading.bulletin import Bulletin, reason_of, what_for
-from lumen.cli.reloading.judging import Judged
+from lumen.cli.reloading.judging import Judged, fault_of
 from lumen.cli.reloading.orders import Order
 from lumen.cli.reloading.probation import Probation
 from lumen.cli.reloading.records import Records
@@ -112,8 +112,9 @@ class Staging:
             self._refuse(staged, f"the bus refuses its routes: {error}")
             return
         except Exception as error:  # a fault of ours costs the reload, and nothing else
-            _log.exception("the saved files could not be put in force")
-            self._refuse(staged, f"Lumen failed on these files: {error!r}")
+            why = fault_of(error)
+            if self.staged is staged:
+                self._refuse(staged, why)
             return
         if expired or not what_for(verdict):
             self._give_up(staged, verdict)
@@ -125,17 +126,27 @@ class Staging:
 
     def _apply(self, staged: Staged, plan: Plan, now: float) -> None:
         before, began = self.running, time.perf_counter()
-        self._show.apply(staged.project, plan)
-        self._records.begin(staged.project.hash)
-        self.staged = None
-        self.revision += 1
-        self.probation.begin(before, now)
-        bulletin = self._about(staged, "applied")
-        bulletin.before, bulletin.notes, bulletin.back = before.hash, plan.notes, staged.back
-        bulletin.took = {"applying": time.perf_counter() - began, "waiting": time.monotonic() - staged.since}
-        self._herald.tell(bulletin, staged.orders)
-        self._applied(self.running)
-        self._records.prune(self.running, self.probation.before, self.probation.good)
+
+        def begun() -> None:
+            self.probation.begin(before, now)
+            self.staged = None
+            self.revision += 1
+            bulletin = self._about(staged, "applied")
+            bulletin.before, bulletin.notes, bulletin.back = before.hash, plan.notes, staged.back
+            bulletin.took = {"applying": time.perf_counter() - began, "waiting": time.monotonic() - staged.since}
+            self._tell_all(bulletin, staged.orders)
+
+        self._show.apply(staged.project, plan, begun)
+
+    def _tell_all(self, bulletin: Bulletin, orders: list[Order]) -> None:
+        """Let everybody know of another bundle that is in force; a fault of ours in that changes nothing about it."""
+        try:
+            self._herald.tell(bulletin, orders)
+            self._records.begin(self.running.hash)
+            self._applied(self.running)
+            self._records.prune(self.running, self.probation.before, self.probation.good)
+        except Exception:
+            _log.exception("other files are in force, and not everybody was told")
 
     def _give_up(self, staged: Staged, verdict: Wait | Refusal) -> None:
         """It has waited long enough, or can't go on from here at all."""
@@ -161,8 +172,7 @@ class Staging:
         found = changes(bad, self.running)
         bulletin = Bulletin("rolled back", "probation", bad.hash, self.running.hash, self.revision, found)
         bulletin.reason, bulletin.took = f"the new files failed: {reason}", {"applying": took}
-        self._herald.tell(bulletin)
-        self._applied(self.running)
+        self._tell_all(bulletin, [])
 
     def _about(self, staged: Staged, verdict: str) -> Bulletin:
         hashes = self.running.hash, staged.project.hash

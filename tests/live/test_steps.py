@@ -1,0 +1,140 @@
+"""A fault at every step of loading, linting, planning and applying files costs the reload, and nothing else.
+
+The steps are those that a reload takes: no list of them is kept here.
+"""
+
+import pickle
+import random
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from types import CodeType
+
+import pytest
+
+from lumen.cli.reloading.judging import Judge, Judged
+from lumen.cli.reloading.jury import Here
+from lumen.cli.reloading.reloading import Reloading
+from lumen.loading.files import read_files
+from lumen.runtime.watcher import Saved
+from tests.live.faults import failing, name, steps
+from tests.live.shows import Live
+
+ROUTE = "routes:\n  load: {key: lumen.load, direction: in, event: load}\n"
+REGION = """
+  load:
+    initial: counting
+    states:
+      counting:
+        entry: {say: Hello}
+        exit: {say: Bye}
+        on: {load: {actions: {log: heard}}}
+"""
+SAMPLE = 8
+
+
+class Bench:
+    """Files judged and taken step by step, on the thread of the test."""
+
+    def __init__(self, folder: Path) -> None:
+        self.live = Live(folder)
+        self.reloading = self.live.reloading
+        self._judge = Judge(Here(folder), lambda: self.live.show.exhibition.project)
+        self._first = read_files(folder)
+        self._number = 0
+
+    def saved(self, more: bool = False) -> Saved:
+        """All kinds of files as nobody has saved them before; with `more`, a route and a region are new."""
+        self._number += 1
+        mark = f"\n# {self._number}\n".encode()
+        marked = {path: content + mark for path, content in self._first.items() if _ours(path)}
+        files = {**self._first, **marked}
+        if more:
+            files["lumen.yaml"] = files["lumen.yaml"].replace(b"routes:\n", ROUTE.encode(), 1)
+            files["behaviors/tour.yaml"] += REGION.encode()
+        return Saved(files, (), 0.0, 0.0)
+
+    def judged(self, saved: Saved) -> Judged:
+        return self.reloading._judge(self._judge, saved)
+
+    def take(self, judged: Judged) -> None:
+        """Live through what comes of it."""
+        self.reloading._watcher.results.put(judged)
+        self.live.show.tick()
+
+    @property
+    def hash(self) -> str:
+        """Of the bundle that runs."""
+        return self.live.show.exhibition.project.hash
+
+    def is_whole(self) -> bool:
+        """Whether everything goes by the bundle that runs."""
+        exhibition = self.live.show.exhibition
+        listens = ("lumen.load", "load") in exhibition.inbox._undo
+        stands = any(state.endswith("counting") for state in exhibition.runtime.snapshot.configuration)
+        return listens == stands == ("load" in exhibition.project.routes)
+
+
+def _ours(path: str) -> bool:
+    return path.endswith(".yaml") and not path.startswith(("models/", "behaviors/stories/"))
+
+
+@pytest.fixture
+def bench(copy: Path, caplog: pytest.LogCaptureFixture) -> Iterator[Bench]:
+    caplog.set_level("CRITICAL")
+    one = Bench(copy)
+    for _ in range(2):  # what is worked out once and for all is no step of a reload
+        assert one.judged(one.saved()).good
+    yield one
+    one.live.show.close()
+
+
+every = pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.soak)])
+
+
+def some(found: list[CodeType], every: bool) -> list[CodeType]:
+    return found if every else random.Random(1).sample(found, SAMPLE)
+
+
+@every
+def test_a_fault_in_loading_or_linting(bench: Bench, every: bool) -> None:
+    saved, running = bench.saved(), bench.live.show.exhibition.project
+    found = steps(lambda: bench.judged(saved), Reloading._judge)
+    assert len(found) > 500
+    for step in some(found, every):
+        saved = bench.saved()
+        judged = failing(step, lambda: bench.judged(saved), Reloading._judge)  # noqa: B023 called at once
+        assert name(step) in judged.fault
+        bench.take(judged)
+        assert bench.live.show.exhibition.project is running
+        assert f"refused: Lumen failed on these files: FaultError('{name(step)}')" in bench.live.transcript
+    bench.take(bench.judged(bench.saved()))
+    assert bench.live.verdicts[-1] == "applied"
+
+
+def fresh(judged: Judged) -> Callable[[], Judged]:
+    """Makes it anew each time: nothing in it has ever been compiled or worked out."""
+    packed = pickle.dumps(replace(judged.project, documents={}) if judged.project else None)
+    return lambda: replace(judged, project=pickle.loads(packed), running=None)
+
+
+@every
+@pytest.mark.parametrize("forth", [True, False])
+def test_a_fault_in_planning_or_applying(bench: Bench, forth: bool, every: bool) -> None:
+    """What is told is true, nothing is mixed, and the next files are taken: where things come, and where they go."""
+    new, old = [fresh(bench.judged(bench.saved(more))) for more in (forth, not forth)]
+    bench.take(old())
+    found = steps(lambda: bench.take(new()), Reloading.tick)
+    assert len(found) > 100
+    for step in some(found, every):
+        bench.take(old())
+        assert bench.hash == old().hash
+        told = len(bench.live.verdicts)
+        failing(step, lambda: bench.take(new()), Reloading.tick)
+        assert bench.is_whole(), name(step)
+        last = bench.live.verdicts[told:][-1:]
+        true = [["applied"]] if bench.hash == new().hash else [["refused"], ["rolled back"]]
+        assert last in ([], *true), name(step)
+    bench.take(old())
+    bench.take(new())
+    assert bench.hash == new().hash
