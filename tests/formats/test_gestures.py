@@ -126,6 +126,18 @@ def test_times_that_go_back_are_left_out() -> None:
     assert said(diagnostics) == ["4:21 not-carried-over at 0.7 s `HeadYaw` is told of too late: it was at 1 s already"]
 
 
+def test_a_time_before_the_beginning_is_left_out() -> None:
+    data, said = read("a.py", "motion.angleInterpolation('HeadYaw', [0.1, 0.2], [-1.0, 1.0], True)\n")
+    assert [frame["at"] for frame in data["keyframes"]] == ["1s"]
+    assert [d.message for d in said] == ["`HeadYaw` is somewhere 1 s before the motion begins"]
+
+
+def test_a_timeline_without_frames_a_second_has_the_usual_ones() -> None:
+    data, said = read("a.xar", XAR.format(boxes=WAVE.format(name="W").replace('fps="20"', 'fps="0"')))
+    assert [frame["at"] for frame in data["keyframes"]] == ["0.8s", "1.6s"]
+    assert "25 frames are taken for a second" in said[0].message
+
+
 def test_choregraphe_keeps_its_tangents() -> None:
     data, diagnostics = read("wave.xar", XAR.format(boxes=WAVE.format(name="Wave")))
     assert diagnostics == []
@@ -207,6 +219,7 @@ def test_what_only_a_run_would_tell_is_listed() -> None:
         ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw,HeadYaw\n", "named twice"),
         ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw\n", "nothing in it moves a joint of NAO"),
         ("a.motion", "#WEBOTS_MOTION,V1.0\n00:00:100,a,1\n", "names no joint"),
+        ("a.motion", "#WEBOTS_MOTION,V1.0,HeadYaw\n00:00:100,a,nan\n", "nothing in it .*: `nan` is no angle"),
         ("a.xar", "<a/>", "no behaviour of Choregraphe"),
         ("a.xar", "hello", "not XML"),
         ("a.xar", XAR.format(boxes=""), "no timeline in it moves a joint"),
@@ -239,6 +252,11 @@ def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert out.read_text().startswith("# yaml-language-server: $schema=../schemas/motion.schema.json\n")
     assert main(["play", str(file)]) == 0
     assert "NAO plays `wave` (2.5 s)" in capsys.readouterr().out
+    file.write_text("#WEBOTS_MOTION,V1.0,HeadYaw\n00:00:100,Pose,2.0\n00:00:300,Pose,-2.0\n")
+    assert main(["play", str(file)]) == 0
+    assert "`HeadYaw` comes late: to get there by 0.30 s it would have to move at 20 rad/s" in capsys.readouterr().err
     file.write_text("nothing")
     assert main(["play", str(file)]) == 2
     assert "does not begin with" in capsys.readouterr().err
+    assert main(["play", str(file.rename(tmp_path / "wave.json"))]) == 2
+    assert "wave.json is no motion: a file ends in .yaml, .motion, .xar or .py" in capsys.readouterr().err

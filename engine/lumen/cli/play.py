@@ -11,11 +11,13 @@ from lumen.cli.run import film_path
 from lumen.errors import ProjectError, UsageError
 from lumen.formats.findings import ForeignFileError
 from lumen.formats.gestures import ENDINGS, read_gesture
+from lumen.interpreters.limits import overspeed
 from lumen.language.commands import Posture
 from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.events import Event
 from lumen.language.motions import Motion
 from lumen.language.projects import Project
+from lumen.language.robots import Body
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
 from lumen.loading.source import Document, Report
@@ -37,6 +39,8 @@ def run(options: argparse.Namespace) -> int:
     video = film_path(options.video, "simulation")
     player = _Player(project, options.speed, video)
     print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {options.speed} × real time")
+    for late in _slowed(motion, project.body):
+        print(late, file=sys.stderr)
     try:
         player.perform(Posture(motion.start or "Stand", 1.0))
         player.perform(Perform(motion))
@@ -79,6 +83,16 @@ class _Player:
         self.robot.close()
 
 
+def _slowed(motion: Motion, body: Body) -> list[str]:
+    """Where the joints of a motion, one line each, come late at worst: no joint moves faster than it can."""
+    worst = {excess.joint: excess for excess in sorted(overspeed(motion, body), key=lambda e: e.value / e.limit)}
+    return [
+        f"`{joint}` comes late: to get there by {excess.key.time:.2f} s it would have to move at {excess.value:.3g} "
+        f"{'' if joint in body.hands else 'rad'}/s, and {excess.limit:.3g} is its most"
+        for joint, excess in worst.items()
+    ]
+
+
 def _reason(event: Event) -> str:
     return "the robot fell" if event.name == "fallen" else str(event.data["reason"])
 
@@ -93,6 +107,8 @@ def _motion(project: Project, name: str, timeline: str) -> Motion:
         if not path.is_file():
             raise UsageError(f"no file {path}")
         return MotionFile.load(path)
+    if path.is_file():
+        raise UsageError(f"{path} is no motion: a file ends in .yaml, {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
     if name not in project.motions:
         raise UsageError(f"no motion `{name}`: {did_you_mean(name, project.motions, 'motions/ has')}")
     return project.motions[name]

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lumen.formats.findings import Findings, broken
+from lumen.formats.findings import LOST, Findings, broken
 from lumen.formats.gestures.choregraphe import read_choregraphe
 from lumen.formats.gestures.curves import Curves, MotionWriter
 from lumen.formats.gestures.naoqi import read_naoqi
@@ -26,7 +26,11 @@ def read_gesture(
     curves = _curves(file, content, findings, timeline)
     data = MotionWriter(body, findings).data(curves, f"From {file.replace(chr(92), '/').rpartition('/')[2]}")
     if not data["keyframes"]:
-        raise broken(Place(file), "not-a-motion", f"nothing in it moves a joint of {body.name}")
+        message = f"nothing in it moves a joint of {body.name}"
+        lost = [finding for finding in findings.diagnostics if finding.code == LOST]
+        if not lost:
+            raise broken(Place(file), "not-a-motion", message)
+        raise broken(lost[0].place, "not-a-motion", f"{message}: {lost[0].message}")
     return data, findings.diagnostics
 
 

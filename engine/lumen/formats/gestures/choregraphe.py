@@ -26,7 +26,7 @@ def read_choregraphe(file: str, content: bytes, findings: Findings, timeline: st
     timelines = dict(_timelines(root))
     chosen = _chosen(root, timelines, timeline)
     _others(root, chosen, findings)
-    fps = number(chosen.get("fps")) or FPS
+    fps = _pace(chosen, findings)
     curves: dict[str, list[Point]] = {}
     for curve in _under(chosen, "ActuatorCurve"):
         joint = curve.get("actuator")
@@ -34,9 +34,18 @@ def read_choregraphe(file: str, content: bytes, findings: Findings, timeline: st
             findings.lost(curve.place, f"`{joint}` is muted")
         elif joint in curves:
             findings.lost(curve.place, f"`{joint}` has a curve already")
-        elif points := list(_points(curve, fps if fps > 0 else FPS, findings)):
+        elif points := list(_points(curve, fps, findings)):
             curves[joint] = points
     return curves
+
+
+def _pace(timeline: Element, findings: Findings) -> float:
+    """How many of its frames are a second."""
+    fps = number(timeline.get("fps"))
+    if fps is not None and fps > 0:
+        return fps
+    findings.changed(timeline.place, f"the timeline has no `fps` above 0: {FPS:g} frames are taken for a second")
+    return FPS
 
 
 def _chosen(root: Element, timelines: Timelines, name: str) -> Element:

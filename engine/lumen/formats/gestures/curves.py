@@ -88,7 +88,9 @@ class MotionWriter:
         """The points in the order of time, each within the joint's limits."""
         kept: list[Point] = []
         for point in points:
-            if kept and point.time < kept[-1].time + SOON:
+            if point.time < 0:
+                self.findings.lost(point.place, f"`{joint}` is somewhere {-point.time:g} s before the motion begins")
+            elif kept and point.time < kept[-1].time + SOON:
                 message = f"at {point.time:g} s `{joint}` is told of too late: it was at {kept[-1].time:g} s already"
                 self.findings.lost(point.place, message, "times have to increase")
             else:
