@@ -23,6 +23,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
 from lumen.loading.packaged import shipped_root
 from lumen.robots.broadcast import Count
+from lumen.robots.ledger import FILE, Ledger
 from lumen.runtime.home import home_of
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT, Presence
 
@@ -97,6 +98,8 @@ class Performance:
         presence = presence_of(show.exhibition.project, show.bus, (ROBOT, BRAIN, MOTION, *here), self._said)
         show.closing.insert(0, presence.close)
         claim(presence)
+        if show.server:
+            show.server.recall(Ledger(home_of(self._premises.root) / FILE))
         self._presence = presence
         show.exhibition.parts.append(lambda now: self._meet(presence))
 

@@ -7,6 +7,8 @@ from collections import deque
 from contextlib import suppress
 from pathlib import Path
 
+FILE = "commands.jsonl"
+"""Its name, among what an exhibition keeps from run to run."""
 REMEMBERED = 1_000
 """How many ids are kept."""
 

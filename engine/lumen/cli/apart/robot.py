@@ -14,14 +14,11 @@ from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, Record, RobotCommand
-from lumen.robots.ledger import Ledger
+from lumen.robots.ledger import FILE, Ledger
 from lumen.robots.remote import Host
 from lumen.runtime.home import home_of
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.presence import BRAIN, ROBOT, Presence
-
-LEDGER = "commands.jsonl"
-"""Where a robot keeps which commands it has begun, for the process that goes on after it."""
 
 
 class RobotPart:
@@ -49,7 +46,7 @@ class RobotPart:
     def begin(self, now: float) -> None:
         chosen = self._chosen
         self._host = Host(self._project, chosen.robot, self._bus, chosen.hall, self._given)
-        self._host.server.recall(Ledger(home_of(Path(self._project.root)) / LEDGER))
+        self._host.server.recall(Ledger(home_of(Path(self._project.root)) / FILE))
         self._guard = Guard(chosen.robot, self._presence, self._host.notice, self._say, time.monotonic)
         if chosen.hall:
             self._faces = FaceDetector(self._project, chosen.hall, self._bus)
