@@ -4,7 +4,7 @@ Where it has NaN or infinity we have the default, or an error that says so: that
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -44,9 +44,9 @@ def theirs(engine: Any, inputs: Mapping[str, float]) -> dict[str, float]:
     return {variable.name: float(np.squeeze(variable.value)) for variable in engine.output_variables}
 
 
-def agree(ours: Controller, engine: Any, points: list[dict[str, float]]) -> int:
-    """How many outputs were compared; all within 1e-6, but where they have none: there we raise."""
-    counted, previous = 0, {}
+def compared(ours: Controller, engine: Any, points: list[dict[str, float]]) -> Iterator[tuple[float, float]]:
+    """Each output, ours and theirs; but where they have none: there we raise."""
+    previous: dict[str, float] = {}
     for point in points:
         expected = theirs(engine, point)
         try:
@@ -54,9 +54,24 @@ def agree(ours: Controller, engine: Any, points: list[dict[str, float]]) -> int:
         except LumenError:
             assert not all(map(math.isfinite, expected.values()))
             continue
-        assert previous == pytest.approx(expected, abs=1e-6), point
-        counted += len(expected)
-    return counted
+        yield from ((previous[name], value) for name, value in expected.items())
+
+
+def agree(ours: Controller, engine: Any, points: list[dict[str, float]]) -> int:
+    """How many outputs were compared; all within 1e-6."""
+    pairs = list(compared(ours, engine, points))
+    assert [mine for mine, _ in pairs] == pytest.approx([other for _, other in pairs], abs=1e-6)
+    return len(pairs)
+
+
+def example(file: Path) -> tuple[Mapping[str, Any], list[Any], Controller, Any, list[dict[str, float]]]:
+    """An example of the package: our data of it, what was found, both engines, and 50 points in its ranges."""
+    data, found = read_fll(str(file), file.read_bytes(), file.stem)
+    engine, draw = fl.FllImporter().from_file(file), Random(file.stem)
+    points = [
+        {v.name: draw.uniform(float(v.minimum), float(v.maximum)) for v in engine.input_variables} for _ in range(50)
+    ]
+    return data, found, Controller.from_dict(data), engine, points
 
 
 def test_the_package_carries_its_examples() -> None:
@@ -65,12 +80,8 @@ def test_the_package_carries_its_examples() -> None:
 
 @pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: "/".join(file.parts[-3:]))
 def test_an_example_of_the_package(file: Path) -> None:
-    data, found = read_fll(str(file), file.read_bytes(), file.stem)
+    data, found, controller, engine, points = example(file)
     assert {d.message for d in found if d.severity == "error"} <= {"the range of `theta` holds nothing"}
-    controller, engine, draw = Controller.from_dict(data), fl.FllImporter().from_file(file), Random(file.stem)
-    points = [
-        {v.name: draw.uniform(float(v.minimum), float(v.maximum)) for v in engine.input_variables} for _ in range(50)
-    ]
     assert agree(controller, engine, points) >= 40
     again = {**read_fll(str(file), write_fll(controller, dotted("x"))[0].encode(), file.stem)[0]}
     assert plain(again) == plain(data)
