@@ -1,11 +1,13 @@
 """How the head follows a face: prints the table of docs/head.md, for a kinematic head and under physics.
 
-    python benchmarks/head.py [--plot FILE.png]
+    python benchmarks/head.py [--plot FILE.png] [--visitors 60]
 
 The head begins 15 deg beside the face in yaw and 8 deg in pitch; images are taken every `tick`, known `latency` later.
 Overshoot is a part of the way there, settled is the time after which it stays within 0.5 deg of the face, rest is how
 far beside it stands in the end; each is the worse of yaw and pitch. The walk is somebody who passes 1.5 m ahead at
 0.5 m/s: how far from the middle of the image their face is at most, as a part of half the image (1 is its edge).
+With --visitors, visitors of all sizes about the stage under physics instead, and the worst of them: tests/fuzzy holds
+the same ones.
 """
 
 import argparse
@@ -21,6 +23,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "engine")]
 from tests.fuzzy import closed_loop, physical_loop  # noqa: E402
 from tests.fuzzy.closed_loop import Run, off_by  # noqa: E402
 from tests.fuzzy.nao import TOP  # noqa: E402
+from tests.fuzzy.test_physics import cases, within_reach  # noqa: E402
 
 import lumen  # noqa: E402
 from lumen.formats.plots import Axis, Line, Mark, Panel, Sheet, draw  # noqa: E402
@@ -67,6 +70,19 @@ def row(still: Run, walk: Run) -> Iterator[str]:
     yield f"{walk.farthest():.2f}"
 
 
+def anybody(project: Project, count: int) -> str:
+    """The worst of so many visitors of all sizes, at any place, latency and tick."""
+    runs = [
+        physical_loop.run(project, lambda now, v=visitor: v, off, latency=latency, tick=tick, within=within_reach)
+        for visitor, off, latency, tick in cases(11, count)
+    ]
+    both = [(run, axis) for run in runs for axis in (0, 1)]
+    settled = max(run.settled(axis, 0.0) for run, axis in both)
+    rest = degrees(max(abs(run.poses[-1][1 + axis]) for run, axis in both))
+    beyond = 100 * max(run.overshoot(axis, 0.0) for run, axis in both)
+    return f"{count} visitors: overshoot {beyond:.1f} %, settled {settled:.2f} s, rest {rest:.2f} deg at worst"
+
+
 def sheet(found: dict[tuple[str, float, float], Run]) -> Sheet:
     """A panel for each loop and axis: how far beside the face the head looks, by time, a line for each latency."""
     panels = []
@@ -85,8 +101,12 @@ def sheet(found: dict[tuple[str, float, float], Run]) -> Sheet:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--plot", type=Path, metavar="FILE", help="write the curves there, .png or .svg")
+    parser.add_argument("--visitors", type=int, metavar="N", help="so many visitors of all sizes, under physics")
     options = parser.parse_args()
     project = lumen.load(ROOT)
+    if options.visitors:
+        print(anybody(project, options.visitors))
+        return
     found: dict[tuple[str, float, float], Run] = {}
     print("| loop | latency | tick | overshoot | settled | rest | walk |\n| --- | --- | --- | --- | --- | --- | --- |")
     for (name, loop), latency, tick in product(
