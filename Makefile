@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 STORY ?= visitor
 SPEED ?= 4
-FETCHED := .cache/scion .cache/sarif .cache/xstate .cache/asyncapi .cache/node_modules/amqplib
+FETCHED := .cache/scion .cache/sarif .cache/xstate .cache/asyncapi .cache/yaml .cache/node_modules/amqplib
 
 .PHONY: help run test soak broker check packages clean
 

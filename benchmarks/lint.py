@@ -3,10 +3,9 @@
 Cold is a process of its own, by CPU time, run in turn with `python -c "import yaml, jsonschema"` on the same machine;
 medians. Grown projects have so many behaviours and motions beside the shipped ones. Warm is what `--watch` and an
 editor pay: one value of the project has changed, in a file of each kind, and everything else is remembered. Last comes
-`lumen lint --watch` itself, from the file's replacement to the line that says it waits again. With --mutants N follows
-what lint says of mutants with one mistake: how many findings each gets.
+`lumen lint --watch` itself, from the file's replacement to the line that says it waits again.
 
-    python benchmarks/lint.py [--mutants 2000]
+    python benchmarks/lint.py
 """
 
 import gc

@@ -5,6 +5,8 @@ import sys
 import time
 from collections import Counter
 from random import Random
+from statistics import fmean
+from typing import NamedTuple
 
 from tests.mutation.judging import Judge, Outcome
 from tests.mutation.mutants import SHIPPED, Mutant, Nursery
@@ -12,15 +14,32 @@ from tests.mutation.mutants import SHIPPED, Mutant, Nursery
 WELL = ("error found", "warned, and runs", "clean, and runs")
 
 
-def survey(seed: int, count: int, stories: int) -> tuple[Counter[tuple[str, str]], list[tuple[Mutant, Outcome]]]:
-    """How many mutants of each kind came out how, and the misses."""
-    judge, counts, misses = Judge(SHIPPED, stories), Counter[tuple[str, str]](), []
+class Survey(NamedTuple):
+    """How many mutants of each kind came out how, the misses, and how many findings those with one mistake got.
+
+    `said` has the number of findings of each mutant with one mistake of which lint said something.
+    """
+
+    counts: Counter[tuple[str, str]]
+    misses: list[tuple[Mutant, Outcome]]
+    said: list[int]
+
+    @property
+    def findings(self) -> float:
+        """Of one mistake, on average."""
+        return fmean(self.said)
+
+
+def survey(seed: int, count: int, stories: int) -> Survey:
+    judge, found = Judge(SHIPPED, stories), Survey(Counter(), [], [])
     for mutant in Nursery().mutants(seed, count):
         outcome = judge.judge(mutant.file, mutant.line, mutant.files, Random(mutant.number))
-        counts[mutant.kind, outcome.what] += 1
+        found.counts[mutant.kind, outcome.what] += 1
         if outcome.what not in WELL:
-            misses.append((mutant, outcome))
-    return counts, misses
+            found.misses.append((mutant, outcome))
+        elif mutant.mistakes == 1 and outcome.said:
+            found.said.append(outcome.said)
+    return found
 
 
 def table(counts: Counter[tuple[str, str]]) -> str:
@@ -44,12 +63,14 @@ def main() -> int:
     parser.add_argument("--stories", type=int, default=3, help="stories played with each that lint passes (default: 3)")
     options = parser.parse_args()
     began = time.process_time()
-    counts, misses = survey(options.seed, options.count, options.stories)
-    for mutant, outcome in misses:
+    found = survey(options.seed, options.count, options.stories)
+    for mutant, outcome in found.misses:
         print(f"# {mutant.number} {mutant.kind}: {outcome.what}\n{mutant.difference}\n{outcome.trouble}")
-    print(table(counts))
-    print(f"{counts.total():,} mutants, {len(misses)} misses, {time.process_time() - began:.0f} s of CPU")
-    return int(bool(misses))
+    print(table(found.counts))
+    print(f"{len(found.said):,} with one mistake: {found.findings:.2f} findings each, at most {max(found.said)}")
+    taken = time.process_time() - began
+    print(f"{found.counts.total():,} mutants, {len(found.misses)} misses, {taken:.0f} s of CPU")
+    return int(bool(found.misses))
 
 
 if __name__ == "__main__":

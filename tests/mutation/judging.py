@@ -38,10 +38,11 @@ class EnoughError(Exception):
 
 
 class Outcome(NamedTuple):
-    """How it ended, in a word or two; `trouble` is the traceback of a miss."""
+    """How it ended, in a word or two; `trouble` is the traceback of a miss, `said` how many findings lint had."""
 
     what: str
     trouble: str = ""
+    said: int = 0
 
 
 @contextmanager
@@ -108,11 +109,11 @@ class Judge:
         if astray := [d for d in diagnostics if not _sound(d, files)]:
             return Outcome("nonsense said", str(astray[0]))
         if project is None:
-            return Outcome("error found" if diagnostics else "refused without a word")
+            return Outcome("error found" if diagnostics else "refused without a word", said=len(diagnostics))
         for story in self._touched(project, file, line, random):
             if trouble := self._trouble(project, story):
                 return trouble
-        return Outcome("warned, and runs" if diagnostics else "clean, and runs")
+        return Outcome("warned, and runs" if diagnostics else "clean, and runs", said=len(diagnostics))
 
     def _trouble(self, project: Project, story: Story) -> Outcome | None:
         def enough(now: float) -> None:

@@ -13,15 +13,22 @@ SHIPPED = read_files(Path(__file__).parents[2])
 WEIGHTS = {"behaviors/tour.yaml": 30, "lumen.yaml": 12, "fuzzy/head.yaml": 8, "models/nao.yaml": 6}
 """How often a file is changed; others once, a motion and a story three times."""
 
+IN_TWO_PLACES = ("swap values", "swap lines", "move a key", "exchange files")
+"""Kinds of change after which two places are wrong, and two findings right."""
+
 
 class Mutant(NamedTuple):
-    """`file` is what was changed, `line` the first that differs, `files` the whole project; `kind` says how."""
+    """`file` is what was changed, `line` the first that differs, `files` the whole project; `kind` says how.
+
+    `mistakes` counts the places that were changed: two whose values, lines or files were exchanged are two.
+    """
 
     number: int
     kind: str
     file: str
     line: int
     files: Mapping[str, bytes]
+    mistakes: int = 1
 
     @property
     def difference(self) -> str:
@@ -57,7 +64,8 @@ class Nursery:
                 break
             kinds.append(kind)
             content = OPERATORS[kind](random, sheet, self.sheets).encode("utf-8", "surrogateescape")
-        return Mutant(number, kinds[0], file, _first(SHIPPED[file], content), {**SHIPPED, file: content})
+        mistakes = sum(1 + (kind in IN_TWO_PLACES) for kind in kinds)
+        return Mutant(number, kinds[0], file, _first(SHIPPED[file], content), {**SHIPPED, file: content}, mistakes)
 
     def mutants(self, seed: int, count: int) -> Iterator[Mutant]:
         """So many mutants, from that number on."""
@@ -78,7 +86,7 @@ class Nursery:
                 files[file], files[other] = files[other], files[file]
             case _:
                 files[file] = random.randbytes(random.choice([0, 1, 300]))
-        return Mutant(number, kind, file, 1, dict(sorted(files.items())))
+        return Mutant(number, kind, file, 1, dict(sorted(files.items())), 1 + (kind in IN_TWO_PLACES))
 
 
 def _sheet(file: str, content: bytes) -> Sheet | None:

@@ -116,7 +116,7 @@ def _order(diagnostic: Diagnostic) -> tuple[Place, str, str]:
 
 
 def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
-    """The first of these, the others as places related to it; those beyond MAX_RELATED are counted."""
+    """The first, as bad as the worst of them, the others as places related to it; those beyond MAX_RELATED counted."""
     if len(findings) == 1:
         return findings[0]
     first, *others = sorted(findings, key=lambda d: (d.cause != cause, "/stories/" in d.place.file, _order(d)))
@@ -125,7 +125,8 @@ def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
         shown[-1] = Related(shown[-1].place, f"and here, and in {left} more")
     if many and first.cause != cause == first.root:
         first = replace(first, hint=f"look first at {cause}: it is in the way in {len(findings)} places")
-    return replace(first, related=(*first.related, *shown))
+    severity = min((d.severity for d in findings), key=list(Severity).index)
+    return replace(first, severity=severity, related=(*first.related, *shown))
 
 
 def nearest(word: object, candidates: Iterable[str]) -> str:

@@ -1,6 +1,6 @@
 """The description of a robot's body, `models/NAME.yaml`, from its plain data to a `Body`."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from math import inf, isfinite
@@ -28,16 +28,21 @@ def build_body(data: Any, report: Report, *, name: str) -> Body | None:
     return _Builder(data, report).body(name)
 
 
-def build_likes(bodies: Mapping[str, Body], sources: Mapping[str, tuple[Any, Report]]) -> dict[str, Body]:
-    """All these bodies, and those that are like one of them; `sources` are the data and report of each file."""
+def build_likes(
+    bodies: Mapping[str, Body], sources: Mapping[str, tuple[Any, Report]], names: Collection[str]
+) -> dict[str, Body]:
+    """All these bodies, and those that are like one of them; `sources` are the data and report of each file.
+
+    `names` are all models that there are; one that could not be read is among them and is not missed.
+    """
     found = dict(bodies)
     for name, (data, report) in sources.items():
         if not isinstance(data, Mapping) or "like" not in data:
             continue
         if data["like"] in bodies:
             found[name] = _Builder({"joints": {}, **data}, report).like(bodies[data["like"]], name)
-        elif data["like"] not in sources or "like" in (sources[data["like"]][0] or ()):
-            hint = did_you_mean(data["like"], bodies, "there are")
+        elif data["like"] not in names or "like" in (sources.get(data["like"], ((), None))[0] or ()):
+            hint = did_you_mean(data["like"], bodies, "there are") if bodies else "there is none that says all itself"
             report("unknown-model", ("like",), f"there is no model `{data['like']}` to be like", hint=hint)
     return found
 
@@ -95,6 +100,7 @@ class _Builder:
         if not low < high:
             hint = f"write [{high}, {low}]" if high < low else "the second number has to be greater"
             self.report("empty-range", ("joints", name, "range"), f"`{name}` can't move in [{low}, {high}]", hint=hint)
+            self.report.lost.add(name)
             return None
         unit = self.unit(name)
         return Joint(name, low * unit, high * unit, spec.get("speed", inf) * unit, spec.get("effort", inf))

@@ -79,7 +79,7 @@ def _unknown_keys(error: Error, path: Path, root: Any) -> Iterator[Complaint]:
         if key in known or any(re.search(pattern, key) for pattern in patterns):
             continue
         free = [k for k in known if k not in error.instance] or known
-        meant = nearest(key, free)
+        meant = also if (also := _ALSO.get(key, "")) in free else nearest(key, free)
         hint = f"did you mean `{meant}`?" if meant else did_you_mean(key, free, "allowed here:")
         if key == "<<":
             hint = "YAML 1.2 has no merge keys: write the keys themselves"
@@ -90,6 +90,14 @@ def _unknown_keys(error: Error, path: Path, root: Any) -> Iterator[Complaint]:
         message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key that can stand here"
         here = (*path, key)
         yield Complaint("unknown-key", here, message, hint, path, here, True, suggestion=meant)
+
+
+_ALSO = {
+    "next": "onDone", "goto": "target", "to": "target", "transitions": "on", "events": "on", "timeout": "after",
+    "onEntry": "entry", "onExit": "exit", "enter": "entry", "cond": "guard", "if": "guard", "when": "guard",
+    "time": "at", "angles": "joints", "pin": "key", "topic": "key", "exchange": "key",
+}  # fmt: skip
+"""What other tools call our keys."""
 
 
 def _owner(key: str, root: Any) -> str:

@@ -75,10 +75,12 @@ class Expressions:
 
 
 def cause_of(file: str, finding: Finding) -> str:
-    """What an unknown name has in common with the same one elsewhere in the file; other faults are each their own."""
+    """What a name that is unknown, or may be missing, has in common with the same one elsewhere in the file."""
     if finding.code == "unknown-context-key":
         return f"{file} context {finding.message.split('`')[1]}"
-    return f"{file} {finding.message}" if finding.code.startswith("unknown-") else ""
+    return (
+        f"{file} {finding.message}" if finding.code.startswith("unknown-") or finding.code == "unguarded-field" else ""
+    )
 
 
 def place_within(document: Document, path: Path, source: str, offset: int, length: int) -> Place:

@@ -31,6 +31,7 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
     document, found = parse(file, content.replace(b"\t", b" "))  # JSON may be indented with tabs
     report = Report(document or Document(file, data))
     report.diagnostics += found
+    data = document.data if document and found else data  # of a key that stands twice, JSON keeps the second
     if isinstance(data, dict):
         examine(data, report)
     else:

@@ -84,7 +84,8 @@ class PoseReader:
     def _pose(self, name: str, path: Path) -> Angles:
         if name not in self.poses:
             hint = did_you_mean(name, self.poses, "`poses` has")
-            self.report("unknown-pose", path, f"there is no pose `{name}`", hint=hint)
+            cause = f"{self.report.document.file} pose {name}"
+            self.report("unknown-pose", path, f"there is no pose `{name}`", hint=hint, cause=cause)
         return {joint: (angle, path) for joint, (angle, _) in self.poses.get(name, {}).items()}
 
     def _joints(self, joints: Mapping[str, float], path: Path) -> Angles:

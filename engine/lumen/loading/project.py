@@ -45,7 +45,8 @@ def draft(files: Mapping[str, bytes]) -> Draft:
     elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
         found.settings = main.built
     models, behaviors = _each(found, "models", build_body), _each(found, "behaviors", _machine)
-    found.bodies = build_likes(_built(models), {name: (file.data, file.report) for name, file in models.items()})
+    sources = {name: (file.data, file.report) for name, file in models.items()}
+    found.bodies = build_likes(_built(models), sources, found.names["models"])
     reports = {name: file.report for name, file in behaviors.items()}
     found.behaviors = link(_built(behaviors), reports, found.names["behaviors"])
     found.stories = _built(_each(found, "behaviors/stories", build_story))

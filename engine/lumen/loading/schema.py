@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from lumen.errors import LumenError
 from lumen.language.diagnostics import Path
 from lumen.loading.complaints import Complaint, complaints
+from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
 from lumen.loading.quick import Quick, quick
@@ -38,6 +39,8 @@ def check_schema(document: Document, kind: str, report: Report) -> Any:
         try:
             if _quick(kind)(report.document.data):
                 return report.document.data
+            if misplaced(report.document.data, kind, report):
+                return None
             found = list(_complaints(_validator(kind), report.document.data))
         except RecursionError:
             report("too-large", (), "the file is nested too deeply to be read", hint="use fewer levels")
@@ -110,10 +113,16 @@ def _judge(found: list[Complaint], report: Report, said: set[Path]) -> set[Path]
     """The nodes that have to go. What follows from a node that went before, and what was said, is not said again."""
     suggested = {(c.path[:-1], c.suggestion) for c in found if c.suggestion}
     doomed = {c.doomed for c in found if c.doomed is not None}
-    emptied = _emptied(found, report)
+    emptied, outdented = _emptied(found, report), _outdented(found, report)
     spoken: set[Path] = set()
     for complaint in found:
         about = complaint.about
+        if complaint.missing and (beside := (*about[:-1], complaint.missing)) in outdented:
+            message = f"{complaint.message}, which stands beside it"
+            report(complaint.code, beside, message, hint=f"indent `{complaint.missing}` further", key=True)
+            continue
+        if any(path[: len(beside)] == beside for beside in outdented for path in (about, complaint.path)):
+            continue
         if about in emptied and complaint.code in _ASTRAY:
             continue  # what should have been indented further
         follows = any(path[: len(about)] == about for path in report.pruned) if about else False
@@ -143,6 +152,13 @@ def _emptied(found: list[Complaint], report: Report) -> dict[Path, Path]:
             if parent in empty and _stands_after(report, complaint.path, empty[parent]):
                 found_below[complaint.about] = empty[parent]
     return found_below
+
+
+def _outdented(found: list[Complaint], report: Report) -> set[Path]:
+    """The nodes that mean nothing where they stand, and that the node before them lacks."""
+    wrong = {path[:n] for c in found if not c.missing for path in (c.about, c.path) for n in range(1, len(path) + 1)}
+    missed = ((c, (*c.about[:-1], c.missing)) for c in found if c.missing and c.about)
+    return {beside for c, beside in missed if beside in wrong and _stands_after(report, beside, c.about)}
 
 
 def _stands_after(report: Report, path: Path, other: Path) -> bool:

@@ -10,6 +10,10 @@ BACK = 3
 _KEY = r"[A-Za-z_][\w.]*"
 
 
+_KEYED = re.compile(f" *{_KEY}:(?: |$)")
+_ITEM = re.compile(r" *- ")
+
+
 class Slip(NamedTuple):
     """Where (from 1) and how long it is, what it is, and what to write."""
 
@@ -66,4 +70,23 @@ def slip_near(lines: Sequence[str], index: int) -> Slip | None:
             if found := pattern.search(lines[i]):
                 start, end = found.span("slip")
                 return Slip(i + 1, start + 1, end - start, message, hint)
+    return _odd_item(lines, index)
+
+
+def _odd_item(lines: Sequence[str], index: int) -> Slip | None:
+    """An item among keys, or a key among items, in the line of that index: the line before it tells which."""
+    here = lines[index] if index < len(lines) else ""
+    above = next((line for line in reversed(lines[:index]) if _indent(line) <= _indent(here) and line.strip()), "")
+    column = _indent(here) + 1
+    if column != _indent(above) + 1:
+        return None
+    if _ITEM.match(here) and _KEYED.match(above):
+        return Slip(index + 1, column, 1, "an item of a list stands among keys", "delete the `- ` before it")
+    if _KEYED.match(here) and _ITEM.match(above):
+        hint = "write `- ` before it too, or delete the one above"
+        return Slip(index + 1, column, len(here) - column + 1, "a key stands among the items of a list", hint)
     return None
+
+
+def _indent(line: str) -> int:
+    return len(line) - len(line.lstrip(" "))

@@ -6,8 +6,9 @@ at the author's text by the path of the node.
 """
 
 import re
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import chain
 from math import inf, nan
 from typing import Any, NamedTuple, TypeVar
 
@@ -28,15 +29,18 @@ _OCT = re.compile(r"0o[0-7]+")
 _HEX = re.compile(r"0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _INF = re.compile(r"([-+]?)\.(inf|Inf|INF)")
+_WHOLE, _DECIMALS = re.compile(r"[-+]?[0-9]+"), re.compile(r"[0-9]+(ms|s|min|h)?")
 _QUOTED = re.compile(r"(?<=[`.#])[^`.#]+(?=[`.])")
 _LOOK = "look at the indentation, a missing colon, quote or bracket here or in the line above"
 _HINTS = {
     "mapping values are not allowed": "put quotes around a text that holds a colon and a blank",
     "cannot start any token": "put quotes around a text that begins with `@`, `%`, a backquote or a quote",
     "another document": "a file holds one document: delete the line `---`",
-    "undefined alias": "put quotes around a text that begins with `*`",
+    "undefined alias": "put quotes around a text that begins with `*`; nothing here has that anchor `&`",
+    "could not find expected ':'": "write `:` and a blank behind it if it is a key; else indent it below its key",
     "duplicate anchor": "give each anchor `&` a name of its own",
 }
+_TAGS = {"!include": "write here what stands in that file: one file can't include another"}
 _PLAIN = frozenset(("tag:yaml.org,2002:str", "tag:yaml.org,2002:seq", "tag:yaml.org,2002:map"))
 _CONFLICT = re.compile(r"^(<{7}|={7}|>{7})(?= |$)", re.MULTILINE)
 _KEYED = re.compile(r" *[A-Za-z_][\w.]*:( |$)")
@@ -59,12 +63,16 @@ class Span(NamedTuple):
 
 @dataclass(frozen=True)
 class Document:
-    """One file: its path relative to the project, its text, the plain data in it, and where each node stands."""
+    """One file: its path relative to the project, its text, the plain data in it, and where each node stands.
+
+    `dropped` are the words under keys that stand a second time, and that are not read.
+    """
 
     file: str
     data: Any
     spans: Mapping[Path, Span] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
+    dropped: frozenset[str] = field(default=frozenset(), repr=False, compare=False)
 
     def place(self, path: Path, *, key: bool = False) -> Place:
         """The place of the node at `path`, or of its key; of the nearest node above it where there is none.
@@ -96,7 +104,7 @@ class Report:
         self.document = document
         self.diagnostics: list[Diagnostic] = []
         self.pruned: set[Path] = set()
-        self.lost: set[str] = set()
+        self.lost: set[str] = {*document.dropped}
         self.missed: set[str] = set()
         self.whole = True
 
@@ -178,7 +186,7 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
     data = reader.read(node, (), None, 0)
     if "<<<<<<< " in text and (conflict := merge_conflict(file, text)):
         reader.diagnostics.append(conflict)
-    return Document(file, data, reader.spans, text), reader.diagnostics
+    return Document(file, data, reader.spans, text, frozenset(reader.dropped)), reader.diagnostics
 
 
 def resolve(text: str) -> Any:
@@ -210,6 +218,7 @@ class _Reader:
         self.spans: dict[Path, Span] = {}
         self.diagnostics: list[Diagnostic] = []
         self.full = False
+        self.dropped: set[str] = set()
 
     def read(self, node: yaml.Node, path: Path, key: yaml.Node | None, depth: int) -> Any:
         self.spans[path] = Span(self.place(key) if key else None, self.place(node))
@@ -217,7 +226,12 @@ class _Reader:
             self.overflow(node, depth)
             return None
         if node.tag not in _PLAIN:
-            self.say("yaml-tag", node, "a tag (a word that begins with `!`) means nothing here", "delete the tag")
+            self.say(
+                "yaml-tag",
+                node,
+                "a tag (a word that begins with `!`) means nothing here",
+                _TAGS.get(node.tag, "delete the tag"),
+            )
         if isinstance(node, yaml.ScalarNode):
             return node.value if node.style else resolve(node.value)
         if isinstance(node, yaml.SequenceNode):
@@ -226,17 +240,31 @@ class _Reader:
 
     def mapping(self, node: yaml.Node, path: Path, depth: int) -> dict[str, Any]:
         data: dict[str, Any] = {}
+        last: yaml.Node | None = None
         for key, value in node.value:
-            if not isinstance(key, yaml.ScalarNode):
+            before, last = last, value
+            if before is not None and data and (number := _decimal(before, key, value)):
+                self.comma(before, key, number)
+                data[next(reversed(data))] = resolve(number)
+            elif not isinstance(key, yaml.ScalarNode):
                 hint = "put quotes around a text that begins with `{`"
                 self.say("complex-key", key, "a key has to be a single word or text", hint)
             elif key.value in data:
                 self.again(key, path)
                 if data[key.value] is None:  # the line was doubled, and the second one goes on
                     data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
+                else:
+                    self.dropped.update(_words(value))
             else:
                 data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
         return data
+
+    def comma(self, before: yaml.Node, key: yaml.Node, number: str) -> None:
+        """Report a number that was written with a comma."""
+        start, end = before.start_mark, key.end_mark
+        place = Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+        message = f"a comma ends the number {before.value}, and `{key.value}` would be a key"
+        self.diagnostics.append(Diagnostic("decimal-comma", message, place, f"write a point: {number}"))
 
     def again(self, key: yaml.Node, path: Path) -> None:
         """Report a key that stands a second time; those of one map are one finding."""
@@ -260,6 +288,27 @@ class _Reader:
     def place(self, node: yaml.Node) -> Place:
         start, end = node.start_mark, node.end_mark
         return Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+
+def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
+    """The number that a value and an empty key behind its comma were meant to be; empty where they are none."""
+    near = key.start_mark.index == before.end_mark.index + 1 and value.start_mark.index == value.end_mark.index
+    plain = near and all(isinstance(node, yaml.ScalarNode) and not node.style for node in (before, key, value))
+    if plain and _WHOLE.fullmatch(before.value) and _DECIMALS.fullmatch(key.value):
+        return f"{before.value}.{key.value}"
+    return ""
+
+
+def _words(node: yaml.Node) -> Iterator[str]:
+    """Every key and text below a node, each part of the file once."""
+    waiting, seen = [node], set[int]()
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, yaml.ScalarNode):
+            yield item.value
+        elif id(item) not in seen:
+            seen.add(id(item))
+            waiting += chain.from_iterable(item.value) if isinstance(item, yaml.MappingNode) else item.value
 
 
 def merge_conflict(file: str, text: str) -> Diagnostic | None:
@@ -308,6 +357,8 @@ def _syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         hint = "close it with the same sign; a quote inside the text needs the other kind of quotes around it"
         return Diagnostic("yaml-syntax", "a quoted text begins here and is not closed where it should be", place, hint)
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+    if "simple key" in context and not text.splitlines()[error.context_mark.line].lstrip().startswith(("-", "?")):  # type: ignore[attr-defined]
+        mark = error.context_mark  # type: ignore[attr-defined]
     if mark is None:
         return Diagnostic("too-large", "the file is nested too deeply to be read", Place(file), "use fewer levels")
     place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2)

@@ -45,6 +45,7 @@ class _Table:
             hint = did_you_mean(name, names, "the variables are")
             message, cause = f"there is no variable `{name}`", f"{self.report.document.file} unknown-variable {name}"
             self.report("unknown-variable", path, message, hint=hint, key=True, cause=cause)
+            self.report.lost.add(term)  # its own variable has none of that name now
             return
         if term in self.sides[side][name]["terms"]:
             message = f"`{name}` has a term `{term}` already: a term has one shape"
@@ -55,6 +56,8 @@ class _Table:
 
     def moved(self, path: Path, to: Path, kind: str) -> None:
         """The cell's place under its new path, and those of its numbers."""
+        if any(lost[: len(path)] == path for lost in self.report.pruned):
+            self.report.pruned.add((*to, kind))
         found = self.report.document.spans.get(path)
         if found is None:
             return

@@ -93,9 +93,20 @@ def describe(schema: Any) -> str:
     if not isinstance(schema, dict):
         return ""
     text = str(schema.get("description", "")).strip().rstrip(".")
-    examples = [e for e in schema.get("examples", ()) if not isinstance(e, dict | list)]
+    given = schema.get("examples", ())
+    examples = [e for e in given if not isinstance(e, dict | list)] or [_flow(e) for e in given if len(_flow(e)) <= 40]
     shown = ", ".join(f"`{e}`" for e in examples[:3])
     return f"{text}, as in {shown}" if text and shown else text or (f"as in {shown}" if shown else "")
+
+
+def _flow(value: Any) -> str:
+    """A value in one line, as YAML has it between braces and brackets."""
+    match value:
+        case dict():
+            return "{" + ", ".join(f"{k}: {_flow(v)}" for k, v in value.items()) + "}"
+        case list():
+            return "[" + ", ".join(map(_flow, value)) + "]"
+    return "null" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> str:
@@ -112,6 +123,8 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
             return "write the unit too, as in `500ms`, `20s` or `2min`"
         written = str(value).lower() if isinstance(value, bool) else f"{value}"
         return f'put it in quotes: "{written}"'
+    if "string" in wanted and isinstance(value, dict) and [type(v) for v in value.values()] == [str]:
+        return f'a text that holds a colon and a blank needs quotes: "{_short(_flow(value)[1:-1])}"'
     return ""
 
 

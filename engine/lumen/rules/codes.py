@@ -22,6 +22,7 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
     "text": {
         "complex-key": Code(ERROR, "a key is a list or a map"),
         "duplicate-key": Code(ERROR, "a key stands twice in the same place"),
+        "decimal-comma": Code(ERROR, "a number is written with a comma"),
         "empty-file": Code(ERROR, "a file holds nothing"),
         "json-syntax": Code(ERROR, "a message schema is not JSON"),
         "merge-conflict": Code(ERROR, "both sides of a merge stand in the file"),

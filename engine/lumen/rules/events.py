@@ -97,6 +97,7 @@ def _waited(draft: Draft, machine: Machine, report: Report) -> None:
         return
     known = {*declared(draft, machine), *raised(report.document.data), *draft.main.lost, *report.lost}
     said: set[str] = set()
+    routed = any(route.event for route in draft.settings.routes.values())
     sound = not report.diagnostics
     for state in machine.states.values():
         for transition in state.transitions:
@@ -115,8 +116,11 @@ def _waited(draft: Draft, machine: Machine, report: Report) -> None:
                 hint = did_you_mean(event, {*known, *(f.removesuffix(".") for f in FAMILIES)} - lost)
                 if "mean" not in hint:
                     hint = "declare it under `events:`, or give a route of lumen.yaml this `event`"
+                cause = f"name {event}"
+                if not routed:
+                    hint, cause = "no route of lumen.yaml has an `event`: look whether `routes` is whole", "no routes"
                 message = f"nothing raises the event `{event}`"
-                find(report, "unknown-event", path, message, hint, key=True, cause=f"name {event}")
+                find(report, "unknown-event", path, message, hint, key=True, cause=cause)
 
 
 def _of_the_engine(event: str) -> bool:

@@ -73,11 +73,19 @@ class _Expressions:
                 place = self.report.document.place(("context", key), key=True)
                 yield Related(place, f"`{key}` begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}")
 
+    def nulls(self, part: str, finding: Finding) -> str:
+        """What parts have in common whose one context key begins with nothing, where something was meant."""
+        keys = {key for key in re.findall(r"\bcontext\.(\w+)", part) if key in self.machine.context}
+        key = keys.pop() if len(keys) == 1 and finding.code == "type-mismatch" else ""
+        alone = key and self.machine.context[key] is None and key not in self.machine.types
+        return f"{self.report.document.file} null {key}" if alone else ""
+
     def say(self, spot: Spot, finding: Finding) -> None:
         source = spot.text.text if isinstance(spot.text, Template) else spot.text.source
         place = place_within(self.report.document, spot.text.where, source, finding.offset, finding.length)
         severity = CODES[finding.code].severity
-        cause = cause_of(self.report.document.file, finding)
-        related = tuple(self.declared(spot, source[finding.offset : finding.offset + finding.length], finding))
+        part = source[finding.offset : finding.offset + finding.length]
+        related = tuple(self.declared(spot, part, finding))
+        cause = cause_of(self.report.document.file, finding) or self.nulls(part, finding)
         found = Diagnostic(finding.code, finding.message, place, finding.hint, severity, related, cause)
         self.report.diagnostics.append(found)

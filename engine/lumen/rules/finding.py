@@ -66,7 +66,7 @@ class References:
         if name in names:
             return True
         if names:
-            hint = did_you_mean(name, names, f"{folder}/ has")
+            hint = did_you_mean(name.rpartition("/")[2].removesuffix(".yaml"), names, f"{folder}/ has")
             cause = f"{kind} {name}"
             find(report, f"unknown-{kind}", path, f"there is no {what} `{name}`", hint, key=key, cause=cause)
         elif folder not in self._missing:

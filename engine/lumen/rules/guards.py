@@ -82,7 +82,8 @@ def _takes_all(earlier: Transition, later: Transition, machine: Machine, report:
         line = report.document.place(earlier.where).line
         message = f"this is never taken: the transition in line {line} always is, before it"
         hint = "give that one a `guard`, or swap them"
-        find(report, "shadowed-transition", later.where, message, hint, related=related)
+        cause = f"{report.document.file} shadowed by {earlier.where}"
+        find(report, "shadowed-transition", later.where, message, hint, related=related, cause=cause)
         return True
     if later.guard is None:
         return False

@@ -1,11 +1,13 @@
 """Motions: what they ask of the robot's joints on the way from key to key."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from math import ceil
 
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory
+from lumen.language.diagnostics import Path
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
 from lumen.loading.draft import Draft
@@ -30,8 +32,8 @@ def check(draft: Draft) -> None:
             continue
         unit = value_at(report, ("units", "angle")) or "rad"
         fast, far = again(("excess", folder, motion.name), (motion, body), partial(_excesses, motion, body))
-        for excess in fast:
-            _too_fast(report, excess, unit, draft.body)
+        for excesses in _by_key(fast):
+            _too_fast(report, excesses, unit, draft.body)
         for excess in far:
             _too_far(report, excess, unit, draft.body)
 
@@ -42,10 +44,27 @@ def _excesses(motion: Motion, body: Body) -> tuple[tuple[Excess, ...], tuple[Exc
     return tuple(overspeed(motion, body, course)), tuple(beyond_limits(motion, body, course))
 
 
-def _too_fast(report: Report, excess: Excess, unit: str, body: Body) -> None:
+def _by_key(fast: Iterable[Excess]) -> list[list[Excess]]:
+    """The excesses of each key, the worst first: a key that comes too soon comes too soon for all of its joints."""
+    keys: dict[Path, list[Excess]] = {}
+    for excess in sorted(fast, key=lambda e: -e.value / e.limit):
+        keys.setdefault(_keyframe(excess.key.where), []).append(excess)
+    return list(keys.values())
+
+
+def _keyframe(where: Path) -> Path:
+    """The path of the keyframe that a key stands in."""
+    return where[: max((n for n, step in enumerate(where) if step == "keyframes"), default=len(where)) + 2]
+
+
+def _too_fast(report: Report, excesses: Sequence[Excess], unit: str, body: Body) -> None:
+    excess, *others = excesses
     value, limit = _shown(excess, unit, body)
     what = "" if excess.joint in body.hands else f" {unit}/s"
     message = f"`{excess.joint}` would have to move at {value:g}{what} to get here in time, and {limit:g} is its most"
+    if others:
+        names = ", ".join(f"`{name}`" for name in list(dict.fromkeys(e.joint for e in others))[:3])
+        message += f"; too fast are {names}{' and others' if len(others) > 3 else ''}, too"
     percent = ceil(100 * (excess.value / excess.limit - 1))
     cause = f"{report.document.file} {value:g} {limit:g}"  # of the left and of the right, wherever the pose stands
     find(

@@ -28,8 +28,10 @@ def known_route(draft: Draft, report: Report, path: Path, route: str) -> bool:
     if route in draft.settings.routes:
         return True
     if route not in draft.main.lost:
-        hint = did_you_mean(route, draft.settings.routes, "lumen.yaml has")
-        find(report, "unknown-route", path, f"there is no route `{route}`", hint, cause=f"name {route}")
+        hint, cause = did_you_mean(route, draft.settings.routes, "lumen.yaml has"), f"name {route}"
+        if not draft.settings.routes:
+            hint, cause = "lumen.yaml has no `routes`", "no routes"
+        find(report, "unknown-route", path, f"there is no route `{route}`", hint, cause=cause)
     return False
 
 

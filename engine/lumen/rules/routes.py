@@ -122,6 +122,8 @@ def _fault(key: str) -> tuple[str, str]:
         return f"`{key}` holds a wildcard, and a message has one certain key", "write the whole key"
     if key != key.strip() or any(not word for word in words):
         return f"`{key}` has an empty word", "write words with single dots between them"
+    if " " in key:
+        return f"`{key}` holds a blank", f"write dots between its words: {'.'.join(key.replace('.', ' ').split())}"
     if bad := [word for word in words if not _WORD.fullmatch(word)]:
         return f"`{bad[0]}` can't be a word of a routing key", "`{robot}` stands for the robot's name, as a whole word"
     if words[0] not in PREFIXES:

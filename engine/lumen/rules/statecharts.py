@@ -17,6 +17,9 @@ LONGEST = 3
 MOST = 4
 """Guarded `always` of a state that are followed."""
 
+_LEADS = frozenset(("on", "always", "after", "onDone", "onError", "onReload", "target", "initial"))
+"""Keys under which something names a state: one that was broken may have named any."""
+
 Onward = Mapping[str, Sequence[tuple[Transition, str]]]
 
 
@@ -25,7 +28,7 @@ def check(draft: Draft) -> None:
     torn = {d.place.file for d in draft.loose}
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
-        if report.document.file not in torn:
+        if report.document.file not in torn and not any(_LEADS.intersection(path) for path in report.pruned):
             _unreachable(machine, report)
         _endless(machine, report)
         _loops(machine, report)

@@ -77,8 +77,16 @@ class _Script:
         if state and rest:
             hint = f"it is called by its id: `{name.removesuffix(rest)}{state.name}`"
         message = f"`{self.behavior}` has no state that is called `{name}`"
-        cause = f"behaviors/{self.behavior}.yaml state {name}"
-        find(self.report, "unknown-state", path, message, hint, cause=cause)
+        file = f"behaviors/{self.behavior}.yaml"
+        find(
+            self.report,
+            "unknown-state",
+            path,
+            message,
+            hint,
+            cause=f"{file} state {name}",
+            root=f"the states of {file}",
+        )
 
     def key(self, path: Path, key: str, value: Any) -> None:
         """A context key, and whether it can have that value."""
@@ -112,7 +120,8 @@ class _Script:
             find(self.report, "unknown-event", path, message, hint, cause=f"name {event}")
 
     def message(self, where: Path, route: str, body: Any) -> None:
-        if known_route(self.draft, self.report, (*where, "route"), route) and self.draft.settings:
+        known = known_route(self.draft, self.report, (*where, "route"), route)
+        if known and self.draft.settings and (*where, "body") not in self.report.pruned:
             self.fits((*where, "body"), body, self.draft.messages.get(self.draft.settings.routes[route].schema))
 
     def fits(self, path: Path, data: Any, schema: Any) -> None:
