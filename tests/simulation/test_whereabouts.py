@@ -1,15 +1,20 @@
 """Where the robot believes to be, and what it makes of having been down."""
 
+from math import degrees, pi
+
 import pytest
 
 from lumen.errors import RobotError
-from lumen.interpreters.gait import Pose, Step
-from lumen.language.commands import Posture, Walk
+from lumen.interpreters.gait import Pose, Step, middle
+from lumen.interpreters.gait.poses import wrap
+from lumen.language.commands import Posture, Wake, Walk
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.robots.simulation.whereabouts import ASTRAY, Whereabouts
+from lumen.robots.simulation import SimulatedRobot
+from lumen.robots.simulation.whereabouts import ANYWHERE, ON_ITS_BACK, SEATED, Whereabouts
 from tests.simulation.conftest import answer, until_answered
-from tests.simulation.walks import on_the_floor, truth
+from tests.simulation.test_postures import shoved
+from tests.simulation.walks import any_robot, on_the_floor, truth
 
 WIDE = Stage((-1.0, 1.0), (-1.0, 1.0))
 STANDING = dict.fromkeys(
@@ -21,24 +26,26 @@ def test_once_down_the_stage_is_smaller_by_as_much_as_nobody_knows() -> None:
     whereabouts = Whereabouts(WIDE)
     whereabouts.feel(STANDING)
     whereabouts.check([Step("L", Pose(0.85, 0.05))])
-    for _ in range(3):
-        whereabouts.lose()
+    for posture in ("Crouch", "Straddle", "LyingBack", "Straddle"):
+        whereabouts.lose(posture)
+    whereabouts.keep(0.0)
     whereabouts.feel(STANDING)
-    assert whereabouts.doubt == ASTRAY
-    whereabouts.check([Step("L", Pose(0.55, 0.05))])
+    assert whereabouts.doubt == ON_ITS_BACK
+    whereabouts.check([Step("L", Pose(0.6, 0.05))])
     with pytest.raises(
-        RobotError, match=r"might leave the stage: .* to 1 m; the robot has been down since, and may be 0\.3"
+        RobotError, match=r"might leave the stage: .* to 1 m; the robot has been down since, and may be 0\.25"
     ):
-        whereabouts.check([Step("L", Pose(0.65, 0.05))])
-    whereabouts.lose()
-    whereabouts.feel(STANDING)
-    assert whereabouts.doubt == 2 * ASTRAY
+        whereabouts.check([Step("L", Pose(0.7, 0.05))])
+    whereabouts.lose("Sit")
+    whereabouts.keep(0.0)
+    whereabouts.lose("")
+    assert whereabouts.doubt == ON_ITS_BACK + SEATED + ANYWHERE
 
 
 def test_feet_in_doubt_may_stay_where_they_stand() -> None:
     whereabouts = Whereabouts(Stage((-0.2, 0.2), (-0.2, 0.2)))
     whereabouts.feel(STANDING)
-    whereabouts.lose()
+    whereabouts.lose("Sit")
     whereabouts.feel(STANDING)
     for side, pose in whereabouts.feet.items():
         whereabouts.check([Step(side, pose)])
@@ -46,15 +53,42 @@ def test_feet_in_doubt_may_stay_where_they_stand() -> None:
         whereabouts.check([Step("L", Pose(0.05, 0.05))])
 
 
+def test_what_it_turned_while_it_was_down_counts_and_what_it_drifts_while_it_stands_does_not() -> None:
+    whereabouts = Whereabouts(WIDE)
+    for heading in (0.1, 0.2):
+        whereabouts.keep(heading)
+    whereabouts.lose("Sit")
+    whereabouts.keep(0.2 + pi / 2)
+    assert middle(whereabouts.feel(STANDING)).theta == pytest.approx(pi / 2)
+
+
 def test_a_robot_that_sat_walks_only_where_it_is_safe_all_the_same(body: Body) -> None:
-    robot = on_the_floor(body, stage=Stage((-0.7, 0.7), (-0.7, 0.7)))
+    robot = on_the_floor(body, stage=Stage((-0.6, 0.6), (-0.6, 0.6)))
     for posture in ("Sit", "Stand"):
         robot.start("p", Posture(posture))
         assert answer(until_answered(robot, "p"), "p") == "done"
-    moved = abs(truth(robot).place)
-    assert moved < ASTRAY
-    robot.start("w", Walk(0.4))
-    reason = answer(until_answered(robot, "w"), "w")
-    assert "the robot has been down since, and may be 0.3 m off" in reason
-    robot.start("w", Walk(0.15))
+    assert abs(truth(robot).place) < SEATED
+    robot.start("w", Walk(0.5))
+    assert "the robot has been down since, and may be 0.1 m off" in answer(until_answered(robot, "w"), "w")
+    robot.start("w", Walk(0.3))
     assert answer(until_answered(robot, "w"), "w") == "done"
+
+
+def believed(robot: SimulatedRobot) -> Pose:
+    """Where the robot takes itself to stand, from where it began."""
+    return middle(robot._whereabouts.feet)
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_a_robot_that_fell_on_its_way_knows_where_it_faces(body: Body, seed: int) -> None:
+    robot = any_robot(body, seed)
+    robot.start("w", Walk(0.0, 0.0, pi / 2))
+    robot.advance(6.0)
+    shoved(robot, seed)
+    robot.start("k", Wake())
+    until_answered(robot, "k", 120.0)
+    robot.start("w", Walk(0.05))
+    assert answer(until_answered(robot, "w"), "w") == "done"
+    off = truth(robot).seen_from(believed(robot))
+    assert abs(off.place) < ANYWHERE
+    assert abs(degrees(wrap(off.theta))) < 10

@@ -2,8 +2,10 @@
 
 from math import atan2, hypot
 
+import mujoco
 import numpy as np
 
+from lumen.interpreters.gait.poses import wrap
 from lumen.robots.simulation.limits import Angles
 from lumen.robots.simulation.world import PERIOD, World
 
@@ -15,7 +17,8 @@ class Instruments:
     """Reads joint angles and turning speeds as the robot's own computer would; the same seed gives the same noise.
 
     `gyro` is how fast the torso rolls to the right and pitches forward [rad/s], `turning` how fast it turns left,
-    `heading` how far it has turned there since the start [rad], all as felt last.
+    `heading` how far it has turned there since the start [rad], all as felt last. It is right again to 3 degrees when
+    the robot stands after it was down: the attitude follows the gyrometer, and where up is keeps it level.
     """
 
     def __init__(self, world: World, noise: float = 0.0, seed: int = 0) -> None:
@@ -23,6 +26,7 @@ class Instruments:
         self._random = np.random.default_rng(seed)
         self.gyro, self.turning = (0.0, 0.0), 0.0
         self.heading = 0.0
+        self._attitude, self._axes, self._rates = np.array([1.0, 0.0, 0.0, 0.0]), np.eye(3).ravel(), np.zeros(3)
 
     @property
     def up(self) -> tuple[float, float, float]:
@@ -55,4 +59,17 @@ class Instruments:
             errors = self._random.normal(0, self._level * GYRO, 3).tolist()
             roll, pitch, yaw = roll + errors[0], pitch + errors[1], yaw + errors[2]
         self.gyro, self.turning = (roll, pitch), yaw
-        self.heading += yaw * PERIOD
+        self._turn(roll, pitch, yaw)
+
+    def _turn(self, roll: float, pitch: float, yaw: float) -> None:
+        """Turn the believed attitude as fast as the gyrometer says, and about level axes to where up is felt."""
+        axes, (x, y, z) = self._axes, self._world.up
+        _, _, _, _, _, _, u, v, w = axes.tolist()
+        self._rates[:] = (
+            roll + (y * w - z * v) / PERIOD,
+            pitch + (z * u - x * w) / PERIOD,
+            yaw + (x * v - y * u) / PERIOD,
+        )
+        mujoco.mju_quatIntegrate(self._attitude, self._rates, PERIOD)
+        mujoco.mju_quat2Mat(axes, self._attitude)
+        self.heading += wrap(atan2(axes[3], axes[0]) - self.heading)

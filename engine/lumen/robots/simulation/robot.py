@@ -39,6 +39,9 @@ _log = logging.getLogger(__name__)
 _EMPTY = "battery-empty"
 """The id of the rest that an empty battery takes."""
 
+STEADY = 0.3
+"""A torso that leans less than this means that the robot stands [rad]."""
+
 _CONDITION_EVERY = 10
 """Control periods between two looks at battery and heat."""
 
@@ -220,7 +223,9 @@ class SimulatedRobot:
         self._feel_touch()
         upright = self._repertoire.upright
         if not upright or self.fallen:
-            self._whereabouts.lose()
+            self._whereabouts.lose("" if self.fallen else self._repertoire.posture)
+        elif tilt < STEADY:
+            self._whereabouts.keep(self._instruments.heading)
         self.greatest_tilt = max(self.greatest_tilt, degrees(tilt)) if upright else self.greatest_tilt
         if tilt > FALLEN and upright and not self.fallen:
             self._repertoire.fall()

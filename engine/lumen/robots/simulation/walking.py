@@ -158,6 +158,7 @@ class Walking:
         tick = self._gait.tick(walker.measured(), walker.instruments.heading)
         if tick is None:
             return self._end()
+        walker.whereabouts.pass_by(self._gait.feet)
         walker.motors.aim(tick.angles)
         walker.swing(tick.stride)
         walker.balance.lifted = tick.lifted

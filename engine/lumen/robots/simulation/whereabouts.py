@@ -4,13 +4,16 @@ from collections.abc import Iterable, Mapping
 
 from lumen.errors import RobotError
 from lumen.interpreters.gait import Feet, Pose, Step, corners, foot_from, middle
+from lumen.interpreters.gait.poses import wrap
+from lumen.interpreters.postures import lies
 from lumen.language.projects import Stage
 
 _FEET = {"L": "left", "R": "right"}
 
 
-ASTRAY = 0.3
-"""How far the robot may have moved while it was down [m]: sitting, lying and getting up shift it by 0.1 to 0.3 m."""
+SEATED, ON_ITS_BACK, ANYWHERE = 0.1, 0.25, 0.6
+"""How far the robot may have moved when it stands again [m], after sitting, after lying on its back, and after lying on
+its belly or falling. Six robots of any weight on any floor were off by 0.05, 0.13 and 0.47 m at most."""
 
 
 class Whereabouts:
@@ -22,22 +25,33 @@ class Whereabouts:
     def __init__(self, stage: Stage | None) -> None:
         self._stage = stage
         self._down = False
-        self.doubt = 0.0
-        self._here = Pose()
+        self.doubt, self._before = 0.0, 0.0
+        self._here, self._heading = Pose(), 0.0
         self.feet: Feet = {"L": Pose(), "R": Pose()}
 
-    def lose(self) -> None:
-        """The robot is down, or falls: from now on it is in doubt where it is."""
+    def lose(self, posture: str) -> None:
+        """The robot is down, in that posture or on its way from it; or it has fallen, where that is empty."""
         if not self._down:
-            self._down, self.doubt = True, self.doubt + ASTRAY
+            self._down, self._before = True, self.doubt
+        self.doubt = max(self.doubt, self._before + astray(posture))
+
+    def keep(self, heading: float) -> None:
+        """The robot stands, heading there as the gyrometer feels it [rad]; what it has turned meanwhile counts."""
+        if self._down:
+            self._down, (x, y, theta) = False, self._here
+            self._here = Pose(x, y, wrap(theta + heading - self._heading))
+        self._heading = heading
 
     def feel(self, angles: Mapping[str, float]) -> Feet:
         """Both feet, standing as the legs' angles [rad] say; the point between them is where it was."""
         seen: Feet = {"L": Pose(), "R": foot_from("L", angles)}
         between = middle(seen)
-        self._down = False
         self.feet = {side: self._here.then(foot.seen_from(between)) for side, foot in seen.items()}
         return self.feet
+
+    def pass_by(self, feet: Feet) -> None:
+        """Believe that the robot has come there, on its way."""
+        self._here = middle(feet)
 
     def land(self, feet: Feet) -> None:
         """Believe that the feet stand there."""
@@ -68,3 +82,10 @@ class Whereabouts:
 
     def _but(self) -> str:
         return f"; the robot has been down since, and may be {self.doubt:g} m off" if self.doubt else ""
+
+
+def astray(posture: str) -> float:
+    """How far a robot that was in that posture may be from where it was [m]; empty is after a fall."""
+    if posture == "LyingBack":
+        return ON_ITS_BACK
+    return SEATED if posture and not lies(posture) else ANYWHERE
