@@ -4,12 +4,13 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from lumen.formats.ecmascript.comparing import EVENT, HAPPENED, equality, guarded
 from lumen.formats.ecmascript.kinds import UNKNOWN, is_float, kind
 from lumen.formats.ecmascript.methods import FUNCTIONS, SIGNS, method
 from lumen.formats.ecmascript.parsing import ScriptError, parse_script
-from lumen.formats.ecmascript.presence import is_data, known, negated
+from lumen.formats.ecmascript.presence import known, negated
 from lumen.interpreters.expressions import unparse
-from lumen.interpreters.expressions.kinds import BOOLEAN, LIST, MAP, NULL, NUMBER, TEXT
+from lumen.interpreters.expressions.kinds import BOOLEAN, MAP, NUMBER, TEXT
 from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_INT, MAX_SOURCE, MIN_INT
 from lumen.interpreters.expressions.tree import (
     Binary,
@@ -24,15 +25,10 @@ from lumen.interpreters.expressions.tree import (
     Name,
     Node,
     Unary,
-    path_of,
     walk,
 )
 
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-_UNDEFINED, _EVENT = Name("undefined"), Name("_event")
-_HAPPENED = Call("has", (Field(Name("event"), "name"),))
-"""That there is an event: before the first one `_event` is undefined (SCXML 5.10.1)."""
-
 _FALSY = Items((Literal(None), Literal(False), Literal(0), Literal("")))
 
 
@@ -91,7 +87,7 @@ class Reading:
                 return negated(self.condition(operand))
             case Choice(condition=condition, then=then, otherwise=otherwise):
                 return Choice(self.condition(condition), self.condition(then), self.condition(otherwise))
-        return _HAPPENED if tree == _EVENT else self._truthy(self.value(tree))
+        return HAPPENED if tree == EVENT else self._truthy(self.value(tree))
 
     def _logic(self, sign: str, operands: tuple[Node, ...]) -> Node:
         before, found = self.present, list[Node]()
@@ -115,7 +111,7 @@ class Reading:
                 return Literal(False)
             case "list" | "map":
                 return Literal(True)
-        return self._guarded(Unary("!", Binary("in", node, _FALSY)), node)
+        return guarded(self, Unary("!", Binary("in", node, _FALSY)), node)
 
     def value(self, tree: Node) -> Node:
         """The same value."""
@@ -157,7 +153,7 @@ class Reading:
         raise ScriptError(f"`{name}` stands in no datamodel")
 
     def _field(self, base: Node, name: str) -> Node:
-        if base == _EVENT:
+        if base == EVENT:
             if name not in ("name", "data"):
                 raise ScriptError(f"an event has no `{name}` here, only `name` and `data`")
             return Field(Name("event"), name)
@@ -194,11 +190,11 @@ class Reading:
     def _binary(self, node: Binary) -> Node:
         sign = node.sign
         if sign in ("==", "===", "!=", "!=="):
-            return self._equality(node)
+            return equality(self, node)
         left, right = self.value(node.left), self.value(node.right)
         if sign in ("<", "<=", ">", ">="):
             self._same_kind(sign, left, right, (NUMBER, TEXT))
-            return self._guarded(Binary(sign, left, right), left, right)
+            return guarded(self, Binary(sign, left, right), left, right)
         if sign == "in":
             if self.kind(left) != TEXT:
                 raise ScriptError("`in` asks for a key of an object, in quotes")
@@ -212,58 +208,6 @@ class Reading:
         kinds = {self.kind(left), self.kind(right)} - {UNKNOWN}
         if not kinds <= set(allowed) or len(kinds) > 1:
             raise ScriptError(f"`{sign}` has values of two kinds, which ECMAScript would convert")
-
-    def _equality(self, node: Binary) -> Node:
-        positive, strict = node.sign in ("==", "==="), len(node.sign) == 3
-        found = self._undefined(node, strict) or self._index(node) or self._equal(node, strict)
-        return found if positive else negated(found)
-
-    def _undefined(self, node: Binary, strict: bool) -> Node | None:
-        """`typeof x === 'undefined'`, `x === undefined` and `x == null`: is there nothing?"""
-        for one, other in ((node.left, node.right), (node.right, node.left)):
-            kind_asked = isinstance(one, Unary) and one.sign == "typeof"
-            if isinstance(one, Unary) and kind_asked and other != Literal("undefined"):
-                raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
-            if isinstance(one, Unary) and kind_asked:
-                return self._absent(one.operand, False)
-            if one == _UNDEFINED or (one == Literal(None) and not strict):
-                return self._absent(other, not strict)
-        return None
-
-    def _absent(self, tree: Node, or_null: bool) -> Node:
-        if tree == _EVENT:
-            return negated(_HAPPENED)
-        node = self.value(tree)
-        path = path_of(node)
-        is_null = Binary("==", node, Literal(None))
-        if not is_data(path) or path in self.present:
-            return is_null
-        missing = Unary("!", Call("has", (node,)))
-        return Logic("||", (missing, is_null)) if or_null else missing
-
-    def _index(self, node: Binary) -> Node | None:
-        """`text.indexOf(part) == -1`: negated, does the text hold the part?"""
-        match node:
-            case Binary(left=Call(function=".indexOf", arguments=(text, part)), right=Literal(value=-1)):
-                return Unary("!", Call("contains", (self.value(text), self.value(part))))
-        return None
-
-    def _equal(self, node: Binary, strict: bool) -> Node:
-        left, right = self.value(node.left), self.value(node.right)
-        kinds = {self.kind(left), self.kind(right)} - {UNKNOWN}
-        if kinds & {LIST, MAP}:
-            raise ScriptError("lists and objects are compared by identity")
-        if len(kinds) == 2 and NULL not in kinds:
-            if not strict:
-                raise ScriptError("`==` has values of two kinds, which ECMAScript would convert")
-            return Literal(False)
-        return self._guarded(Binary("==", left, right), left, right)
-
-    def _guarded(self, node: Node, *operands: Node) -> Node:
-        """The comparison, false where a field of the event is missing (which ECMAScript calls undefined)."""
-        paths = {path: operand for operand in operands if is_data(path := path_of(operand))}
-        missing = [Call("has", (operand,)) for path, operand in paths.items() if path not in self.present]
-        return Logic("&&", (*missing, node)) if missing else node
 
     def _call(self, node: Call) -> Node:
         if node.function == "In":

@@ -1,0 +1,76 @@
+"""ECMAScript's equality in our language: of values, of what is missing, and of what may be."""
+
+from typing import TYPE_CHECKING
+
+from lumen.formats.ecmascript.kinds import UNKNOWN
+from lumen.formats.ecmascript.parsing import ScriptError
+from lumen.formats.ecmascript.presence import is_data, negated
+from lumen.interpreters.expressions.kinds import LIST, MAP, NULL
+from lumen.interpreters.expressions.tree import Binary, Call, Field, Literal, Logic, Name, Node, Unary, path_of
+
+if TYPE_CHECKING:
+    from lumen.formats.ecmascript.reading import Reading
+
+EVENT, HAPPENED = Name("_event"), Call("has", (Field(Name("event"), "name"),))
+"""An event as a whole, and that there is one: before the first `_event` is undefined (SCXML 5.10.1)."""
+
+_UNDEFINED = Name("undefined")
+
+
+def equality(reading: "Reading", node: Binary) -> Node:
+    """`==`, `!=`, `===` and `!==` in our words."""
+    positive, strict = node.sign in ("==", "==="), len(node.sign) == 3
+    found = _undefined(reading, node, strict) or _index(reading, node) or _equal(reading, node, strict)
+    return found if positive else negated(found)
+
+
+def _undefined(reading: "Reading", node: Binary, strict: bool) -> Node | None:
+    """`typeof x === 'undefined'`, `x === undefined` and `x == null`: is there nothing?"""
+    for one, other in ((node.left, node.right), (node.right, node.left)):
+        kind_asked = isinstance(one, Unary) and one.sign == "typeof"
+        if isinstance(one, Unary) and kind_asked and other != Literal("undefined"):
+            raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
+        if isinstance(one, Unary) and kind_asked:
+            return _absent(reading, one.operand, False)
+        if one == _UNDEFINED or (one == Literal(None) and not strict):
+            return _absent(reading, other, not strict)
+    return None
+
+
+def _absent(reading: "Reading", tree: Node, or_null: bool) -> Node:
+    if tree == EVENT:
+        return negated(HAPPENED)
+    node = reading.value(tree)
+    path = path_of(node)
+    is_null = Binary("==", node, Literal(None))
+    if not is_data(path) or path in reading.present:
+        return is_null
+    missing = Unary("!", Call("has", (node,)))
+    return Logic("||", (missing, is_null)) if or_null else missing
+
+
+def _index(reading: "Reading", node: Binary) -> Node | None:
+    """`text.indexOf(part) == -1`: negated, does the text hold the part?"""
+    match node:
+        case Binary(left=Call(function=".indexOf", arguments=(text, part)), right=Literal(value=-1)):
+            return Unary("!", Call("contains", (reading.value(text), reading.value(part))))
+    return None
+
+
+def _equal(reading: "Reading", node: Binary, strict: bool) -> Node:
+    left, right = reading.value(node.left), reading.value(node.right)
+    kinds = {reading.kind(left), reading.kind(right)} - {UNKNOWN}
+    if kinds & {LIST, MAP}:
+        raise ScriptError("lists and objects are compared by identity")
+    if len(kinds) == 2 and NULL not in kinds:
+        if not strict:
+            raise ScriptError("`==` has values of two kinds, which ECMAScript would convert")
+        return Literal(False)
+    return guarded(reading, Binary("==", left, right), left, right)
+
+
+def guarded(reading: "Reading", node: Node, *operands: Node) -> Node:
+    """The comparison, false where a field of the event is missing (which ECMAScript calls undefined)."""
+    paths = {path: operand for operand in operands if is_data(path := path_of(operand))}
+    missing = [Call("has", (operand,)) for path, operand in paths.items() if path not in reading.present]
+    return Logic("&&", (*missing, node)) if missing else node
