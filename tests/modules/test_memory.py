@@ -110,6 +110,26 @@ def test_forgets_somebody_and_leaves_nothing_in_the_file(stand: Make, tmp_path: 
         assert b"Wulandari" not in file.read_bytes(), file
 
 
+def test_what_another_program_still_reads_is_said_and_gone_once_it_is_closed(stand: Make, tmp_path: Path) -> None:
+    file = tmp_path / "memory.db"
+    here = stand()
+    remembering(here, file)
+    forgotten = here.listen("lumen.NAO.persistence.forgotten")
+    talk(here.bus, "Wulandari")
+    here.settle()
+    other = sqlite3.connect(file, isolation_level=None)
+    other.execute("BEGIN")
+    assert len(other.execute("SELECT * FROM visitors").fetchall()) == 1
+    answer = here.ask(FACT, {"method": "forget", "name": "Wulandari"})
+    assert answer == {"ok": False, "reason": here.told[0]}
+    assert here.told[0] == f"{file} is read by another program, and keeps what was deleted until that is closed"
+    assert forgotten.bodies == [{"name": "Wulandari"}]
+    other.close()
+    assert Store(file).visitors() == []
+    assert here.ask(FACT, {"method": "forget", "name": "Wulandari"})["ok"]
+    assert [found for found in tmp_path.iterdir() if b"Wulandari" in found.read_bytes()] == []
+
+
 def test_forget_without_a_name_deletes_nothing(stand: Make) -> None:
     here = stand()
     remembering(here, None)

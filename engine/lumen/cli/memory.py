@@ -41,8 +41,8 @@ def _run(options: argparse.Namespace, store: Store, file: Path) -> int:
     if options.what == "forget":
         if not (options.name or "").strip():
             raise UsageError("say whom: `lumen memory forget NAME`")
-        visitors, entries = store.forget(options.name)
         faces = _faces(options.name, file.with_name(FACES))
+        visitors, entries = store.forget(options.name)
         told = f"forgot {options.name}: {visitors} visitors, {entries} entries, {faces} pictures"
         print(
             json.dumps({"visitors": visitors, "entries": entries, "pictures": faces})

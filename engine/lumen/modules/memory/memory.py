@@ -151,8 +151,10 @@ class Memory(Module):
         self._write()
         if self._visitor.casefold() == name.casefold():
             self._visitor = ""
-        visitors, entries = self._store.forget(name)
-        self.publish("forgotten", {"name": name})
+        try:
+            visitors, entries = self._store.forget(name)
+        finally:
+            self.publish("forgotten", {"name": name})
         return {"visitors": visitors, "entries": entries}
 
     def _asked(self, message: Message) -> None:

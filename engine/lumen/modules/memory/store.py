@@ -53,6 +53,7 @@ class Store:
     def __init__(self, file: Path | None) -> None:
         self._file = file
         self._connection: sqlite3.Connection | None = None
+        self._unclean = False
 
     def add(self, entries: Sequence[Entry]) -> None:
         """Write all of them, or (ModuleError) none."""
@@ -94,7 +95,8 @@ class Store:
     def forget(self, name: str) -> tuple[int, int]:
         """Delete all that is known of somebody; how many visitors and journal entries that were.
 
-        Of the journal: what was noted while they were there, and whatever names them.
+        Of the journal: what was noted while they were there, and whatever names them. Raises ModuleError also where
+        that is deleted and can still be read in the file, because another program looks at it as it was.
         """
         name = _sound(name)
         word = re.compile(rf"(?<!\w){re.escape(name.strip())}(?!\w)", re.IGNORECASE)
@@ -106,15 +108,17 @@ class Store:
             return gone, db.execute(sql, (name.strip(),)).rowcount
 
         found: tuple[int, int] = self._do(delete)
-        self._vacuum()
+        self._unclean = True
+        self._clean()
         return found
 
     def expire(self, before: float) -> int:
         """Delete what is older than that time [s since 1970], and who was not there since; how many rows."""
         sql = (("DELETE FROM journal WHERE time < ?"), ("DELETE FROM visitors WHERE last < ?"))
         gone = int(self._do(lambda db: sum(db.execute(one, (before,)).rowcount for one in sql)))
-        if gone:
-            self._vacuum()
+        self._unclean = self._unclean or gone > 0
+        if self._unclean:
+            self._clean()
         return gone
 
     def close(self) -> None:
@@ -124,9 +128,14 @@ class Store:
                 self._connection.close()
             self._connection = None
 
-    def _vacuum(self) -> None:
+    def _clean(self) -> None:
         """Leave nothing of what was deleted in the file that SQLite writes ahead."""
-        self._do(lambda db: db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchall())
+        busy = self._do(lambda db: db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0])
+        if busy:
+            raise ModuleError(
+                f"{self._file} is read by another program, and keeps what was deleted until that is closed"
+            )
+        self._unclean = False
 
     def _do(self, work: Any) -> Any:
         try:
