@@ -52,7 +52,7 @@ class Stand:
 
     def settle(self) -> None:
         for module in self.modules:
-            assert module.settle()
+            assert module.settle(60.0)
 
     def close(self) -> None:
         for module in self.modules:

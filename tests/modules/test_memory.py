@@ -121,6 +121,7 @@ def test_what_another_program_still_reads_is_said_and_gone_once_it_is_closed(sta
     other.execute("BEGIN")
     assert len(other.execute("SELECT * FROM visitors").fetchall()) == 1
     answer = here.ask(FACT, {"method": "forget", "name": "Wulandari"})
+    here.settle()
     assert answer == {"ok": False, "reason": here.told[0]}
     assert here.told[0] == f"{file} is read by another program, and keeps what was deleted until that is closed"
     assert forgotten.bodies == [{"name": "Wulandari"}]
@@ -152,7 +153,7 @@ def test_keeps_nothing_longer_than_it_says(stand: Make, project: Project) -> Non
     here.settle()
     date.now += 3 * DAY
     assert here.ask(JOURNAL, {"text": "much later"})["ok"]
-    assert memory.settle()
+    assert memory.settle(60.0)
     assert entries(here) == [("entry", "", "much later")]
 
 
@@ -168,6 +169,7 @@ def test_a_locked_database_is_one_line_and_nothing_is_lost(stand: Make, tmp_path
     talk(here.bus, "Budi")
     answer = here.ask(FACT, {"method": "list"})
     assert (answer["ok"], answer["reason"].partition(" by another")[0]) == (False, f"{file} is locked")
+    here.settle()
     assert here.told == [answer["reason"]]
     assert troubles.bodies == [{"module": "memory", "text": answer["reason"]}]
     other.rollback()

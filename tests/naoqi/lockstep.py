@@ -18,7 +18,7 @@ class Lockstep(NaoqiRobot):
     def __init__(self, project: Project, nao: FakeNao | None = None, *, all_fresh: bool = True) -> None:
         self.nao = nao or FakeNao(project.body)
         self._fresh = tuple(Sense) if all_fresh else (Sense.JOINT,)
-        super().__init__(project.body, self.nao.url, lambda: self.nao.times.now, stage=project.stage)
+        super().__init__(project.body, self.nao.url, lambda: self.nao.times.now, stage=project.stage, patience=DEADLINE)
         self.place, self.face = self.nao.place, self.nao.face
 
     def advance(self, dt: float) -> None:
@@ -34,7 +34,7 @@ class Lockstep(NaoqiRobot):
             pause.wait(0.0005)
 
     def read(self, sense: Sense) -> Reading | None:
-        return self._senses[sense].fresh() if sense in self._fresh else super().read(sense)
+        return self._senses[sense].fresh(DEADLINE) if sense in self._fresh else super().read(sense)
 
     def touch(self, sensor: str, pressed: bool) -> None:
         self.nao.touch(sensor, pressed)

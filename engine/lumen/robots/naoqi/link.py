@@ -90,11 +90,11 @@ class Link:
     """A session with the NAOqi at `url`, to be opened again after it was lost.
 
     `up` is whether it stands, `ready` whether all is settled with the robot as well; `lost` is called once for each
-    time that it breaks, on any thread, with the reason.
+    time that it breaks, on any thread, with the reason. A robot that is silent for longer than `patience` [s] is lost.
     """
 
-    def __init__(self, url: str, lost: Callable[[str], None] = lambda _: None) -> None:
-        self.url = address(url)
+    def __init__(self, url: str, lost: Callable[[str], None] = lambda _: None, patience: float = PATIENCE) -> None:
+        self.url, self._patience = address(url), patience
         self.pending = 0
         self.ready = False
         self._lost, self._qi = lost, qi()
@@ -111,7 +111,7 @@ class Link:
         """Connect. Raises RobotError where nobody answers."""
         session = self._qi.Session()
         future = session.connect(self.url, _async=True)
-        future.wait(int(1000 * CONNECTING))
+        future.wait(int(1000 * max(CONNECTING, self._patience)))
         if not future.isFinished():
             raise RobotError(f"no robot answers at {self.url}: is it switched on, and on this network?")
         if future.hasError():
@@ -127,7 +127,7 @@ class Link:
         missing = []
         for name in names:
             future = self._session.service(name, _async=True)
-            future.wait(int(1000 * CONNECTING))
+            future.wait(int(1000 * max(CONNECTING, self._patience)))
             if not future.isFinished() or future.hasError():
                 missing.append(name)
             else:
@@ -160,9 +160,12 @@ class Link:
             self._serving[name] = self._called(future)
         return self._serving[name]
 
-    def ask(self, service: str, method: str, *arguments: Any, patience: float = PATIENCE) -> Any:
-        """What NAOqi answers; for threads that may wait. Raises RobotError; a silent robot counts as lost."""
-        call, session = self.post(service, method, *arguments), self._session
+    def ask(self, service: str, method: str, *arguments: Any, patience: float = 0.0) -> Any:
+        """What NAOqi answers; for threads that may wait, `patience` [s] where it takes longer than others.
+
+        Raises RobotError; a silent robot counts as lost.
+        """
+        call, session, patience = self.post(service, method, *arguments), self._session, max(patience, self._patience)
         if not call.wait(patience):
             reason = f"the robot has not answered for {patience:g} s"
             self._broken(session, reason)

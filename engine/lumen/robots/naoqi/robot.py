@@ -13,7 +13,7 @@ from lumen.robots.naoqi.deeds import Deed
 from lumen.robots.naoqi.ground import Ground
 from lumen.robots.naoqi.instruments import Instruments
 from lumen.robots.naoqi.keeping import Keeper
-from lumen.robots.naoqi.link import CUT, Call, Link
+from lumen.robots.naoqi.link import CUT, PATIENCE, Call, Link
 from lumen.robots.naoqi.noticing import FALLEN, FALLING, FULL, Condition, Noticing
 from lumen.robots.naoqi.preparing import halt, prepare
 from lumen.robots.naoqi.repertoire import Repertoire
@@ -31,10 +31,18 @@ class NaoqiRobot:
     where it stands now. Raises RobotError where there is no robot, or none that this body is of.
     """
 
-    def __init__(self, body: Body, url: str, clock: Callable[[], float], *, stage: Stage | None = None) -> None:
+    def __init__(
+        self,
+        body: Body,
+        url: str,
+        clock: Callable[[], float],
+        *,
+        stage: Stage | None = None,
+        patience: float = PATIENCE,
+    ) -> None:
         self.body = body
         self._clock = clock
-        self._link = Link(url, lambda reason: self._keeper.lose(reason))
+        self._link = Link(url, lambda reason: self._keeper.lose(reason), patience)
         self._noticing = Noticing(body.tactile)
         self._instruments = Instruments(self._link, body, clock)
         self._ground = Ground(stage, self._noticing.pressed, self._echo)
