@@ -1,7 +1,7 @@
 """A running show of a copy of the project, with files that are saved and an operator who asks."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -35,11 +35,12 @@ class Live:
         *,
         project: Project | None = None,
         seen: str = "",
+        behaves: Mapping[str, str] | None = None,
         apart: bool = False,
     ) -> None:
         self.folder = folder
         project = project or lumen.load(folder)
-        self.robot = RecordingRobot(project.body)
+        self.robot = RecordingRobot(project.body, behaves)
         self.show = Show(project, Cast(self.robot, SimulatedClock(self.robot.advance, 20.0), self.robot), url)
         self.told = StringIO()
         transcript = Transcript(self.show.exhibition.clock.now, lambda: self.show.exhibition.project.machine, self.told)

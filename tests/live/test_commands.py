@@ -116,24 +116,34 @@ def test_off_means_off(copy: Path) -> None:
     one.show.close()
 
 
-def test_it_waits_for_what_the_robot_does_and_now_does_not(live: Live) -> None:
-    live.greet()
-    live.until(lambda: "goodbye" in live.states)
-    live.edit(WAVE, WAVE.replace("goodbye", "photo"))
-    live.until_told("waiting for `goodbye`")
-    answer = live.ask("reload", now=True)
+@pytest.fixture
+def waving(copy: Path) -> Iterator[Live]:
+    """Where whatever is played never ends by itself, nor the farewell."""
+    tour = copy / "behaviors" / "tour.yaml"
+    tour.write_text(tour.read_text("utf-8").replace('after: {12s: "#idle"}', 'after: {2h: "#idle"}'), "utf-8")
+    one = Live(copy, behaves={"play": "hangs"})
+    yield one
+    one.show.close()
+
+
+def test_it_waits_for_what_the_robot_does_and_now_does_not(waving: Live) -> None:
+    waving.greet()
+    waving.until(lambda: "goodbye" in waving.states)
+    waving.edit(WAVE, WAVE.replace("goodbye", "photo"))
+    waving.until_told("waiting for `goodbye`")
+    answer = waving.ask("reload", now=True)
     assert answer["verdict"] == "applied"
-    assert live.verdicts[-2:] == ["waiting", "applied"]
+    assert waving.verdicts[-2:] == ["waiting", "applied"]
 
 
-def test_patience_ends(live: Live) -> None:
-    live.edit("reload: {patience: 60s}", "reload: {patience: 10ms}", "lumen.yaml")
-    live.until_told("in force")
-    live.greet()
-    live.until(lambda: "goodbye" in live.states)
-    live.edit(WAVE, WAVE.replace("goodbye", "photo"))
-    live.until_told("is still under way after 0.01 s")
-    assert live.ask("apply", now=True)["verdict"] == "applied"
+def test_patience_ends(waving: Live) -> None:
+    waving.edit("reload: {patience: 60s}", "reload: {patience: 10ms}", "lumen.yaml")
+    waving.until_told("in force")
+    waving.greet()
+    waving.until(lambda: "goodbye" in waving.states)
+    waving.edit(WAVE, WAVE.replace("goodbye", "photo"))
+    waving.until_told("is still under way after 0.01 s")
+    assert waving.ask("apply", now=True)["verdict"] == "applied"
 
 
 def test_what_needs_a_restart_is_named(live: Live) -> None:

@@ -99,7 +99,7 @@ class Staging:
     def _go(self, staged: Staged, now: float) -> None:
         """Apply it, wait for what it has to wait for, or refuse it."""
         expired = time.monotonic() - staged.since > self.running.patience
-        snapshot = self._show.exhibition.runtime.snapshot
+        before, snapshot = self.running, self._show.exhibition.runtime.snapshot
         if staged.asked is snapshot and not expired:
             return
         staged.asked = snapshot
@@ -108,13 +108,11 @@ class Staging:
             if isinstance(verdict, Plan):
                 self._apply(staged, verdict, now)
                 return
-        except BusError as error:
-            self._refuse(staged, f"the bus refuses its routes: {error}")
-            return
         except Exception as error:  # a fault of ours costs the reload, and nothing else
-            why = fault_of(error)
-            if self.staged is staged:
+            why = f"the bus refuses its routes: {error}" if isinstance(error, BusError) else fault_of(error)
+            if self.running is before:
                 self._refuse(staged, why)
+            self.staged = None
             return
         if expired or not what_for(verdict):
             self._give_up(staged, verdict)
