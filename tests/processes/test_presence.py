@@ -139,23 +139,36 @@ def test_a_robot_that_stood_still_rests_first_and_then_follows_its_brain_on(hall
     noticed: list[Event] = []
     told: list[str] = []
     guard = Guard(robot, presence, noticed.append, told.append, lambda: hall.time)
-    presence.settle()
-    brain.settle()
-    hall.live(1.0, presence, brain)
-    guard.tick(hall.time)
+    for one in (presence, brain):
+        one.settle()
+
+    def live(seconds: float, *others: Presence) -> None:
+        for _ in range(round(seconds / 0.1)):
+            hall.live(0.1, presence, brain, *others)
+            guard.tick(hall.time)
+            robot.advance(0.1)
+
+    live(1.0)
     hall.live(8.0, brain)
-    guard.tick(hall.time)
-    robot.advance(0.1)
+    live(1.0)
     assert [command for _, command in robot.performed] == [Rest()]
-    assert told[-1] == "rests: it stood still for 8.0 s"
-    hall.live(1.0, presence, brain)
-    guard.tick(hall.time)
+    assert told[-1] == "rests: it stood still for 8.1 s"
     assert (guard.follows, noticed) == (brain.session, [])
     other = hall.presence("robot")
     other.settle()
-    hall.live(1.0, presence, brain, other)
     with pytest.raises(BusError, match=r"stood still, and by now process \d+ on .* is it: this one ends"):
-        guard.tick(hall.time)
+        live(1.0, other)
+
+
+def test_who_stood_still_has_lost_nobody_by_that(hall: Hall) -> None:
+    brain, robot = hall.presence("brain"), hall.presence("robot")
+    for one in (brain, robot):
+        one.settle()
+    hall.live(1.0, brain, robot)
+    hall.time += 60.0
+    assert hall.live(2.0, brain) == [[]]
+    [lost] = hall.live(1.0, brain)
+    assert [(event.name, event.data["seconds"]) for event in lost] == [("robot.lost", pytest.approx(2.5, abs=0.6))]
 
 
 class Line:

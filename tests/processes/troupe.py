@@ -23,7 +23,7 @@ from lumen.runtime.presence import BRAIN, ROBOT
 from tests.waiting import Collector
 
 SPEED = "4"
-DEADLINE = 60.0
+DEADLINE = 180.0
 STORIES = {
     "short": """title: A short visit
 at: "10:30"

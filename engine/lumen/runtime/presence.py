@@ -66,6 +66,7 @@ class Presence:
         self._bus, self._key, self._clock, self._more = bus, key, clock, more
         self._state = ASKS
         self._next = 0.0
+        self._ticked = clock()
         self._messages: deque[Message] = deque(maxlen=1_000)
         self._peers: dict[str, Peer] = {}
         self._lost: dict[str, float] = {}
@@ -111,12 +112,20 @@ class Presence:
     def tick(self) -> list[Event]:
         """Say that we are there, hear who else is; what has changed, without times. `came` are those newly heard of."""
         now, self.came = self._clock(), []
+        self._excuse(now)
         while self._messages:
             self._hear(self._messages.popleft().body, now)
         if now >= self._next:
             self._next = now + PERIOD
             self._say(self._state)
         return self._changes(now)
+
+    def _excuse(self, now: float) -> None:
+        """Time in which we did not listen is nobody's silence."""
+        stood, self._ticked = now - self._ticked, now
+        if stood > PERIOD:
+            for peer in self._peers.values():
+                peer.heard += stood
 
     def close(self) -> None:
         """Say that we leave; harmless when repeated."""

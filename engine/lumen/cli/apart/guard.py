@@ -46,8 +46,8 @@ class Guard:
             raise BusError(f"this robot stood still, and by now {told(other)} is it: this one ends")
         followed = self._presence.get(self.follows) if self.follows else None
         if followed:
-            self._last = max(followed.heard, self._woke)
-        gone = followed is None or followed.state == LEAVES or self._last is None or at - self._last > LOST
+            self._last = followed.heard
+        gone = followed is None or followed.state == LEAVES or at - followed.heard > LOST
         if gone and (brain := self._presence.find(BRAIN)) and brain.state == HERE:
             self._follow(brain, now)
         elif gone and self._last is not None and not self._resting and at - self._last > PATIENCE:
@@ -56,7 +56,7 @@ class Guard:
             self._robot.start("guard", Rest())
 
     def _wake(self, at: float) -> None:
-        """What it was doing is nobody's wish any more; the brain has as long as ever to be heard again."""
+        """What it was doing is nobody's wish any more."""
         self._woke = at
         if self.follows:
             self._tell(f"rests: it stood still for {at - self._ticked:.1f} s")
