@@ -12,6 +12,9 @@ from lumen.language.projects import Project
 from lumen.modules.module import KEYS, Module
 from lumen.ports import Bus, Message
 
+STARVED = 60.0
+"""How long a tick waits for the eyes at most [s], where the machine has much else to do."""
+
 Tell = Callable[[str, str], None]
 """Told of a module, and what it says."""
 
@@ -52,7 +55,7 @@ def join(show: Show, folder: Path | None, tell: Tell, *, paced: bool) -> list[Mo
             if show.faces:
                 show.faces.quiet = True
             if not paced:
-                show.exhibition.parts.append(lambda now, m=module: m.settle())  # type: ignore[misc]
+                show.exhibition.parts.append(lambda now, m=module: m.settle(STARVED))  # type: ignore[misc]
     troubles = Troubles(project, show.bus, tell, tuple(module.name for module in begun))
     show.exhibition.parts.append(troubles.tick)
     show.closing.insert(0, troubles.close)

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
+from math import degrees
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from lumen.modules.eyes.finding import Box, Finder
 from lumen.modules.eyes.known import DAY, SAMPLES, Known
 from lumen.modules.eyes.pictures import Frame, frame_of
 from lumen.modules.eyes.sources import ROBOT, Source
+from lumen.modules.eyes.window import Window
 from lumen.modules.module import Handler, Module
 from lumen.ports import Bus, Message
 
@@ -56,9 +58,14 @@ class Eyes(Module):
         self._looked = self._sought = self._seen = self._named = float("-inf")
         self._learning, self._left = "", 0
         self._who, self._expired = "", 0.0
+        self._people: list[Box] = []
+        self._head = ""
+        self._window = Window(options["window"]) if "window" in options else None
 
     def hears(self) -> Mapping[str, Handler]:
         heard: dict[str, Handler] = {"visual_command": self._enrol, "forgotten": self._forget}
+        if self._window:
+            heard["joint"] = self._joints
         return heard if self._source else {"image": self._image, **heard}
 
     def idle(self) -> float | None:
@@ -73,6 +80,8 @@ class Eyes(Module):
     def end(self) -> None:
         if self._source:
             self._source.close()
+        if self._window:
+            self._window.close()
 
     def look(self, frame: Frame, now: float) -> None:
         """Publish what there is in a frame that was taken at `now` [s]."""
@@ -82,9 +91,11 @@ class Eyes(Module):
                 self._face(frame, faces[0], now)
             if now - self._sought >= PEOPLE:
                 self._sought = now
-                for person in self._finder.people(frame.grey)[:1]:
+                self._people = self._finder.people(frame.grey)
+                for person in self._people[:1]:
                     x, y = self._place(frame, person)
                     self.publish("human", {"x": round(x), "y": round(y), **_when(frame)})
+            self._show(frame, faces[:1])
         except Exception as error:
             if type(error).__module__ != "cv2":
                 raise
@@ -123,6 +134,19 @@ class Eyes(Module):
             self._who, self._named = who, now
             self.publish("recognised", {"name": who, **_when(frame)})
         self._seen = now
+
+    def _joints(self, message: Message) -> None:
+        """Where the head stands, for the window."""
+        match message.body:
+            case {"name": list(names), "angle": list(angles)}:
+                found = {n: a for n, a in zip(map(str, names), angles, strict=False) if isinstance(a, int | float)}
+                yaw, pitch = (degrees(found.get(joint, 0.0)) for joint in ("HeadYaw", "HeadPitch"))
+                self._head = f"head {yaw:+.1f} {pitch:+.1f} deg"
+
+    def _show(self, frame: Frame, faces: list[Box]) -> None:
+        if self._window:
+            where = [f"face {x:.0f} {y:.0f}: {self._who}" for x, y in (self._place(frame, face) for face in faces)]
+            self._window.show(frame.grey, faces, self._people, "   ".join([*where, self._head]).strip())
 
     def _place(self, frame: Frame, box: Box) -> tuple[float, float]:
         """The middle of a box, in pixels of the robot's camera."""

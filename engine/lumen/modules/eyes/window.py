@@ -1,0 +1,91 @@
+"""What the eyes see and find, live in a browser of this machine."""
+
+import threading
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import TYPE_CHECKING, Any
+
+from lumen.errors import ModuleError
+from lumen.modules.eyes.finding import Box
+from lumen.modules.eyes.opencv import opencv
+
+if TYPE_CHECKING:
+    from lumen.modules.eyes.pictures import Grey
+
+HOST = "127.0.0.1"
+"""Nobody else is shown who stands there."""
+BOUNDARY = "frame"
+FACE, PERSON, INK = (0, 200, 0), (200, 120, 0), (255, 255, 255)
+"""Colours, blue first."""
+AGAIN = 1.0
+
+
+class Window:
+    """`http://127.0.0.1:PORT/` as a film of JPEGs; a picture is made only while somebody looks.
+
+    Port 0 is any free one; `port` is which. Raises ModuleError where it is taken.
+    """
+
+    def __init__(self, port: int) -> None:
+        self._cv2 = opencv()
+        self._changed = threading.Condition()
+        self._picture, self._number, self._lookers, self._open = b"", 0, 0, True
+        window = self
+
+        class Page(BaseHTTPRequestHandler):
+            def do_GET(self) -> None:
+                window.serve(self)
+
+            def log_message(self, format: str, *arguments: Any) -> None:
+                """A page that is looked at is no news."""
+
+        try:
+            self._server = ThreadingHTTPServer((HOST, port), Page)
+        except (OSError, OverflowError) as error:
+            raise ModuleError(f"the eyes' window can't be opened on port {port}: {error}") from None
+        self.port = self._server.server_address[1]
+        threading.Thread(target=self._server.serve_forever, name="lumen-window", daemon=True).start()
+
+    def show(self, grey: "Grey", faces: list[Box], people: list[Box], words: str) -> None:
+        """The picture with a frame around the face that counts and each person, and a line of words."""
+        if not self._lookers:
+            return
+        cv2 = self._cv2
+        picture = cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR)
+        for boxes, colour in ((people, PERSON), (faces, FACE)):
+            for x, y, width, height in boxes:
+                cv2.rectangle(picture, (round(x), round(y)), (round(x + width), round(y + height)), colour, 2)
+        cv2.putText(picture, words, (6, picture.shape[0] - 8), cv2.FONT_HERSHEY_SIMPLEX, 0.4, INK, 1, cv2.LINE_AA)
+        data = cv2.imencode(".jpg", picture)[1].tobytes()
+        with self._changed:
+            self._picture, self._number = data, self._number + 1
+            self._changed.notify_all()
+
+    def serve(self, page: BaseHTTPRequestHandler) -> None:
+        """Send every new picture until the looker goes."""
+        page.send_response(200)
+        page.send_header("Content-Type", f"multipart/x-mixed-replace; boundary={BOUNDARY}")
+        page.send_header("Cache-Control", "no-store")
+        page.end_headers()
+        with self._changed:
+            self._lookers, seen = self._lookers + 1, self._number
+        try:
+            while self._open:
+                with self._changed:
+                    if not self._changed.wait_for(lambda: self._number > seen or not self._open, AGAIN):  # noqa: B023
+                        continue
+                    seen, data = self._number, self._picture
+                head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\n\r\n"
+                page.wfile.write(head.encode() + data + b"\r\n")
+        except OSError:
+            pass  # the looker is gone
+        finally:
+            with self._changed:
+                self._lookers -= 1
+
+    def close(self) -> None:
+        """Harmless when repeated."""
+        with self._changed:
+            self._open = False
+            self._changed.notify_all()
+        self._server.shutdown()
+        self._server.server_close()

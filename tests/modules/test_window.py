@@ -1,0 +1,95 @@
+"""The eyes' window: what they see and find, as a browser gets it."""
+
+import http.client
+import socket
+from collections.abc import Callable, Iterator
+from io import BytesIO
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from lumen.errors import ModuleError
+from lumen.modules.eyes import Eyes
+from lumen.modules.eyes.finding import Box
+from lumen.modules.eyes.window import Window
+from tests.modules.conftest import Stand, with_options
+from tests.modules.test_eyes import body, photographed
+from tests.waiting import until
+
+__all__ = ["photographed"]
+
+
+def looking(port: int) -> http.client.HTTPResponse:
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+    connection.request("GET", "/")
+    return connection.getresponse()
+
+
+def picture(page: http.client.HTTPResponse) -> np.ndarray:
+    """The next picture of the film."""
+    assert page.readline() == b"--frame\r\n"
+    assert page.readline() == b"Content-Type: image/jpeg\r\n"
+    length = int(page.readline().partition(b":")[2])
+    assert page.readline() == b"\r\n"
+    data = page.read(length)
+    assert page.readline() == b"\r\n"
+    return np.asarray(Image.open(BytesIO(data)).convert("RGB"))
+
+
+@pytest.fixture
+def window() -> Iterator[Window]:
+    window = Window(0)
+    yield window
+    window.close()
+
+
+def test_shows_faces_and_people_in_their_frames(window: Window) -> None:
+    grey = np.full((240, 320), 90, np.uint8)
+    window.show(grey, [], [], "nobody looks: nothing is drawn")
+    page = looking(window.port)
+    until(lambda: window._lookers)
+    window.show(grey, [Box(100.0, 50.0, 40.0, 40.0)], [Box(200.0, 20.0, 60.0, 180.0)], "face 120 70: Budi")
+    seen = picture(page).astype(int)
+    assert page.headers["Content-Type"] == "multipart/x-mixed-replace; boundary=frame"
+    assert seen.shape == (240, 320, 3)
+    assert seen[70, 100, 1] - seen[70, 100, 0] > 60, "the face has a green frame"
+    assert seen[100, 200, 2] - seen[100, 200, 0] > 60, "a person has a blue one"
+    assert seen[225:238, 5:140].max() > 180, "and the words stand below"
+    page.close()
+
+
+def test_who_goes_is_not_shown_any_more(window: Window) -> None:
+    page = looking(window.port)
+    until(lambda: window._lookers == 1)
+    page.close()
+
+    def gone() -> bool:
+        window.show(np.zeros((240, 320), np.uint8), [], [], "")
+        return window._lookers == 0
+
+    until(gone)
+
+
+def test_a_port_that_is_taken_is_one_line() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        with pytest.raises(ModuleError, match="window can't be opened on port") as error:
+            Window(taken.getsockname()[1])
+        assert "\n" not in str(error.value)
+
+
+def test_the_eyes_show_what_they_found(stand: Callable[..., Stand], photographed: np.ndarray) -> None:
+    here = stand()
+    here = stand(with_options(here.project, "eyes", window=0))
+    eyes = Eyes(here.project, here.bus, here.told.append, None)
+    here.add(eyes)
+    assert eyes._window
+    page = looking(eyes._window.port)
+    until(lambda: eyes._window._lookers)  # type: ignore[union-attr]
+    here.bus.publish("avatar.NAO.data.joint", {"name": ["HeadYaw", "HeadPitch"], "angle": [0.1, 0.0], "stiffness": []})
+    here.settle()
+    here.bus.publish("avatar.NAO.data.image", body(photographed, 1.0))
+    seen = picture(page).astype(int)
+    assert ((seen[:, :, 1] - seen[:, :, 0]) > 60).sum() > 100, "there is a frame around the face"
+    assert eyes._head == "head +5.7 +0.0 deg"
+    page.close()
