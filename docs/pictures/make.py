@@ -194,7 +194,8 @@ def postures(project: Project) -> None:
         robot.start("c", Posture(passage.end, 1.0))
         for column in range(count):
             label = f"{column * (passage.duration + 0.4) / (count - 1):.1f} s"
-            shots.append(near(robot, (220, 180), label if column else f"{passage.start} to {passage.end}"))
+            label = label if column else f"{passage.start} to {passage.end}"
+            shots.append(near(robot, (220, 180), label, SIDES["right"]))
             robot.advance((passage.duration + 0.4) / (count - 1))
         robot.close()
     sheet(shots, count).save(HERE / "postures.png", optimize=True)

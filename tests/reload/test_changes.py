@@ -86,6 +86,12 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
         Risk.WIRING,
     ),
     (
+        "images",
+        [("lumen.yaml", "schema: image, every", "schema: image, size: 640x480, every")],
+        ["route `image` size the camera's → 640 x 480"],
+        Risk.WIRING,
+    ),
+    (
         "a fuzzy rule",
         [("fuzzy/head.yaml", "if FaceXLoc is Zero then AngleX is Zero", "if FaceXLoc is Zero then AngleX is Positive")],
         ["fuzzy rule 2 of `head` changed: `if FaceXLoc is Zero then AngleX is Positive`"],

@@ -90,6 +90,8 @@ def _carrying(route: Route) -> Iterator[str]:
     yield CARRIED[route.carried]
     if route.every is not None:
         yield f"Every {route.every:g} s."
+    if route.size is not None:
+        yield f"Images of {route.size} pixels."
     if route.keep is not None:
         yield f"At most {route.keep} wait."
     if route.event:

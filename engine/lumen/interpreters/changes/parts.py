@@ -42,6 +42,7 @@ _ROUTE: Mapping[str, Callable[[Any], str]] = {
     "schema": _shown,
     "event": _shown,
     "every": seconds,
+    "size": lambda value: "the camera's" if value is None else str(value),
     "ttl": seconds,
     "keep": lambda value: "none" if value is None else str(value),
     "carried": _shown,
