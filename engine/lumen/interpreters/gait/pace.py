@@ -9,7 +9,8 @@ class Pace:
 
     A step takes `double` on both feet and `single` on one. With each step the body goes at most `forward`, `sideways`
     and `turn`. Feet stand `apart`, their ankles' middle lines. `ahead` is where the weight rests, in front of the
-    ankles. `shift` is how long the first step waits for the weight to move, `settle` the end of a walk.
+    ankles, and `inside`, nearer to the other foot: so much more of the sole is left to bear a push outward. `shift` is
+    how long the first step waits for the weight to move, `settle` the end of a walk.
     """
 
     double: float = 0.10
@@ -22,6 +23,7 @@ class Pace:
     lean: float = 0.05
     apart: float = 0.1
     ahead: float = 0.02
+    inside: float = 0.012
     shift: float = 0.35
     settle: float = 0.35
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from lumen.interpreters.gait.footsteps import Feet, Step
-from lumen.interpreters.gait.legs import Side, other
+from lumen.interpreters.gait.legs import Side, other, sign
 from lumen.interpreters.gait.pace import Pace
 from lumen.interpreters.gait.pendulum import Pendulum
 from lumen.interpreters.gait.poses import Pose
@@ -57,7 +57,7 @@ class Planner:
         """
         side, goal = steps[0]
         wait = self._shift if standing else 0
-        rests = rest(feet[other(side)], self._pace)
+        rests = rest(feet, other(side), self._pace)
         weight = [zmp] * wait + _ramp(zmp, rests, self._double) + [rests] * self._single
         swing = Swing(side, feet[side], goal, self._pace.lift)
         weight = self._shifted(weight, dcm, self._end(feet, steps), feet[other(side)], SOLE_ASIDE)
@@ -82,9 +82,9 @@ class Planner:
     def _end(self, feet: Feet, steps: Sequence[Step]) -> complex:
         """The DCM at the end of the first of these steps."""
         pace, feet = self._pace, {**feet, steps[0].side: steps[0].pose}
-        last, weight = rest(feet[other(steps[0].side)], pace), list[complex]()
+        last, weight = rest(feet, other(steps[0].side), pace), list[complex]()
         for side, pose in steps[1:]:
-            rests = rest(feet[other(side)], pace)
+            rests = rest(feet, other(side), pace)
             weight += _ramp(last, rests, self._double) + [rests] * self._single
             feet, last = {**feet, side: pose}, rests
         end = between(feet, pace)
@@ -98,14 +98,14 @@ class Planner:
         return [point + complex(x, y) * foot.ahead for point in zmp]
 
 
-def rest(foot: Pose, pace: Pace) -> complex:
+def rest(feet: Feet, side: Side, pace: Pace) -> complex:
     """Where the weight rests on that foot."""
-    return foot.place + pace.ahead * foot.ahead
+    return feet[side].place + complex(pace.ahead, -sign(side) * pace.inside) * feet[side].ahead
 
 
 def between(feet: Feet, pace: Pace) -> complex:
     """Where the weight rests on both feet."""
-    return (rest(feet["L"], pace) + rest(feet["R"], pace)) / 2
+    return (rest(feet, "L", pace) + rest(feet, "R", pace)) / 2
 
 
 def _ramp(start: complex, end: complex, ticks: int) -> list[complex]:
