@@ -64,6 +64,7 @@ def test_the_route_says_how_large_an_image_is_and_a_reload_changes_that() -> Non
     until(lambda: stand.server.counts["image"].published == 1)
     stand.server.use(project(routes={"image": replace(route, size=SIZES[0])}))
     stand.server.sample(1.0)
+    until(lambda: stand.server.counts["image"].published == 2)
     stand.server.close()
     assert asked.messages == [(640, 480), (160, 120)]
 
