@@ -86,3 +86,12 @@ def test_states_nested_without_end(depth: int) -> None:
     lint({**BASE, "behaviors/tour.yaml": text.encode()})
     lint({**BASE, "motions/wave.yaml": ("keyframes: [{" * depth + "}]" * depth).encode()})
     lint({**BASE, "schemas/messages/face.schema.json": ('{"items":' * depth + "{}" + "}" * depth).encode()})
+
+
+def test_a_file_of_something_else_altogether_is_not_told_key_by_key() -> None:
+    content = "".join(f"key{i}: {i}\n" for i in range(2_000)).encode()
+    _, found = check_files(Path("/nowhere"), {**BASE, "motions/wave.yaml": content})
+    told = [d for d in found if d.place.file == "motions/wave.yaml"]
+    assert {d.code for d in told} == {"missing-key", "unknown-key"}
+    assert len(told) < 60
+    assert any("more" in related.message for d in told for related in d.related)

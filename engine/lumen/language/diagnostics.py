@@ -13,6 +13,9 @@ MANY = 8
 MAX_RELATED = 5
 """How many places of one cause are shown beside the first."""
 
+COMPARED = 200
+"""Names that a misspelt one is compared with, letter by letter."""
+
 Path = tuple[str | int, ...]
 """Where something stands in a document: keys and indices from its root, as in `("states", "idle", "on", 0)`."""
 
@@ -131,9 +134,17 @@ def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
 
 def nearest(word: object, candidates: Iterable[str]) -> str:
     """The candidate that was probably meant, empty where none is near."""
-    lowered = {name.lower(): name for name in sorted(set(candidates))}
+    lowered = {name.lower(): name for name in sorted(_alike(str(word), set(candidates)))}
     near = get_close_matches(str(word).lower(), lowered, n=1, cutoff=0.6)
     return lowered[near[0]] if near else next((n for n in lowered.values() if sorted(n) == sorted(str(word))), "")
+
+
+def _alike(word: str, names: set[str]) -> set[str]:
+    """These names; of very many those that begin or end as the word does, and are about as long."""
+    if len(names) <= COMPARED:
+        return names
+    ends = {word[:1].lower(), word[-1:].lower()}
+    return {n for n in names if abs(len(n) - len(word)) < 3 and not ends.isdisjoint((n[:1].lower(), n[-1:].lower()))}
 
 
 def did_you_mean(word: object, candidates: Iterable[str], what: str = "") -> str:

@@ -8,6 +8,9 @@ from typing import Any
 from lumen.language.diagnostics import Path, did_you_mean, nearest
 from lumen.loading.wording import Error, describe, node, wording
 
+MOST_KEYS = 50
+"""Unknown keys of a node for which it is looked what was meant; if there are more, it is something else."""
+
 
 @dataclass(frozen=True, slots=True)
 class Complaint:
@@ -75,10 +78,12 @@ def _dependents(error: Error, path: Path) -> Iterator[Complaint]:
 def _unknown_keys(error: Error, path: Path, root: Any) -> Iterator[Complaint]:
     known = list(error.schema.get("properties", ()))
     patterns = error.schema.get("patternProperties", ())
-    for key in error.instance:
-        if key in known or any(re.search(pattern, key) for pattern in patterns):
-            continue
-        free = [k for k in known if k not in error.instance] or known
+    free = [k for k in known if k not in error.instance] or known
+    unknown = [k for k in error.instance if not (k in known or any(re.search(pattern, k) for pattern in patterns))]
+    for key in unknown[MOST_KEYS:]:
+        here, message = (*path, key), f"`{key}` is not a key of {node(path)}"
+        yield Complaint("unknown-key", here, message, "", path, here, True)
+    for key in unknown[:MOST_KEYS]:
         meant = also if (also := _ALSO.get(key, "")) in free else nearest(key, free)
         hint = f"did you mean `{meant}`?" if meant else did_you_mean(key, free, "allowed here:")
         if key == "<<":

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.language.diagnostics import Path, did_you_mean, nearest
+from lumen.language.diagnostics import COMPARED, Path, did_you_mean, nearest
 from lumen.language.machines import Kind
 from lumen.loading.source import Report
 
@@ -67,9 +67,12 @@ class Outline:
         return found
 
     def _unknown(self, source: Entry, target: str, where: Path, written: str) -> None:
-        known = self._known(source, target)
         self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
         message = f"there is no state `{written}` to go to from {source.title}"
+        if len(self.report.missed) > COMPARED:  # what was meant by each would take long to find out
+            self.report("unknown-state", where, message, hint="it has to be a state of this file")
+            return
+        known = self._known(source, target)
         hint = self._hint(source, target, known)
         if written != target:
             message = f"{source.title} has no state `{written}` to begin in"

@@ -168,7 +168,9 @@ def _stands_after(report: Report, path: Path, other: Path) -> bool:
 
 def _cause(complaint: Complaint, report: Report) -> str:
     """What several keys of one node have in common that mean nothing there, or are missing: they are one mistake."""
-    if not complaint.about or complaint.suggestion or complaint.code not in ("unknown-key", "missing-key"):
+    if complaint.suggestion or complaint.code not in ("unknown-key", "missing-key"):
+        return ""
+    if not complaint.about and complaint.hint:  # of the root's keys each may be a mistake of its own
         return ""
     return f"{report.document.file} keys of {complaint.about}"
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from lumen.language.actions import Assign, Step
-from lumen.language.diagnostics import nearest
+from lumen.language.diagnostics import COMPARED, nearest
 from lumen.language.machines import Kind, Machine, State, Transition
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
@@ -62,10 +62,11 @@ def _next(state: State) -> Iterator[str]:
 def _unreachable(machine: Machine, report: Report) -> None:
     """States that nothing leads to, unless something broken may have meant them."""
     meant = {text.rpartition(".")[2].lstrip("#") for text in report.lost | report.missed}
+    missed = meant & report.missed if len(report.missed) <= COMPARED else set()
     found = reachable(machine)
     for path, state in machine.states.items():
         key = path.rpartition(".")[2]
-        if path not in found and (not meant.isdisjoint((key, state.alias)) or nearest(key, meant & report.missed)):
+        if path not in found and (not meant.isdisjoint((key, state.alias)) or nearest(key, missed)):
             found |= reachable(machine, path)
     for path, state in machine.states.items():
         if path not in found:
