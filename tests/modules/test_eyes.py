@@ -120,6 +120,17 @@ def test_sees_that_there_are_people(eyes: Make, drawn: Mapping[Any, Any]) -> Non
     assert abs(people.wait(1)[0]["x"] - x) < 40
 
 
+def test_who_shows_their_face_is_a_person(photographed: Pixels) -> None:
+    grey, finder = cv2.cvtColor(photographed, cv2.COLOR_RGB2GRAY), Finder()
+    assert finder.people(grey) == [], "from the chest up there is no whole person"
+    [face] = finder.faces(grey)
+    [person] = finder.people(grey, [face])
+    assert person.holds(face.centre)
+    assert person.x >= 0.0
+    assert person.y + person.height == 240.0, "down to the rim of the picture"
+    assert finder.people(grey, []) == []
+
+
 def test_learns_who_somebody_is_and_tells_them_from_others(
     eyes: Make, tmp_path: Path, photographed: Pixels, drawn: Mapping[Any, Any]
 ) -> None:

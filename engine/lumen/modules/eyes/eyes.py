@@ -91,7 +91,7 @@ class Eyes(Module):
                 self._face(frame, faces[0], now)
             if now - self._sought >= PEOPLE:
                 self._sought = now
-                self._people = self._finder.people(frame.grey)
+                self._people = self._finder.people(frame.grey, faces)
                 for person in self._people[:1]:
                     x, y = self._place(frame, person)
                     self.publish("human", {"x": round(x), "y": round(y), **_when(frame)})

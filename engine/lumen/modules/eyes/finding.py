@@ -1,5 +1,6 @@
 """Where faces and people are in a picture, by the models that OpenCV's own package carries."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -31,6 +32,10 @@ class Box(NamedTuple):
     def centre(self) -> tuple[float, float]:
         return self.x + self.width / 2, self.y + self.height / 2
 
+    def holds(self, place: tuple[float, float]) -> bool:
+        """Whether a place lies in it."""
+        return 0.0 <= place[0] - self.x <= self.width and 0.0 <= place[1] - self.y <= self.height
+
 
 class Finder:
     """Finds faces and people. Raises ModuleError where the models can't be loaded."""
@@ -57,8 +62,16 @@ class Finder:
         found = self._faces.detectMultiScale(framed, SCALE, NEIGHBOURS, minSize=(LEAST, LEAST))
         return _sorted([(x - RIM, y - RIM, w, h) for x, y, w, h in found], zoom)
 
-    def people(self, grey: "Grey") -> list[Box]:
-        """Those who can be seen from head to foot, or nearly so; the largest first (Dalal and Triggs, CVPR 2005)."""
+    def people(self, grey: "Grey", faces: Sequence[Box] = ()) -> list[Box]:
+        """Those who can be seen from head to foot, or nearly so (Dalal and Triggs, CVPR 2005), and whose face is seen.
+
+        The largest first. Who stands near the robot is not seen whole: they are where their face is, and below.
+        """
+        whole = self._whole(grey)
+        near = [_below(face, *grey.shape) for face in faces if not any(box.holds(face.centre) for box in whole)]
+        return sorted([*whole, *near], key=lambda box: -box.width * box.height)
+
+    def _whole(self, grey: "Grey") -> list[Box]:
         small, zoom = self._small(grey)
         if small.shape[0] < 128 or small.shape[1] < 64:
             return []
@@ -72,6 +85,13 @@ class Finder:
             return grey, 1.0
         zoom = width / WIDTH
         return self._cv2.resize(grey, (WIDTH, max(1, round(height / zoom))), interpolation=self._cv2.INTER_AREA), zoom
+
+
+def _below(face: Box, height: int, width: int) -> Box:
+    """Where the person of a face is, as far as the picture shows them: three faces wide and seven high."""
+    left, top = max(0.0, face.x - face.width), max(0.0, face.y - face.height / 2)
+    right, bottom = min(float(width), face.x + 2 * face.width), min(float(height), top + 7 * face.height)
+    return Box(left, top, right - left, bottom - top)
 
 
 def _sorted(found: Any, zoom: float) -> list[Box]:
