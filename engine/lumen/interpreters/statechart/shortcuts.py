@@ -60,23 +60,28 @@ class Clocks(NamedTuple):
 
 
 class Way(NamedTuple):
-    """What can come of an event in a configuration.
+    """What can come of an event in a configuration: a move, and where its guard does not hold what `otherwise` finds.
 
-    Where one atomic state is active, `rows` are the moves of its candidates, and last the one where none is enabled.
-    Where several are, `groups` are the candidates of each, and `moves` those of the transitions that were found enabled
-    together so far. `hears` says whether any of their expressions asks for the event.
+    It is the move's own fields, in one object: with a thousand states it counts how much memory a step visits. `hears`
+    says whether any of the expressions asks for the event.
     """
 
     hears: bool
-    rows: tuple[Move, ...]
-    groups: Groups = ()
-    moves: dict[tuple[Rule, ...], Move] | None = None
+    guard: Guard | None
+    plain: bool
+    assigns: tuple[tuple[str, Callable[[Scope], Any], Check | None], ...]
+    target: frozenset[str]
+    exited: tuple[str, ...]
+    entered: tuple[str, ...]
+    transitions: tuple[Transition, ...]
+    clocks: Clocks | None
+    otherwise: Callable[[Scope], Move]
 
 
 class Shortcuts:
     """The ways of a chart found out so far, by event and configuration; None where an event is not plain.
 
-    `pool` holds what several moves have in common: with a thousand states it counts how much memory a step visits.
+    `pool` holds what several moves have in common.
     """
 
     def __init__(self, planner: Planner) -> None:
@@ -96,19 +101,15 @@ class Shortcuts:
             way = self.find(names, name)
         if way is None:
             return None
-        hears, rows, groups, moves = way
+        hears, guard, plain, assigns, target, exited, entered, transitions, clocks, otherwise = way
         if not at >= before:  # earlier, or NaN
             at = before
         machine = self.machine
         heard = {"name": name, "data": data} if hears else None
         scope = _new(Scope, (context, heard, None, None, at, language, machine.phrases, machine.answers, epoch))
         try:
-            for move in rows:
-                if move[0] is None or move[0](scope):
-                    break
-            else:
-                move = self.together(names, groups, moves, scope)
-            _, plain, assigns, target, exited, entered, transitions, clocks = move
+            if guard is not None and (guard is _never or not guard(scope)):
+                _, plain, assigns, target, exited, entered, transitions, clocks = otherwise(scope)
             if not plain:
                 return None
             for key, value, check in assigns:
@@ -125,23 +126,6 @@ class Shortcuts:
         after = (target, context, at, language, timers, doing, history, counters, generator, epoch, invoked)
         return _new(Step, (event, exited, entered, (), _new(Snapshot, after), transitions, (), ()))
 
-    def together(
-        self, names: frozenset[str], groups: Groups, moves: dict[tuple[Rule, ...], Move] | None, scope: Scope
-    ) -> Move:
-        """The move where several atomic states are active, each with its first candidate that is enabled."""
-        enabled: tuple[Rule, ...] = ()
-        for group in groups:
-            for rule in group:
-                if rule.guard is None or rule.guard(scope):
-                    enabled += rule.alone
-                    break
-        assert moves is not None  # only a way without groups has none, and it has rows
-        found = moves.get(enabled)
-        if found is None:
-            bound(moves)
-            found = moves[enabled] = self.move(self.planner.configuration(names), enabled)
-        return found
-
     def find(self, names: frozenset[str], name: str) -> Way | None:
         """The way of an event in a configuration; kept, but for the robot's answers: each has a name of its own."""
         if ".command." in name:
@@ -157,13 +141,34 @@ class Shortcuts:
         asked = _asked(source for group in groups for rule in group for source in _sources(rule.transition))
         if start.eventless or self.planner.chart.has_history or asked & {"state", "In"}:
             return None
+        hears = "event" in asked
         if len(groups) > 1:
-            return Way("event" in asked, (), groups, {})
+            return Way(hears, *self.move(start, (), _never), self.together(start, groups))
         rules = groups[0] if groups else ()
         rows = [self.move(start, rule.alone, rule.guard) for rule in rules]
         if rows and not any(move.plain for move in rows):
             return None
-        return Way("event" in asked, (*rows, self.move(start, ())))
+        first, *others = [*rows, self.move(start, ())]
+        return Way(hears, *first, _first(others))
+
+    def together(self, start: Configuration, groups: Groups) -> Callable[[Scope], Move]:
+        """Finds the move where several atomic states are active, each with its first candidate that is enabled."""
+        moves: dict[tuple[Rule, ...], Move] = {}
+
+        def choose(scope: Scope) -> Move:
+            enabled: tuple[Rule, ...] = ()
+            for group in groups:
+                for rule in group:
+                    if rule.guard is None or rule.guard(scope):
+                        enabled += rule.alone
+                        break
+            found = moves.get(enabled)
+            if found is None:
+                bound(moves)
+                found = moves[enabled] = self.move(start, enabled)
+            return found
+
+        return choose
 
     def move(self, start: Configuration, enabled: tuple[Rule, ...], guard: Guard | None = None) -> Move:
         plan = self.planner.plan(start, tuple(dict.fromkeys(enabled)), {})
@@ -191,6 +196,16 @@ class Shortcuts:
         bound(self.pool)
         found: T = self.pool.setdefault(value, value)
         return found
+
+
+def _never(_: Scope) -> bool:
+    """Stands where no single transition decides."""
+    return False
+
+
+def _first(moves: list[Move]) -> Callable[[Scope], Move]:
+    """Finds the first of these moves whose guard holds; the last one has none."""
+    return lambda scope: next(move for move in moves if move.guard is None or move.guard(scope))
 
 
 def _clocks(plan: Plan) -> Clocks | None:
