@@ -149,3 +149,27 @@ def test_where_nothing_else_is_known_to_be_good_the_files_are_tried_again(copy: 
     assert boot(copy, premises, last_good=False).hash == first.hash
     assert premises.news == []
     premises.close(forget=False)
+
+
+def test_what_was_replaced_has_ended_nothing_and_what_failed_has(live: Live) -> None:
+    trials, exhibition = live.records.trials, live.show.exhibition
+    assert trials
+    live.edit(SORRY, PARDON)
+    live.until_told("in force")
+    first = exhibition.project.hash
+    assert trials.count(first) == 1
+    live.edit(PARDON, "en: What was that?")
+    live.until(lambda: live.verdicts.count("applied") == 2)
+    second = exhibition.project.hash
+    assert (trials.count(first), trials.count(second)) == (0, 1)
+    assert exhibition.rescue(ZeroDivisionError("a fault of ours")) is not None
+    assert live.verdicts[-1] == "rolled back"
+    live.live(11.0)
+    assert trials.count(second) == 1
+
+
+def test_what_is_asked_in_vain_is_journaled(live: Live) -> None:
+    assert live.ask("rollback")["verdict"] == "refused"
+    [entry] = live.records.journal.entries()
+    assert (entry["verdict"], entry["who"]) == ("refused", "command")
+    assert "nothing to go back to" in entry["reason"]

@@ -32,7 +32,8 @@ class Records:
             self.keeper.store(files)
 
     def begin(self, hash: str) -> None:
-        """This bundle is in force now, and on trial."""
+        """This bundle is in force now, and on trial; the one before has ended nothing."""
+        self.annul()
         self._trial = hash
         if self.trials:
             self.trials.begin(hash)
@@ -42,6 +43,11 @@ class Records:
         if self.keeper and self.trials:
             self.keeper.approve(hash)
             self.trials.acquit(hash)
+            self._trial = ""
+
+    def condemn(self) -> None:
+        """The bundle on trial has failed, and the exhibition lives."""
+        self._trial = ""
 
     def died(self, hash: str) -> int:
         """How often the exhibition ended before this bundle had stood its probation."""

@@ -152,7 +152,7 @@ class Reloading:
         elif order.verb == "status":
             order.answer(self._status().to_json())
         elif self._mode == "off":
-            order.answer(self._answer("refused", "it was started with --reload off").to_json())
+            self._herald.tell(self._answer("refused", "it was started with --reload off"), [order])
         elif order.verb in ("reload", "dry-run"):
             self._watcher.ask(order)
         elif order.verb == "rollback" and (before := staging.probation.before):
@@ -162,7 +162,7 @@ class Reloading:
             staging.stage(staging.staged, order)
         else:
             nothing = "to go back to" if order.verb == "rollback" else "staged"
-            order.answer(self._answer("refused", f"there is nothing {nothing}").to_json())
+            self._herald.tell(self._answer("refused", f"there is nothing {nothing}"), [order])
 
     def _take(self, judged: Judged) -> None:
         """Decide on what was judged."""

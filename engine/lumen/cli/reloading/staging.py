@@ -140,7 +140,10 @@ class Staging:
         """Let everybody know of another bundle that is in force; a fault of ours in that changes nothing about it."""
         try:
             self._herald.tell(bulletin, orders)
-            self._records.begin(self.running.hash)
+            if bulletin.verdict == "applied":
+                self._records.begin(self.running.hash)
+            else:
+                self._records.condemn()
             self._applied(self.running)
             self._records.prune(self.running, self.probation.before, self.probation.good)
         except Exception:
