@@ -80,16 +80,17 @@ def dict_ring(size: int) -> Work:
 def touched_ring(size: int) -> Work:
     """The control: as many objects for each state as Lumen keeps, visited in the same order, and nothing done."""
     names = [frozenset((f"s{i}",)) for i in range(size)]
+    sides = [(f"s{i}",) for i in range(size)]
+    shared = (("n", _plus, None),)
     table: dict[frozenset[str], Any] = {}
     for i, name in enumerate(names):
-        move = (name, (("n", _plus, (i,)),), names[(i + 1) % size], (f"s{i} left",), (f"s{i} entered",), ([i],))
-        table[name] = (False, (move, (i,)))
+        after = (i + 1) % size
+        table[name] = (False, _below, True, shared, names[after], sides[i], sides[after], ([i],), None, _plus)
 
     def work(count: int) -> int:
         at, done = names[0], 0
         for _ in range(count):
-            _, (move, _) = table[at]
-            _, ((_, _, _),), at, left, entered, taken = move
+            _, _, _, _, at, left, entered, taken, _, _ = table[at]
             kept = (left, entered, taken, at)
             done += len(kept) // 4
         return done
