@@ -8,8 +8,10 @@ from pathlib import Path
 
 import imageio_ffmpeg
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
+from lumen.errors import RobotError
 from lumen.language.robots import Body
 from lumen.language.routes import Size
 from lumen.language.stories import Visitor
@@ -76,6 +78,11 @@ def test_a_film_has_a_frame_for_every_twenty_fifth_of_a_second(robot: SimulatedR
     frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(path))
     assert frames == film.frames == 11
     assert seconds * RATE == frames
+
+
+def test_a_hall_without_that_camera_is_not_filmed(robot: SimulatedRobot, tmp_path: Path) -> None:
+    with pytest.raises(RobotError, match="the hall has no camera `ceiling`"):
+        Film(tmp_path / "film.mp4", robot, "ceiling")
 
 
 def test_without_opengl_there_are_no_images_and_a_remedy() -> None:

@@ -62,7 +62,7 @@ class _Player:
         chosen = cast("simulation", project, speed)
         assert isinstance(chosen.robot, SimulatedRobot)
         self.robot, self._clock = chosen.robot, chosen.clock
-        self._film = Film(video, self.robot) if video else None
+        self._film = Film(video, self.robot, "close") if video else None
 
     def perform(self, command: RobotCommand) -> None:
         """Raises UsageError where the robot can't, with its reason."""

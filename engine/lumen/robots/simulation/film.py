@@ -3,6 +3,8 @@
 from collections.abc import Generator
 from pathlib import Path
 
+import mujoco
+
 from lumen.errors import RobotError
 from lumen.robots.simulation.rendering import FILM, Scene, Studio, available
 from lumen.robots.simulation.robot import SimulatedRobot
@@ -14,12 +16,14 @@ WIDTH, HEIGHT = 640, 480
 class Film:
     """Writes an MP4 of what a camera of the hall sees; `tick` whenever time has passed, `close` at the end.
 
-    Raises RobotError where nothing can be drawn, saying which package to install.
+    Raises RobotError where nothing can be drawn, saying which package to install, or the hall has no such camera.
     """
 
     def __init__(self, path: Path, robot: SimulatedRobot, camera: str = "observer") -> None:
         if reason := available():
             raise RobotError(reason)
+        if mujoco.mj_name2id(robot.world.model, mujoco.mjtObj.mjOBJ_CAMERA, camera) < 0:
+            raise RobotError(f"the hall has no camera `{camera}` to film with")
         self._robot, self._camera = robot, camera
         self._studio = Studio(robot.world.model, FILM)
         self._writer = _writer(path)
