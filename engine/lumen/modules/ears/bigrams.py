@@ -4,8 +4,11 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from math import log10
 
-COMMON = 0.5
-"""How much of the chance of a word is that of the language, and not that of the expected sentences."""
+COMMON = 0.75
+"""How much of the chance of a word is that of the language, and not that of the expected sentences.
+
+With less, more of these is understood where it is quiet, and more of other talk is taken for one where it is not.
+"""
 BEGIN, END = "<s>", "</s>"
 
 

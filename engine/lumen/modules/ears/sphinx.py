@@ -24,7 +24,7 @@ HISS = 40.0
 """The noise that is put under each sound, of 32,768: digital silence, which no microphone gives, misleads it."""
 QUIET = 300
 """What stays below that is silence."""
-WORDS = 2_000
+WORDS = 8_000
 """How many common words it knows beside what is expected."""
 STEP = 1e-4
 """PocketSphinx counts logarithms in such steps."""
