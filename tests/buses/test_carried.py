@@ -272,6 +272,18 @@ def test_a_route_that_is_given_up_leaves_no_queue(opened: Open, stranger: Any) -
         stranger.queue_declare("lumen.queue.avatar.K.command", passive=True)
 
 
+@pytest.mark.parametrize("carried", [Carried.COMMAND, Carried.JOURNAL])
+def test_who_leaves_takes_nothing_from_who_stays(opened: Open, carried: Carried) -> None:
+    way = route(f"avatar.O.{carried}", carried)
+    first, second, sender, seen = opened(way), opened(way), opened(way), Collector()
+    undo = first.subscribe(way.key, Collector())
+    second.subscribe(way.key, seen)
+    undo()
+    first.close()
+    sender.publish(way.key, "to who stays")
+    assert seen.wait(1) == ["to who stays"]
+
+
 def test_what_was_prepared_is_subscribed_to_without_waiting_for_the_network(broker: RabbitMQ, opened: Open) -> None:
     relay, seen = Relay(broker.port), Collector()
     url = f"amqp://guest:guest@127.0.0.1:{relay.port}/"

@@ -325,10 +325,7 @@ class Consuming(Link):
         self.connection.call_later(LEAVING, lambda: self._drop(left))
 
     def _drop(self, subscription: Subscription) -> None:
-        """Stop reading a queue; one that outlives us is bound to nothing any more, and deleted if it is empty.
-
-        A quorum queue can't be deleted so carefully, and stays.
-        """
+        """Stop reading a queue; nothing of it stays on the broker but what somebody needs."""
         if self.channel is None or not subscription.queue:
             return
         if subscription.tag:
@@ -337,12 +334,21 @@ class Consuming(Link):
             return
         with suppress(ChannelClosedByBroker):
             channel = self.connection.channel()
-            if subscription.must_arrive:
-                channel.queue_unbind(subscription.queue, EXCHANGE, subscription.pattern)
-            kept = queue_of("", subscription.route).quorum
-            if not kept and (subscription.must_arrive or not subscription.tag):
-                channel.queue_delete(subscription.queue, if_unused=True, if_empty=subscription.must_arrive)
+            self._unmake(channel, subscription)
             channel.close()
+
+    def _unmake(self, channel: Any, subscription: Subscription) -> None:
+        """A queue that outlives us, and that no other process reads, is bound to nothing any more.
+
+        It is deleted if it is empty; a quorum queue can't be deleted so carefully, and stays.
+        """
+        name, must = subscription.queue, subscription.must_arrive
+        if must:
+            if channel.queue_declare(name, passive=True).method.consumer_count:
+                return
+            channel.queue_unbind(name, EXCHANGE, subscription.pattern)
+        if not queue_of("", subscription.route).quorum and (must or not subscription.tag):
+            channel.queue_delete(name, if_unused=True, if_empty=must)
 
     def _cancelled(self, frame: Any) -> None:
         """The broker took a queue from us (somebody deleted it): start anew."""
