@@ -33,6 +33,7 @@ def fixed(file: str, old: str, new: str) -> bytes:
     ("file", "right", "wrong"),
     [
         (TOUR, "onError: idle", "onError: idel"),
+        (WAVE, "left: 1.0", "left: 1,0"),
         (TOUR, "onError: idle", "onError: idle   # lumen: ignore[no-effect] x"),
         (TOUR, "onError: idle", "onError: idle\n    # lumen: ignore[no-effect] x"),
         (TOUR, "    onDone: talk", "    ondone: talk"),

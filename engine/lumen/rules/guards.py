@@ -77,7 +77,7 @@ def _takes_all(earlier: Transition, later: Transition, machine: Machine, report:
     """Whether the earlier one leaves nothing for the later one; said, as is where it leaves less than was meant."""
     related = [(earlier.where, "the earlier one stands here")]
     if earlier.guard is None:
-        if report.broken((*earlier.where, "guard")):
+        if report.broken(earlier.where):  # what was taken out of it may have been its guard
             return False
         line = report.document.place(earlier.where).line
         message = f"this is never taken: the transition in line {line} always is, before it"

@@ -43,13 +43,14 @@ def _inside(draft: Draft, name: str, machine: Machine, report: Report) -> None:
     for part, what in (("phrases", "heard"), ("answers", "lookup")):
         for key in getattr(machine, part).keys() - named:
             hint = f"ask `{what}(event.data.result, '{key}')` somewhere, or delete them"
-            find(report, f"unused-{part}", (part, key), f"nothing asks for the {part} `{key}`", hint, key=True)
+            message = f"nothing asks for the {part} `{key}`"
+            find(report, f"unused-{part}", (part, key), message, hint, key=True, root=_states_of(report))
     waited = set(descriptors(machine))
     for event in machine.events:
         if not (any(hears(d, event) for d in waited) or nearest(event, report.missed)):
             message = f"nothing waits for the event `{event}`"
             hint = "react to it with `on:`, or delete it"
-            find(report, "unused-event", ("events", event), message, hint, key=True)
+            find(report, "unused-event", ("events", event), message, hint, key=True, root=_states_of(report))
 
 
 def _context(machine: Machine, report: Report, read: set[str]) -> None:
@@ -58,7 +59,13 @@ def _context(machine: Machine, report: Report, read: set[str]) -> None:
         if key not in read:
             hint = "use it in an expression, or delete it"
             what = "is set and never read" if key in written else "is declared and never used"
-            find(report, "unused-context-key", ("context", key), f"`{key}` {what}", hint, key=True)
+            message, root = f"`{key}` {what}", _states_of(report)
+            find(report, "unused-context-key", ("context", key), message, hint, key=True, root=root)
+
+
+def _states_of(report: Report) -> str:
+    """What is wrong where much is unused, or is missed by stories: part of the chart is gone."""
+    return f"the states of {report.document.file}"
 
 
 def _expected(draft: Draft, name: str) -> set[str]:

@@ -10,12 +10,13 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.rules.codes import FAMILIES
 from lumen.rules.fixes.edits import Edit, Fix, Sheet, edited
 from lumen.rules.fixes.lines import fewer_ignores, once, spaces
-from lumen.rules.fixes.words import filled_in, outnumbered, slip, straight_quotes
+from lumen.rules.fixes.words import filled_in, outnumbered, point, slip, straight_quotes
 
 __all__ = ["Edit", "Fix", "Sheet", "edited", "fixes"]
 
 _FIXERS: Mapping[str, Callable[[Diagnostic, Sheet], list[Fix]]] = {
     "curly-quotes": straight_quotes,
+    "decimal-comma": point,
     "duplicate-key": once,
     "not-filled-in": filled_in,
     "rule-syntax": slip,

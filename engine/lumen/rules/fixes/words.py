@@ -73,6 +73,12 @@ def straight_quotes(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
     return [Fix("write straight quotes", (Edit(diagnostic.place, f'"{there[1:-1]}"'),))]
 
 
+def point(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+    """The number with a point in place of its comma."""
+    there = sheet.at(diagnostic.place)
+    return [Fix("write a point", (Edit(diagnostic.place, there.replace(",", ".")),))] if there.count(",") == 1 else []
+
+
 def filled_in(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
     """Two braces on both sides of what is to be filled in."""
     there, said, right = sheet.at(diagnostic.place), _SAYS.search(diagnostic.message), _SAYS.search(diagnostic.hint)
