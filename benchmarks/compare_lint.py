@@ -125,7 +125,8 @@ def esphome(mistake: Mistake, folder: Path, tool: Path) -> str | None:
     assert old in ESPHOME, mistake.what
     (folder / "stand.yaml").write_text(ESPHOME.replace(old, new, 1))
     done = run([tool, "config", folder / "stand.yaml"], folder)
-    lines = [line.strip() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+    lines = [line.strip() for line in (done.stdout + done.stderr).splitlines()]
+    lines = [line for line in lines if line and not line.startswith("INFO")]
     said = [line for line in lines if re.match(r"ERROR|[A-Z\[][^:]* .*[.\]\"?]$|in \"|found |expected ", line)]
     return "" if done.returncode == 0 else " ".join(said or lines)
 
