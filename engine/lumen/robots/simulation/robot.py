@@ -16,7 +16,6 @@ from lumen.ports import Aim, Battery, Joints, Reading, RobotCommand, Sense, Sona
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.simulation.anatomy import Anatomy
 from lumen.robots.simulation.balance import Balance
-from lumen.robots.simulation.bumpers import Bumpers
 from lumen.robots.simulation.camera import TopCamera
 from lumen.robots.simulation.condition import Condition
 from lumen.robots.simulation.figure import Figure
@@ -29,6 +28,7 @@ from lumen.robots.simulation.repertoire import Repertoire
 from lumen.robots.simulation.soles import Soles
 from lumen.robots.simulation.sonar import Sonars
 from lumen.robots.simulation.steering import Steering
+from lumen.robots.simulation.touch import Touch
 from lumen.robots.simulation.voice import Voice
 from lumen.robots.simulation.walking import Walker
 from lumen.robots.simulation.whereabouts import Whereabouts
@@ -76,7 +76,7 @@ class SimulatedRobot:
         self._instruments = Instruments(self.world, variation.noise if variation else 0.0, seed)
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
-        self._bumpers = Bumpers(self.world.model, self.world.data)
+        self._touch = Touch(self.world.model, self.world.data, body.tactile)
         self._scales = Soles(self.world.model, self.world.data)
         self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
         self._whereabouts = Whereabouts(stage)
@@ -183,8 +183,8 @@ class SimulatedRobot:
         self._feel_touch()
 
     def _feel_touch(self) -> None:
-        """Notice which tactile sensors are pressed: by a hand, or by what a foot ran into."""
-        now = self._held | self._bumpers.pressed()
+        """Notice which tactile sensors are pressed: by a hand, or by what stands in the hall."""
+        now = self._held | self._touch.pressed()
         for sensor, before in self._pressed.items():
             if before != (sensor in now):
                 self._pressed[sensor] = not before
