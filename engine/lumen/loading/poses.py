@@ -82,7 +82,7 @@ class PoseReader:
         return {joint: (angle, path) for joint, angle in (self.posture(name, path) or {}).items()}
 
     def _pose(self, name: str, path: Path) -> Angles:
-        if name not in self.poses:
+        if name not in self.poses and ("poses",) not in self.report.pruned:
             hint = did_you_mean(name, self.poses, "`poses` has")
             cause = f"{self.report.document.file} pose {name}"
             self.report("unknown-pose", path, f"there is no pose `{name}`", hint=hint, cause=cause)
