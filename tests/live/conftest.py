@@ -11,12 +11,17 @@ from tests.tour.conftest import project
 
 __all__ = ["project", "whole"]
 
+PATIENT = "2h"
+"""How long the guide waits for a visitor: at twenty times the pace, no test depends on how fast files are judged."""
+
 
 @pytest.fixture
 def copy(whole: Path) -> Path:
     for story in (whole / "behaviors" / "stories").glob("*.yaml"):
         if story.stem not in ("refuses", "known_visitor"):
             story.unlink()
+    tour = whole / "behaviors" / "tour.yaml"
+    tour.write_text(tour.read_text("utf-8").replace("30s: goodbye", f"{PATIENT}: goodbye"), "utf-8")
     main = whole / "lumen.yaml"
     main.write_text(main.read_text("utf-8").replace("story: visitor", "story: refuses"), "utf-8")
     return whole

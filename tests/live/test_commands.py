@@ -12,6 +12,7 @@ from lumen.buses.consuming import Consuming
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Say
 from lumen.runtime.exhibition import Observer
+from tests.live.conftest import PATIENT
 from tests.live.shows import Live
 from tests.rabbitmq import RabbitMQ
 
@@ -120,7 +121,8 @@ def test_off_means_off(copy: Path) -> None:
 def waving(copy: Path) -> Iterator[Live]:
     """Where whatever is played never ends by itself, nor the farewell."""
     tour = copy / "behaviors" / "tour.yaml"
-    tour.write_text(tour.read_text("utf-8").replace('after: {12s: "#idle"}', 'after: {2h: "#idle"}'), "utf-8")
+    text = tour.read_text("utf-8").replace(f"{PATIENT}: goodbye", "30s: goodbye")
+    tour.write_text(text.replace('12s: "#idle"', '2h: "#idle"'), "utf-8")
     one = Live(copy, behaves={"play": "hangs"})
     yield one
     one.show.close()

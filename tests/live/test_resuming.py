@@ -80,10 +80,10 @@ def test_timers_go_on_while_nobody_is_there(copy: Path) -> None:
     one.greet()
     project, snapshot = one.show.exhibition.project, one.show.exhibition.runtime.snapshot
     one.show.close()
-    [timer] = [t for t in snapshot.timers if t.delay == 30.0]
+    [timer] = [t for t in snapshot.timers if t.delay == 7200.0]
     found = resume(project, project, snapshot, 20.0, ())
     assert isinstance(found, Resumption)
-    [later] = [t for t in found.snapshot.timers if t.delay == 30.0]
+    [later] = [t for t in found.snapshot.timers if t.delay == 7200.0]
     assert later.due == pytest.approx(timer.due - snapshot.at - 20.0)
 
 

@@ -1,0 +1,86 @@
+"""Files saved while a show runs: a good one is in force with the next sentence, a broken one changes nothing."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from lumen.language.stories import Visitor
+from tests.live.shows import Live
+
+
+def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
+    live.edit("en: I am sorry, I did not understand that.", "en: Come again, please?")
+    live.until_told("in force")
+    walker = live.show.walker
+    assert walker
+    walker.arrive(Visitor())
+    live.until_told("ask_name")
+    walker.speak("my name is Ada")
+    live.until_told("how_are_you")
+    walker.speak("purple")
+    live.until_told("“Come again, please?”")
+
+
+def test_the_visitors_name_survives(live: Live) -> None:
+    walker = live.show.walker
+    assert walker
+    walker.arrive(Visitor())
+    live.until_told("ask_name")
+    walker.speak("my name is Ada")
+    live.until(lambda: "how_are_you" in live.states)
+    live.edit("en: [I am glad to hear that.,", 'en: ["Wonderful, {{ context.visitor }}!",')
+    live.edit('"That is good to hear, {{ context.title_en }}."]', '"Wonderful, {{ context.visitor }}!"]')
+    live.until_told("in force")
+    assert "how_are_you" in live.states
+    walker.speak("fine")
+    live.until_told("“Wonderful, Ada!”")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("onDone: any_question", "onDone: any_questoin", "did you mean `any_question`?"),
+        ("id: tour", "id: tour\n\tx: 1", "[tab]"),
+        ("{play: sing}", "{play: sign}", "did you mean `sing`?"),
+    ],
+)
+def test_a_broken_file_is_reported_with_its_place_and_changes_nothing(
+    live: Live, old: str, new: str, told: str
+) -> None:
+    before = live.show.exhibition.project
+    live.edit(old, new)
+    live.until_told("refused: the exhibition goes on as it was")
+    assert told in live.transcript
+    assert "behaviors/tour.yaml:" in live.transcript
+    assert live.show.exhibition.project is before
+    live.edit(new, old)
+    live.edit("en: Never mind.", "en: No problem.")
+    live.until_told("in force")
+
+
+@pytest.fixture
+def storyless(copy: Path) -> None:
+    """A project whose states may be renamed: no story names them."""
+    shutil.rmtree(copy / "behaviors" / "stories")
+    main = copy / "lumen.yaml"
+    main.write_text(main.read_text("utf-8").replace("story: refuses", "#"), "utf-8")
+
+
+@pytest.mark.usefixtures("storyless")
+def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
+    walker = live.show.walker
+    assert walker
+    walker.arrive(Visitor())
+    live.until(lambda: "ask_name" in live.states)
+    for old, new in (
+        ("          ask_name:\n            id: ask_name", "          asking:\n            id: asking"),
+        ("target: ask_name", "target: asking"),
+        ("- ask_name", "- asking"),
+        ("onError: ask_name", "onError: asking"),
+    ):
+        live.edit(old, new)
+    live.until_told("waiting for `ask_name`: `ask_name` is active and gone")
+    walker.speak("my name is Ada")
+    live.until_told("in force")
+    assert "how_are_you" in live.states
