@@ -43,7 +43,7 @@ EDITS = (
     ("behaviors/tour.yaml", "I am glad", "%d"),
     ("behaviors/tour.yaml", "after: {", "4%ds"),
     ("behaviors/stories/silence.yaml", "wait: ", "11.%ds"),
-    ("motions/dance.yaml", "tempo: 13", "%d"),
+    ("motions/dance.yaml", "tempo: 1", "2%d.5"),
     ("motions/goodbye.yaml", "at: 3.2", "%ds"),
     ("models/passages/sit-straddle.yaml", "at: 2", ".%ds"),
     ("models/nao.yaml", "speed: 24.6", "%d"),
