@@ -163,15 +163,16 @@ class Soak:
         self._running = bundle.hash
         self._verdict = threading.Event()
         self._editing = threading.Thread(target=self.edit, daemon=True)
-        self._done = threading.Event()
+        self._done, self._pause = threading.Event(), threading.Event()
 
     def look(self, _: float) -> None:
         """On the running thread: every tick, every verdict, every bundle."""
         now, outcome = time.monotonic(), self.outcome
         gap, self._before = now - self._before, now
-        outcome.ticks += 1
-        outcome.gap = max(outcome.gap, gap)
-        outcome.missed += gap > 2 * TICK
+        if not self._done.is_set():
+            outcome.ticks += 1
+            outcome.gap = max(outcome.gap, gap)
+            outcome.missed += gap > 2 * TICK
         if self.reloading.last is not self._last and self.reloading.last:
             self._last = self.reloading.last
             self._told.append(told_of(self._last, now))
@@ -236,7 +237,8 @@ class Soak:
 
         gc.collect()
         memory = int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-        found = memory, threading.active_count(), len(os.listdir("/proc/self/fd"))
+        handles = min(len(os.listdir("/proc/self/fd")) for _ in range(5) if not self._pause.wait(0.05))
+        found = memory, threading.active_count(), handles  # a file that is read just now is none that stays open
         for name, value in zip(("memory", "threads", "handles"), found, strict=True):
             both = list(getattr(self.outcome, name))
             both[place] = value
