@@ -56,7 +56,7 @@ def test_the_shipped_controller_fits_on_one_screen() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("Low: {a: [0, 3]", "Low: {b: [0, 3]", ["unknown-variable b", "unknown-term Low"]),
+        ("Low: {a: [0, 3]", "Low: {b: [0, 3]", ["unknown-variable b"]),
         ("Low: {a: [0, 3]", "Low: {a: [0, -3]", ["not-positive -3"]),
         ("Low: {a: [0, 3]", "Low: {a: [0]", ["wrong-parameters [0]"]),
         ("Low: {a: [0, 3]", "Low: {a: [.nan, 3]", ["not-a-number .nan"]),

@@ -131,6 +131,7 @@ FAMILIES: Mapping[str, Mapping[str, Code]] = {
         "duplicate-variable": Code(ERROR, "an input and an output have the same name"),
         "empty-term": Code(ERROR, "a term covers nothing"),
         "high-gain": Code(WARNING, "a binding's gain makes the loop overshoot"),
+        "idle-rule": Code(WARNING, "a rule has the weight 0"),
         "missing-rule": Code(WARNING, "a table of rules leaves out a case"),
         "no-default": Code(WARNING, "an output has no default, and somewhere no rule for it fires"),
         "no-rules": Code(ERROR, "a controller has no rules"),

@@ -23,11 +23,19 @@ MOST = 10_000
 
 
 def check(controller: Controller, report: Report) -> None:
-    """Report duplicate, contradicting, subsumed and missing rules, and terms that no rule mentions."""
+    """Report idle, duplicate, contradicting, subsumed and missing rules, and terms that no rule mentions."""
     for block in controller.blocks:
+        _idle(block, report)
         _pairs(block, controller, report)
         _missing(block, controller, report)
     _unused(controller, report)
+
+
+def _idle(block: Block, report: Report) -> None:
+    for rule in block.rules:
+        if rule.weight == 0:
+            message, hint = "with the weight 0 this rule never counts", "write a weight up to 1, or delete the rule"
+            find(report, "idle-rule", rule.where, message, hint)
 
 
 def _pairs(block: Block, controller: Controller, report: Report) -> None:

@@ -116,9 +116,10 @@ def check(controller: Controller, report: Report, seen: Look) -> None:
 
 def _silence(controller: Controller, variable: Variable, report: Report, seen: Look) -> None:
     point = seen.silent.get(variable.name)
-    if point is not None and variable.default is None and not variable.lock_previous:
+    if point is not None and variable.default is None:
         where = ", ".join(f"{name} = {x:.4g}" for name, x in point.items() if name in asked(controller, variable.name))
-        message = f"`{variable.name}` has no value at {where}: no rule fires, and it has no default"
+        lack = "it has nothing to keep at first" if variable.lock_previous else "it has no default"
+        message = f"`{variable.name}` has no value at {where}: no rule fires, and {lack}"
         find(report, "no-default", variable.where, message, "write `default: 0`, or cover it by rules", key=True)
 
 
