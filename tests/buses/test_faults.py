@@ -130,7 +130,7 @@ def test_a_broker_that_is_killed_while_a_journal_is_made_makes_it_anew() -> None
         consuming = reader._way.consuming  # type: ignore[attr-defined]
         subscribing = threading.Thread(target=reader.subscribe, args=(key, seen))
         subscribing.start()
-        until(lambda: consuming._settling)
+        until(lambda: consuming._maker.settling)
         broker.kill()
         broker.start()
         until(lambda: any(s.tag for s in consuming.subscriptions() if s.pattern == key), 60)

@@ -15,12 +15,13 @@ from typing import Any
 
 from lumen.buses.addresses import Address
 from lumen.buses.bodies import JSON, MAX_BYTES, TEXT, check_key, encode
-from lumen.buses.consuming import Consuming, Delivery
+from lumen.buses.consuming import Consuming
 from lumen.buses.dispatching import MARK, Dispatching
 from lumen.buses.links import Outage
 from lumen.buses.outbox import Parcel
 from lumen.buses.publishing import Publishing
 from lumen.buses.queues import DEAD, EXCHANGE, NEWEST, journal_of
+from lumen.buses.subscriptions import Delivery
 from lumen.errors import BusError
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Handler, Message

@@ -5,15 +5,16 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
 
 from lumen.buses.addresses import Address
 from lumen.buses.bodies import MAX_BYTES
 from lumen.buses.links import Link, Outage
-from lumen.buses.queues import EXCHANGE, NOWHERE, SETTLING, Queue, queue_of
+from lumen.buses.making import Maker
+from lumen.buses.queues import NOWHERE, queue_of
+from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import BusError
 from lumen.language.routes import Route
 from lumen.ports import Handler
@@ -25,52 +26,8 @@ STALL = 0.5
 """By how much a turn may take longer [s] before this process counts as having stood still."""
 LEAVING = 2.0
 """How long a queue that nothing comes to any more is read on [s]: what was in it has come by then."""
-OTHERWISE = 406
-"""The broker's code for a queue that exists and was made otherwise."""
 
 _log = logging.getLogger(__name__)
-
-
-@dataclass(eq=False)
-class Subscription:
-    """A pattern, its handler, and its queue on the broker; `bound` is set once the broker has answered.
-
-    Until there is a handler (`prepared`) the queue only gathers. `received` and `handled` count the deliveries.
-    """
-
-    pattern: str
-    handler: Handler | None
-    route: Route | None = None
-    number: int = 0
-    exchange: str = EXCHANGE
-    active: bool = True
-    queue: str = ""
-    tag: str = ""
-    refusal: str = ""
-    epoch: int = 0
-    received: int = 0
-    handled: int = 0
-    bound: threading.Event = field(default_factory=threading.Event)
-
-    @property
-    def must_arrive(self) -> bool:
-        return self.route is not None and self.route.must_arrive
-
-
-class Delivery(NamedTuple):
-    """A message as it came at `at` [s, monotonic], `again` where the broker may have sent it before.
-
-    `number` and `epoch` say what to acknowledge.
-    """
-
-    subscription: Subscription
-    key: str
-    body: bytes
-    properties: Any
-    number: int
-    epoch: int
-    again: bool = False
-    at: float = 0.0
 
 
 class Consuming(Link):
@@ -85,7 +42,7 @@ class Consuming(Link):
         self._receive = receive
         self._subscriptions: list[Subscription] = []
         self._prepared: dict[str, Subscription] = {}
-        self._settling: set[str] = set()
+        self._maker = Maker()
         self._changing = threading.Lock()
         self._hurried = False
         self._epoch = 0
@@ -227,7 +184,7 @@ class Consuming(Link):
             return
         try:
             queue = queue_of(subscription.pattern, subscription.route, subscription.number, subscription.exchange)
-            subscription.queue, refusal = self._make(queue)
+            subscription.queue, refusal = self._maker.make(self.connection, queue)
             if refusal:
                 self._refused(subscription, refusal)
                 return
@@ -246,68 +203,6 @@ class Consuming(Link):
                 self._subscriptions.remove(subscription)
             self._prepared.pop(subscription.pattern, None)
 
-    def _make(self, queue: Queue) -> tuple[str, str]:
-        """Declare and bind a queue on a channel of its own; its name, and why the broker refuses."""
-        for attempt in self._attempts(queue):
-            channel = self.connection.channel()
-            try:
-                name = attempt(channel, queue)
-                channel.close()
-                return name, ""
-            except ChannelClosedByBroker as error:
-                refusal = str(error.reply_text)
-                if error.reply_code != OTHERWISE:
-                    break
-        return "", refusal
-
-    def _attempts(self, queue: Queue) -> tuple[Callable[[Any, Queue], str], ...]:
-        """One after the other, where there is a queue of that name that was made otherwise."""
-        if queue.quorum:
-            return self._found, self._adopt
-        return (self._declare, self._renew, self._adopt) if queue.name else (self._declare,)
-
-    def _found(self, channel: Any, queue: Queue) -> str:
-        """A quorum queue, which is bound when a crash of the broker can't lose it any more.
-
-        Where the broker was killed before that, it has no log for it and never answers for it: it is made anew.
-        """
-        if queue.name in self._settling:
-            channel.queue_delete(queue.name)
-        if not self._exists(queue.name):
-            self._settling.add(queue.name)
-            channel.queue_declare(queue.name, durable=True, arguments=queue.arguments)
-            self.connection.sleep(SETTLING)
-            self._settling.discard(queue.name)
-        return self._declare(channel, queue)
-
-    def _exists(self, name: str) -> bool:
-        channel = self.connection.channel()
-        try:
-            channel.queue_declare(name, passive=True)
-        except ChannelClosedByBroker:
-            return False
-        channel.close()
-        return True
-
-    def _declare(self, channel: Any, queue: Queue) -> str:
-        mine = not queue.name
-        arguments = queue.arguments
-        made = channel.queue_declare(
-            queue.name, durable=not mine, exclusive=mine, auto_delete=mine, arguments=arguments
-        )
-        channel.queue_bind(made.method.queue, queue.exchange, queue.key)
-        return str(made.method.queue)
-
-    def _renew(self, channel: Any, queue: Queue) -> str:
-        """There is one of that name that was made otherwise: where it holds nothing, another takes its place."""
-        channel.queue_delete(queue.name, if_unused=True, if_empty=True)
-        return self._declare(channel, queue)
-
-    def _adopt(self, channel: Any, queue: Queue) -> str:
-        """Use the one that there is: nothing in it is lost, and it is made anew when it is empty."""
-        channel.queue_bind(queue.name, EXCHANGE, queue.key)
-        return queue.name
-
     def _consume(self, subscription: Subscription) -> None:
         if self.channel is not None and subscription.active and subscription.epoch == self._epoch:
             subscription.tag = self.channel.basic_consume(subscription.queue, self._callback(subscription))
@@ -318,10 +213,7 @@ class Consuming(Link):
         left = Subscription(subscription.pattern, None, old, queue=subscription.queue, tag=subscription.tag)
         subscription.epoch = 0
         self._bind(subscription)
-        with suppress(ChannelClosedByBroker):
-            channel = self.connection.channel()
-            channel.queue_unbind(left.queue, EXCHANGE, left.pattern)
-            channel.close()
+        self._maker.leave(self.connection, left)
         self.connection.call_later(LEAVING, lambda: self._drop(left))
 
     def _drop(self, subscription: Subscription) -> None:
@@ -332,23 +224,7 @@ class Consuming(Link):
             self.channel.basic_cancel(subscription.tag)
         if any(other.queue == subscription.queue for other in self.subscriptions()):
             return
-        with suppress(ChannelClosedByBroker):
-            channel = self.connection.channel()
-            self._unmake(channel, subscription)
-            channel.close()
-
-    def _unmake(self, channel: Any, subscription: Subscription) -> None:
-        """A queue that outlives us, and that no other process reads, is bound to nothing any more.
-
-        It is deleted if it is empty; a quorum queue can't be deleted so carefully, and stays.
-        """
-        name, must = subscription.queue, subscription.must_arrive
-        if must:
-            if channel.queue_declare(name, passive=True).method.consumer_count:
-                return
-            channel.queue_unbind(name, EXCHANGE, subscription.pattern)
-        if not queue_of("", subscription.route).quorum and (must or not subscription.tag):
-            channel.queue_delete(name, if_unused=True, if_empty=must)
+        self._maker.unmake(self.connection, subscription)
 
     def _cancelled(self, frame: Any) -> None:
         """The broker took a queue from us (somebody deleted it): start anew."""

@@ -8,9 +8,9 @@ import time
 from collections.abc import Callable
 
 from lumen.buses.bodies import JSON, decode
-from lumen.buses.consuming import Delivery, Subscription
 from lumen.buses.pace import Pace
 from lumen.buses.queues import NOWHERE
+from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.ports import Message, Refused
 
 MARK = "lumen.mark"
