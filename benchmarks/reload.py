@@ -152,7 +152,7 @@ class Soak:
         self.reloading = Reloading(self.show, transcript, records=records, quiet=quiet, apart=True)
         self.show.exhibition.parts += [self.reloading.tick, self.look]
         self.show.closing.insert(0, self.reloading.close)
-        self.show.closing.append(home.release)
+        self.show.closing += [records.close, home.release]
         self.show.after.append(lambda _: records.keep(self.show.exhibition))
         self.outcome, self.writer = Outcome(edits), Colleague(root, seed, 0.4 * quiet)
         self.show.closing.append(self.writer.close)

@@ -52,7 +52,7 @@ class Live:
             self.show, transcript, mode=mode, records=self.records, quiet=QUIET, budget=0.5, seen=seen, apart=apart
         )
         self.show.exhibition.parts.append(self.reloading.tick)
-        self.show.closing[:0] = [self.reloading.close, self.home.release]
+        self.show.closing[:0] = [self.reloading.close, self.records.close, self.home.release]
         self.answers = Collector()
         self.show.exhibition.bus.subscribe("lumen.test.answer", self.answers)
         self.status = Collector()

@@ -34,7 +34,7 @@ class Kept(NamedTuple):
 
 
 class Keeper:
-    """Writes snapshots and bundles into a home; `trouble` says why it could not, once.
+    """Writes snapshots (`count` of them) and bundles into a home; `trouble` says why it could not, once.
 
     Where only the time of a snapshot differs from the one before, nothing is written: its timers have deadlines.
     """
@@ -44,15 +44,20 @@ class Keeper:
         self._last: Snapshot | None = None
         self._written = 0.0
         self.trouble = ""
-        self.count, self.spent = 0, 0.0
+        self.count = 0
+
+    def due(self, snapshot: Snapshot) -> bool:
+        """Whether it is news, and the last was not written just now."""
+        last = self._last
+        if last is snapshot or (last is not None and _same(last, snapshot)):
+            return False
+        return time.perf_counter() - self._written >= SPACING
 
     def keep(self, project: Project, snapshot: Snapshot, tracking: Sequence[str]) -> None:
-        """Write where the project's behaviour stands, if that is news and the last was not written just now."""
-        if self._last is snapshot or (self._last is not None and _same(self._last, snapshot)):
+        """Write where the project's behaviour stands, if that is due."""
+        if not self.due(snapshot):
             return
-        began = time.perf_counter()
-        if began - self._written < SPACING:
-            return
+        self._written = time.perf_counter()
         try:
             frozen = freeze(project.machine, snapshot)
         except LumenError as error:
@@ -67,8 +72,8 @@ class Keeper:
             "snapshot": frozen,
         }
         self._wrote(self._home.write(SNAPSHOT, json.dumps(data).encode()))
-        self._last, self._written = snapshot, began
-        self.count, self.spent = self.count + 1, self.spent + time.perf_counter() - began
+        self._last = snapshot
+        self.count += 1
 
     def kept(self) -> Kept | None:
         """The snapshot of a run that did not end by itself, None where there is none that can be read."""

@@ -97,6 +97,7 @@ class Premises:
         """Give it back; `forget` where the run has ended as it should, and there is nothing to go on with."""
         if self.home is None:
             return
+        self.records.close()
         home, self.home = self.home, None
         if self._door:
             self._door.close()

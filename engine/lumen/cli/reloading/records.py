@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from lumen.language.projects import Project
@@ -15,10 +16,16 @@ _log = logging.getLogger(__name__)
 
 
 class Records:
-    """The records in a home; without one (another run of the same project has it) nothing is written."""
+    """The records in a home; without one (another run of the same project has it) nothing is written.
+
+    Where the behaviour stands is written many times a second, and a disk may take half a second to take it: that has a
+    thread of its own, until `close`.
+    """
 
     def __init__(self, home: Home | None) -> None:
         self._told, self._trial = False, ""
+        self._desk = ThreadPoolExecutor(1, "records")
+        self._keeping: Future[None] | None = None
         self.keeper = Keeper(home) if home else None
         self.trials = Trials(home) if home else None
         self.journal = Journal(home.folder if home else None)
@@ -65,10 +72,25 @@ class Records:
             self.keeper.prune(*(project.hash for project in projects if project))
 
     def keep(self, exhibition: Exhibition) -> None:
-        """Write where the behaviour stands, where that is news."""
-        if self.keeper is None:
+        """Have it written where the behaviour stands, where that is news and what was to be written before is."""
+        snapshot = exhibition.runtime.snapshot
+        if self.keeper is None or not self._settled() or not self.keeper.due(snapshot):
             return
-        self.keeper.keep(exhibition.project, exhibition.runtime.snapshot, exhibition.tracking.on)
-        if self.keeper.trouble and not self._told:
+        on = tuple(exhibition.tracking.on)
+        self._keeping = self._desk.submit(self.keeper.keep, exhibition.project, snapshot, on)
+
+    def close(self) -> None:
+        """Wait for what is being written; nothing is written any more."""
+        self._desk.shutdown()
+        self._settled()
+
+    def _settled(self) -> bool:
+        """Whether nothing is being written; says once that it could not be."""
+        if self._keeping and not self._keeping.done():
+            return False
+        if self._keeping:
+            self._keeping.result()
+        if self.keeper and self.keeper.trouble and not self._told:
             self._told = True
             _log.warning("where the behaviour stands can't be kept: %s", self.keeper.trouble)
+        return True
