@@ -28,6 +28,8 @@ from lumen.language.projects import Project
 from lumen.ports import Sense
 
 ROOT = Path(__file__).parents[1]
+OURS = f" of {os.getpid()}"
+"""What our commands' ids end with: the robot performs none twice, not even after a restart."""
 LIMIT = 1.5
 """The worst gap that is well, in periods."""
 
@@ -49,7 +51,7 @@ class Ear:
 
     def _report(self, message: Message) -> None:
         with self.changed:
-            self.reports.setdefault((message.body["id"], message.body["state"]), time.monotonic())
+            self.reports.setdefault((message.body["id"].removesuffix(OURS), message.body["state"]), time.monotonic())
             self.changed.notify_all()
 
     def wait(self, id: str, state: str, patience: float = 60.0) -> float:
@@ -98,7 +100,7 @@ def dance(bus: Bus, ear: Ear) -> tuple[float, float, list[float]]:
 def order(bus: Bus, id: str, method: str, **parameter: object) -> float:
     """Send a command; when [s]."""
     sent = time.monotonic()
-    bus.publish("avatar.NAO.command", {"id": id, "type": "motion", "method": method, "parameter": parameter})
+    bus.publish("avatar.NAO.command", {"id": f"{id}{OURS}", "type": "motion", "method": method, "parameter": parameter})
     return sent
 
 

@@ -1,5 +1,6 @@
 """Commands with an id of their own: reported on, performed once, asked after, called off, overtaken."""
 
+import time
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.language.commands import Look, Say, Wake
 from lumen.ports import Perform
-from lumen.robots.ledger import Ledger
+from lumen.robots.ledger import RECENT, Ledger
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import Host
 from tests.exhibits import BODY, messages, project
@@ -221,6 +222,12 @@ def test_a_ledger_keeps_the_newest_and_a_line_that_was_cut_short_harms_nobody(tm
         end.write(b'"n\xff')
     assert Ledger(file).before[-1] == "n\n2499"
     assert len(Ledger(file).before) >= 999
+
+
+def test_what_was_begun_long_before_a_restart_may_come_again(tmp_path: Path) -> None:
+    file = tmp_path / "commands"
+    file.write_text(f'[{time.time() - RECENT - 1}, "1"]\n[{time.time() - 5}, "2"]\n"3"\n', "utf-8")
+    assert Ledger(file).before == ("2",)
 
 
 def test_a_disk_that_takes_nothing_is_told_of_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:

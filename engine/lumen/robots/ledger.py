@@ -3,6 +3,7 @@
 import json
 import logging
 import os
+import time
 from collections import deque
 from contextlib import suppress
 from pathlib import Path
@@ -11,6 +12,8 @@ FILE = "commands.jsonl"
 """Its name, among what an exhibition keeps from run to run."""
 REMEMBERED = 1_000
 """How many ids are kept."""
+RECENT = 60.0
+"""For how long [s] a command may still come again: longer than a broker keeps one and a brain waits for its answer."""
 
 _log = logging.getLogger(__name__)
 
@@ -18,13 +21,15 @@ _log = logging.getLogger(__name__)
 class Ledger:
     """The ids of commands in a file, one to a line, each written before its command is begun; without a file none.
 
-    `before` are those of the process before, the oldest first. The system has what is written, so that a process that
+    `before` are those of the process before that are `RECENT`, the oldest first: who counts its commands from 1 at each
+    start may do so. The system has what is written, so that a process that
     is killed loses nothing; a disk that takes nothing is told of once, and the robot obeys all the same.
     """
 
     def __init__(self, file: Path | None = None) -> None:
         self._file, self._lines, self._told = file, 0, False
-        self.before = tuple(self._read())
+        since = time.time() - RECENT
+        self.before = tuple(id for at, id in self._read() if at >= since)
 
     def note(self, id: str) -> None:
         """This command is begun now."""
@@ -32,24 +37,25 @@ class Ledger:
             return
         if self._lines >= 2 * REMEMBERED:
             self._shorten()
-        self._write(json.dumps(id) + "\n", os.O_APPEND)
+        self._write(_line(time.time(), id), os.O_APPEND)
         self._lines += 1
 
-    def _read(self) -> list[str]:
-        """The ids that are there; a line that was cut short is none."""
-        found: deque[str] = deque(maxlen=REMEMBERED)
+    def _read(self) -> list[tuple[float, str]]:
+        """When each was begun (Unix), and its id; a line that was cut short is none."""
+        found: deque[tuple[float, str]] = deque(maxlen=REMEMBERED)
         if self._file is not None:
             with suppress(OSError), self._file.open(encoding="utf-8", errors="replace") as lines:
                 for line in lines:
                     self._lines += 1
-                    with suppress(ValueError):
-                        found.append(str(json.loads(line)))
+                    with suppress(ValueError, TypeError):
+                        at, id = json.loads(line)
+                        found.append((float(at), str(id)))
         return list(found)
 
     def _shorten(self) -> None:
         self._lines = 0
         kept = self._read()
-        self._write("".join(json.dumps(id) + "\n" for id in kept), os.O_TRUNC)
+        self._write("".join(_line(at, id) for at, id in kept), os.O_TRUNC)
         self._lines = len(kept)
 
     def _write(self, text: str, how: int) -> None:
@@ -65,3 +71,7 @@ class Ledger:
             if not self._told:
                 self._told = True
                 _log.warning("which commands were begun can't be kept in %s: %s", self._file, error.strerror)
+
+
+def _line(at: float, id: str) -> str:
+    return json.dumps([round(at, 3), id]) + "\n"
