@@ -54,6 +54,12 @@ class Ear:
             self.reports.setdefault((message.body["id"].removesuffix(OURS), message.body["state"]), time.monotonic())
             self.changed.notify_all()
 
+    def listen(self, joints: int, patience: float = 60.0) -> None:
+        """Until so many angles have come: by then the first image is drawn, which takes longest."""
+        with self.changed:
+            if not self.changed.wait_for(lambda: len(self.senses[Sense.JOINT]) >= joints, patience):
+                raise SystemExit(f"no angles came within {patience:.0f} s")
+
     def wait(self, id: str, state: str, patience: float = 60.0) -> float:
         """When that command came to that state [s]."""
         with self.changed:
@@ -85,6 +91,7 @@ def dance(bus: Bus, ear: Ear) -> tuple[float, float, list[float]]:
     """Let it dance; when that began and ended [s], and how long each other command waited for its answer [s]."""
     order(bus, "wake", "wakeUp")
     ear.wait("wake", "finished")
+    ear.listen(30)
     order(bus, "dance", "dance")
     began = ear.wait("dance", "started")
     answers, number = [], 0
