@@ -25,8 +25,10 @@ class Touch:
 
     def pressed(self) -> set[str]:
         """Those that are pressed now."""
-        touching = self._data.contact.geom.tolist()
-        at = [(i, pair) for i, pair in enumerate(touching) if not self._solid.isdisjoint(pair)]
+        touching = self._data.contact.geom
+        if self._solid.isdisjoint(touching.ravel().tolist()):
+            return set()
+        at = [(i, pair) for i, pair in enumerate(touching.tolist()) if not self._solid.isdisjoint(pair)]
         return {name for i, pair in at for name, site in self._sites.items() if self._in(site, i, pair)}
 
     def _in(self, site: int, contact: int, pair: list[int]) -> bool:
