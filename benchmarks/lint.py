@@ -145,7 +145,7 @@ def watched() -> list[float]:
             assert process.stdout
             try:
                 answered(process.stdout)
-                time.sleep(1)  # until it watches
+                time.sleep(1)  # until the system tells it of changes; before that it finds them by looking
                 return [saved(root, *edit, n, process.stdout) for n in range(3) for edit in EDITS]
             finally:
                 process.terminate()
