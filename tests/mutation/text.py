@@ -1,6 +1,6 @@
 """A YAML file as text that can be cut and joined at its nodes: a mutant keeps the rest as its author wrote it."""
 
-from lumen.language.diagnostics import Path, Place
+from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.source import Document, parse
 
 
@@ -19,7 +19,7 @@ class Sheet:
         self.leaves = [path for path in document.spans if path and not isinstance(self.value(path), dict | list)]
         self.nodes = [path for path in document.spans if path]
 
-    def value(self, path: Path) -> object:
+    def value(self, path: NodePath) -> object:
         """The plain data at a path."""
         node = self.document.data
         for step in path:
@@ -32,22 +32,22 @@ class Sheet:
         end = self._starts[min(place.end_line, len(self._starts)) - 1] + place.end_column - 1
         return start, start + len(self.text[start:end].rstrip())
 
-    def source(self, path: Path, *, key: bool = False) -> str:
+    def source(self, path: NodePath, *, key: bool = False) -> str:
         """The text of a value or of its key."""
         start, end = self.offsets(self.document.place(path, key=key))
         return self.text[start:end]
 
-    def replaced(self, path: Path, new: str, *, key: bool = False) -> str:
+    def replaced(self, path: NodePath, new: str, *, key: bool = False) -> str:
         """The text with another value or key at a path."""
         start, end = self.offsets(self.document.place(path, key=key))
         return self.text[:start] + new + self.text[end:]
 
-    def entry(self, path: Path) -> tuple[int, int]:
+    def entry(self, path: NodePath) -> tuple[int, int]:
         """Where a key with its value begins and ends."""
         span = self.document.spans[path]
         return self.offsets(span.key or span.value)[0], self.offsets(span.value)[1]
 
-    def without(self, path: Path) -> str:
+    def without(self, path: NodePath) -> str:
         """The text without a key and its value; where they have lines of their own, those go."""
         start, end = self.entry(path)
         line = self.text.rfind("\n", 0, start) + 1

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 
-from lumen.language.diagnostics import Diagnostic, Path, Place, Severity
+from lumen.language.diagnostics import Diagnostic, NodePath, Place, Severity
 
-Placing = Callable[[Path], Place]
+Placing = Callable[[NodePath], Place]
 """Where the node at that path of a behaviour's file stands."""
 
 LOST, CHANGED = "not-carried-over", "carried-over-differently"
@@ -68,15 +68,15 @@ class Report:
         self._foreign.clear()
         return self.findings.diagnostics
 
-    def lost(self, message: str, where: Path, hint: str = "") -> None:
+    def lost(self, message: str, where: NodePath, hint: str = "") -> None:
         """Something is left out."""
         self.findings.lost(self.place(where), message, hint)
 
-    def changed(self, message: str, where: Path, hint: str = "") -> None:
+    def changed(self, message: str, where: NodePath, hint: str = "") -> None:
         """Something is there in another form."""
         self.findings.changed(self.place(where), message, hint)
 
-    def foreign(self, word: str, where: Path) -> None:
+    def foreign(self, word: str, where: NodePath) -> None:
         """Something is there that only Lumen understands."""
         self._foreign.setdefault(word, []).append(self.place(where))
 

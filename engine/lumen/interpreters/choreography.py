@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.motions import Cue, Key, Motion
 
 _SOON = 1e-9
@@ -41,7 +41,7 @@ def at_speed(motion: Motion, speed: float) -> Motion:
     return replace(motion, duration=motion.duration / speed, tracks=tracks, cues=cues)
 
 
-def placed(motion: Motion, where: Path) -> Motion:
+def placed(motion: Motion, where: NodePath) -> Motion:
     """The motion with every key and cue said to stand at `where`: for one that another file plays."""
     tracks = {joint: tuple(replace(key, where=where) for key in keys) for joint, keys in motion.tracks.items()}
     return replace(motion, tracks=tracks, cues=tuple(replace(cue, where=where) for cue in motion.cues))
@@ -58,7 +58,7 @@ def joined(parts: Iterable[tuple[float, Motion]], duration: float) -> Motion:
     return Motion("", duration, {joint: tuple(keys) for joint, keys in tracks.items()}, tuple(cues))
 
 
-def returning(part: Motion, angles: Mapping[str, float], pause: float, where: Path) -> Motion:
+def returning(part: Motion, angles: Mapping[str, float], pause: float, where: NodePath) -> Motion:
     """The motion with a way of `pause` [s] back to `angles` behind it, where it does not stand there already."""
     away = [j for j, keys in part.tracks.items() if j in angles and abs(keys[-1].angle - angles[j]) > 1e-3]
     if not away:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Union  # a recursive alias needs it: `|` does not take names in quotes
 
 from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +17,7 @@ class Expression:
     """The source of an expression, as the author wrote it."""
 
     source: str
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Template:
     """A text that may hold `{{ expression }}`."""
 
     text: str
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 Value = Union[Expression, None, bool, int, float, tuple["Value", ...], Mapping[str, "Value"]]  # noqa: UP007
@@ -120,4 +120,4 @@ class Step:
     """One action and where it stands."""
 
     action: Action
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 TERMS: Mapping[str, tuple[str, ...]] = {
     "triangle": ("left", "top", "right"),
@@ -75,7 +75,7 @@ class Term:
     parameters: tuple[float, ...]
     height: float = 1.0
     formula: str = ""
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ class Variable:
     defuzzifier: str = "centroid"
     resolution: int = 1000
     accuracy: float | None = None
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +147,7 @@ class Rule:
     consequents: tuple[Proposition, ...]
     weight: float = 1.0
     text: str = ""
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +186,7 @@ class InputBinding:
     variable: str
     route: str
     path: tuple[str, ...]
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +202,7 @@ class OutputBinding:
     minimum: float | None = None
     maximum: float | None = None
     angle: float = 1.0
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ MAX_RELATED = 5
 COMPARED = 200
 """Names that a misspelt one is compared with, letter by letter."""
 
-Path = tuple[str | int, ...]
+NodePath = tuple[str | int, ...]
 """Where something stands in a document: keys and indices from its root, as in `("states", "idle", "on", 0)`."""
 
 
@@ -42,7 +42,7 @@ class Place(NamedTuple):
 class Places(Protocol):
     """A document that knows where its nodes stand."""
 
-    def place(self, path: Path, *, key: bool = False) -> Place:
+    def place(self, path: NodePath, *, key: bool = False) -> Place:
         """The place of the node at `path`, or of its key."""
         ...
 

@@ -9,7 +9,7 @@ from enum import StrEnum
 from typing import Any
 
 from lumen.language.actions import Expression, Step, Value
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 
 class Kind(StrEnum):
@@ -40,7 +40,7 @@ class Transition:
     reenter: bool = False
     delay: float | None = None
     exact: bool = False
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class Invoke:
     id: str
     behavior: str
     input: Mapping[str, Value] = field(default_factory=dict)
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ class State:
     invoke: tuple[Invoke, ...] = ()
     output: Value = None
     on_reload: str = ""
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
     @property
     def name(self) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 
 class Interpolation(StrEnum):
@@ -29,7 +29,7 @@ class Key:
     interpolation: Interpolation = Interpolation.MINIMUM_JERK
     handle_in: tuple[float, float] = (0.0, 0.0)
     handle_out: tuple[float, float] = (0.0, 0.0)
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Cue:
     time: float
     kind: str
     value: object
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)

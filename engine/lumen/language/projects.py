@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from lumen.language.controllers import Controller
-from lumen.language.diagnostics import Path, Place, Places
+from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.machines import Machine
 from lumen.language.modules import ModuleSettings
 from lumen.language.motions import Motion
@@ -58,7 +58,7 @@ class Project:
         """The behaviour that runs."""
         return self.behaviors[self.behavior]
 
-    def place(self, file: str, where: Path) -> Place:
+    def place(self, file: str, where: NodePath) -> Place:
         """Where in a file stands what a state, transition, action or scene calls its `where`."""
         document = self.documents.get(file)
         return document.place(where) if document else Place(file)

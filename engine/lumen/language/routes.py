@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 IMAGE, JOINT, SONAR, TACTILE, BATTERY = "image", "joint", "sonar", "tactile", "battery"
 FACE, HEARD, COMMAND, STOP = "face", "heard", "command", "stop"
@@ -90,7 +90,7 @@ class Route:
     carried: Carried = Carried.TELEMETRY
     must_arrive: bool = False
     latency: float = 0.15
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
     def key_for(self, robot: str) -> str:
         """The routing key with the robot's name in it."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ class Scene:
     """One step of a story and where it stands."""
 
     deed: Deed
-    where: Path = field(default=(), compare=False)
+    where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)

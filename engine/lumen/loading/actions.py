@@ -19,7 +19,7 @@ from lumen.language.actions import (
     Wait,
 )
 from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.loading.expressions import Expressions
 from lumen.loading.numbers import finite
 from lumen.loading.source import Report
@@ -36,7 +36,7 @@ class Actions:
         self.angle = ANGLES.get(units.get("angle", "rad"), 1.0)
         self.length = LENGTHS.get(units.get("length", "m"), 1.0)
 
-    def block(self, data: Any, where: Path, *, do: bool = False) -> tuple[Step, ...]:
+    def block(self, data: Any, where: NodePath, *, do: bool = False) -> tuple[Step, ...]:
         """A single action or a list of them; `do` allows `wait` and `parallel`. Broken ones are left out."""
         if isinstance(data, Mapping):
             action = self.action(data, where, do=do)
@@ -44,7 +44,7 @@ class Actions:
         rows = [((*where, i), item) for i, item in enumerate(data or ())]
         return tuple(Step(a, place) for place, item in rows if (a := self.action(item, place, do=do)))
 
-    def action(self, data: Mapping[str, Any], where: Path, *, do: bool = False) -> Action | None:
+    def action(self, data: Mapping[str, Any], where: NodePath, *, do: bool = False) -> Action | None:
         """One action, None (and reported) where it can't be read."""
         if "if" in data:
             return self._if(data, where, do=do)
@@ -59,13 +59,13 @@ class Actions:
             return None
         return self._verb(verb, body, (*where, verb))
 
-    def duration(self, text: Any, where: Path, *, key: bool = False) -> float | None:
+    def duration(self, text: Any, where: NodePath, *, key: bool = False) -> float | None:
         """[s], None (and reported) where the text is no duration."""
         if (length := seconds(text)) is None:
             self.report("bad-duration", where, f"`{text}` is not a duration", hint=DURATION_HINT, key=key)
         return length
 
-    def _verb(self, verb: str, body: Any, where: Path) -> Action | None:
+    def _verb(self, verb: str, body: Any, where: NodePath) -> Action | None:
         match verb:
             case "say":
                 return self._say(body, where)
@@ -91,7 +91,7 @@ class Actions:
                 return Parallel(self.block(body, where, do=True))
         return self._motor(verb, body, where)
 
-    def _motor(self, verb: str, body: Any, where: Path) -> Action | None:
+    def _motor(self, verb: str, body: Any, where: NodePath) -> Action | None:
         if not self._finite(body, where):
             return None
         match verb:
@@ -119,12 +119,12 @@ class Actions:
                 return Language(body)
         return None
 
-    def _finite(self, body: Any, where: Path) -> bool:
+    def _finite(self, body: Any, where: NodePath) -> bool:
         """Whether every number of a motor's action can be gone to; reported where not."""
         numbers = body.items() if isinstance(body, Mapping) else ()
         return all(finite(n, self.report, (*where, k)) for k, n in numbers if isinstance(n, int | float))
 
-    def _say(self, body: Any, where: Path) -> SayText | None:
+    def _say(self, body: Any, where: NodePath) -> SayText | None:
         table = {"any": body} if isinstance(body, str) else body
         texts: dict[str, tuple[Template, ...]] = {}
         for language, said in table.items():
@@ -135,12 +135,12 @@ class Actions:
                 texts["" if language == "any" else language] = read
         return SayText(texts) if texts else None
 
-    def _assign(self, body: Mapping[str, Any], where: Path) -> Assign | None:
+    def _assign(self, body: Mapping[str, Any], where: NodePath) -> Assign | None:
         known = {k: v for k, v in body.items() if self.expressions.key(k, (*where, k))}
         values = {k: self.expressions.value(v, (*where, k)) for k, v in known.items()}
         return Assign(values) if values else None
 
-    def _send(self, body: Any, where: Path) -> Send | None:
+    def _send(self, body: Any, where: NodePath) -> Send | None:
         event, data = _event(body)
         options = {} if isinstance(body, str) else body
         delay = self.duration(options["delay"], (*where, "delay")) if "delay" in options else 0.0
@@ -148,7 +148,7 @@ class Actions:
             return None
         return Send(event, self.expressions.value(data, (*where, "data")), delay, options.get("id", ""))
 
-    def _if(self, data: Mapping[str, Any], where: Path, *, do: bool) -> If | None:
+    def _if(self, data: Mapping[str, Any], where: NodePath, *, do: bool) -> If | None:
         guard = self.expressions.expression(data["if"], (*where, "if"))
         then = self.block(data.get("then"), (*where, "then"), do=do)
         otherwise = self.block(data.get("else"), (*where, "else"), do=do)

@@ -5,7 +5,7 @@ import json
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.machines import Answer, Kind, Machine, State
 from lumen.loading.actions import Actions
 from lumen.loading.expressions import Expressions
@@ -117,7 +117,7 @@ class _Builder:
         begin = _children(parent) if parent.kind is Kind.PARALLEL else self.initial(parent)
         return begin if entry.path not in begin else _children(parent)[:1]
 
-    def within(self, home: Entry, source: Entry, body: Any, where: Path, written: Any = None) -> list[Entry]:
+    def within(self, home: Entry, source: Entry, body: Any, where: NodePath, written: Any = None) -> list[Entry]:
         """The states named, all of them below `home`; none (and reported) where one is wrong."""
         found = self.transitions.targets(source, body, where, written) or []
         for state in found:
@@ -150,7 +150,7 @@ class _Builder:
         key = name.removeprefix(f"{CONTEXT}.")
         return entry.path if entry else name if key != name and key in (self.data.get("context") or {}) else ""
 
-    def unknown(self, name: str, where: Path) -> None:
+    def unknown(self, name: str, where: NodePath) -> None:
         """Report a name under `renamed` that nothing has."""
         head, _, key = name.partition(".")
         if head == CONTEXT:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.language.controllers import InputBinding, OutputBinding, Variable
-from lumen.language.diagnostics import Path, Severity, did_you_mean
+from lumen.language.diagnostics import NodePath, Severity, did_you_mean
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES
 
@@ -36,7 +36,7 @@ class Bindings:
                 yield from self.output(self.usable[name], spec)
 
     def output(self, variable: Variable, spec: Mapping[str, Any]) -> Iterator[OutputBinding]:
-        path: Path = ("bind", "outputs", variable.name)
+        path: NodePath = ("bind", "outputs", variable.name)
         unit = ANGLES.get(variable.unit, self.angle)
         low = high = None
         if "limits" in spec:

@@ -6,7 +6,7 @@ from itertools import pairwise
 from math import inf, isfinite
 from typing import Any
 
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body, Camera, CoupledLimit, Joint, Link, Ultrasound
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES, LENGTHS
@@ -105,7 +105,7 @@ class _Builder:
         unit = self.unit(name)
         return Joint(name, low * unit, high * unit, spec.get("speed", inf) * unit, spec.get("effort", inf))
 
-    def known(self, name: str, path: Path) -> bool:
+    def known(self, name: str, path: NodePath) -> bool:
         """Whether that joint exists, saying so where it does not."""
         if name in self.joints:
             return True
@@ -138,7 +138,7 @@ class _Builder:
         return {a: b for (a, b), good in zip(pairs, known, strict=True) if good}
 
     def coupled(self, index: int, spec: Mapping[str, Any]) -> CoupledLimit | None:
-        path: Path = ("coupled", index)
+        path: NodePath = ("coupled", index)
         if not {"joint", "on", "rows"} <= spec.keys():
             return None
         joint, on, rows = spec["joint"], spec["on"], spec["rows"]
@@ -162,7 +162,7 @@ class _Builder:
         return found
 
     def posture(self, posture: str, spec: Mapping[str, float]) -> dict[str, float]:
-        path: Path = ("postures", posture)
+        path: NodePath = ("postures", posture)
         for name in spec:
             self.known(name, (*path, name))
         missing = [n for n in self.joints if n not in spec]
@@ -172,7 +172,7 @@ class _Builder:
             self.report("incomplete-posture", path, f"`{posture}` says nothing of {names}", hint=hint, key=True)
         return {n: self.angle_of(n, spec[n], (*path, n)) for n in self.joints if n in spec}
 
-    def angle_of(self, name: str, value: float, path: Path) -> float:
+    def angle_of(self, name: str, value: float, path: NodePath) -> float:
         """The angle [rad] inside the joint's limits; reported where the file's lies outside."""
         joint, unit = self.joints[name], self.unit(name)
         angle = value * unit

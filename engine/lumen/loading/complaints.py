@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.language.diagnostics import Path, did_you_mean, nearest
+from lumen.language.diagnostics import NodePath, did_you_mean, nearest
 from lumen.loading.wording import Error, describe, node, wording
 
 MOST_KEYS = 50
@@ -20,11 +20,11 @@ class Complaint:
     """
 
     code: str
-    path: Path
+    path: NodePath
     message: str
     hint: str
-    about: Path
-    doomed: Path | None
+    about: NodePath
+    doomed: NodePath | None
     key: bool = False
     missing: str = ""
     suggestion: str = ""
@@ -53,12 +53,12 @@ def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
         yield _wrong(error, path)
 
 
-def _spared(path: Path) -> Path | None:
+def _spared(path: NodePath) -> NodePath | None:
     """The node to take out, but never the root."""
     return path or None
 
 
-def _missing(error: Error, path: Path, schema: Any) -> Complaint:
+def _missing(error: Error, path: NodePath, schema: Any) -> Complaint:
     """A key that is not there, told in the words of that schema, which describes it."""
     missing = next(key for key in error.validator_value if key not in error.instance and f"'{key}'" in error.message)
     hint = describe(_property(schema, missing)) or f"write `{missing}:` here"
@@ -66,7 +66,7 @@ def _missing(error: Error, path: Path, schema: Any) -> Complaint:
     return Complaint("missing-key", (*path, missing), message, hint, path, _spared(path), missing=missing)
 
 
-def _dependents(error: Error, path: Path) -> Iterator[Complaint]:
+def _dependents(error: Error, path: NodePath) -> Iterator[Complaint]:
     for key, needs in error.validator_value.items():
         for missing in needs:
             if key in error.instance and missing not in error.instance:
@@ -75,7 +75,7 @@ def _dependents(error: Error, path: Path) -> Iterator[Complaint]:
                 yield Complaint("missing-key", (*path, key), message, hint, path, (*path, key), True, missing)
 
 
-def _unknown_keys(error: Error, path: Path, root: Any) -> Iterator[Complaint]:
+def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint]:
     known = list(error.schema.get("properties", ()))
     patterns = error.schema.get("patternProperties", ())
     free = [k for k in known if k not in error.instance] or known
@@ -112,7 +112,7 @@ def _owner(key: str, root: Any) -> str:
     return f"an {owner}" if owner[:1] in tuple("aeiou") else f"a {owner}" if owner else ""
 
 
-def _bad_key(error: Error, path: Path) -> Complaint:
+def _bad_key(error: Error, path: NodePath) -> Complaint:
     here = (*path, error.instance)
     if error.validator == "enum":
         hint = did_you_mean(error.instance, map(str, error.validator_value), "allowed here:")
@@ -121,7 +121,7 @@ def _bad_key(error: Error, path: Path) -> Complaint:
     return Complaint("wrong-key", here, f"`{error.instance}` can't be a key of {node(path)}", hint, path, here, True)
 
 
-def _verbs(error: Error, path: Path) -> Complaint:
+def _verbs(error: Error, path: NodePath) -> Complaint:
     """An action, or a step of a story, that does nothing or two things."""
     keys = list(error.instance)
     if len(keys) > 1:
@@ -132,7 +132,7 @@ def _verbs(error: Error, path: Path) -> Complaint:
     return Complaint("one-verb", path, message, "write the verb, as in `say: Hello`", path, _spared(path))
 
 
-def _wrong(error: Error, path: Path) -> Complaint:
+def _wrong(error: Error, path: NodePath) -> Complaint:
     code = "wrong-type" if error.validator == "type" else "wrong-value"
     message, hint = wording(error, path)
     return Complaint(code, path, message, hint, path, path if code == "wrong-type" else _spared(path))

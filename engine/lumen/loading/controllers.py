@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from lumen.language.controllers import Controller, Tracking
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.loading.bindings import Bindings
 from lumen.loading.numbers import without_extremes
 from lumen.loading.rulebook import Rulebook
@@ -39,7 +39,7 @@ def build_controller(data: Any, report: Report, *, name: str, into: type[C] = Co
     )
 
 
-def _endless(path: Path) -> bool:
+def _endless(path: NodePath) -> bool:
     """Whether a number there may be infinite: ranges and terms have their own rules."""
     return "terms" in path or "range" in path
 

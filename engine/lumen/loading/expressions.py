@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.interpreters.expressions import Finding, check_expression, check_template
 from lumen.language.actions import Expression, Template, Value
-from lumen.language.diagnostics import Diagnostic, Path, Place, did_you_mean
+from lumen.language.diagnostics import Diagnostic, NodePath, Place, did_you_mean
 from lumen.loading.numbers import finite
 from lumen.loading.scalars import within
 from lumen.loading.source import Document, Report
@@ -27,16 +27,16 @@ class Expressions:
             "states": tuple(states),
         }
 
-    def expression(self, source: str, where: Path) -> Expression | None:
+    def expression(self, source: str, where: NodePath) -> Expression | None:
         """The expression, None (and reported) where it can't be read."""
         sound = self._sound(check_expression(source, **self.names), source, where)
         return Expression(source, where) if sound else None
 
-    def template(self, text: str, where: Path) -> Template | None:
+    def template(self, text: str, where: NodePath) -> Template | None:
         """The text with its `{{ expressions }}`, None (and reported) where one can't be read."""
         return Template(text, where) if self._sound(check_template(text, **self.names), text, where) else None
 
-    def value(self, data: Any, where: Path) -> Value:
+    def value(self, data: Any, where: NodePath) -> Value:
         """Every text an expression, lists and maps read through; None in place of what can't be read.
 
         A number is finite: it goes into messages and snapshots, and JSON has no other.
@@ -54,7 +54,7 @@ class Expressions:
                 return data if finite(data, self.report, where) else None
         return None
 
-    def key(self, key: str, where: Path) -> bool:
+    def key(self, key: str, where: NodePath) -> bool:
         """Whether the context declares this key; reported where not."""
         if key in self.keys:
             return True
@@ -64,7 +64,7 @@ class Expressions:
         self.report("unknown-context-key", where, message, hint=hint, key=True, cause=cause)
         return False
 
-    def _sound(self, findings: Iterable[Finding], source: str, where: Path) -> bool:
+    def _sound(self, findings: Iterable[Finding], source: str, where: NodePath) -> bool:
         """Whether nothing was found but fields that may be missing: those depend on who calls."""
         found = [finding for finding in findings if finding.code != "unguarded-field"]
         for finding in found:
@@ -83,7 +83,7 @@ def cause_of(file: str, finding: Finding) -> str:
     )
 
 
-def place_within(document: Document, path: Path, source: str, offset: int, length: int) -> Place:
+def place_within(document: Document, path: NodePath, source: str, offset: int, length: int) -> Place:
     """The place of some characters of the text at `path`, however it is written; else of the whole text."""
     place = document.place(path)
     lines = document.text.splitlines()

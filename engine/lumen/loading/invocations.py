@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, Kind
 from lumen.loading.expressions import Expressions
 from lumen.loading.outline import Entry, Outline
@@ -21,7 +21,7 @@ def invocations(entry: Entry, expressions: Expressions) -> tuple[Invoke, ...]:
     return tuple(found)
 
 
-def invoked(entry: Entry) -> Iterator[tuple[Path, str, dict[str, Any]]]:
+def invoked(entry: Entry) -> Iterator[tuple[NodePath, str, dict[str, Any]]]:
     """Each item under `invoke`, with its place and its id."""
     body, where = entry.data.get("invoke"), (*entry.where, "invoke")
     rows = [((*where, i), row) for i, row in enumerate(body)] if isinstance(body, list) else [(where, body)]
@@ -32,12 +32,12 @@ def invoked(entry: Entry) -> Iterator[tuple[Path, str, dict[str, Any]]]:
 
 def check_ids(outline: Outline, report: Report) -> None:
     """Report where two behaviours that can run at the same time have the same id."""
-    found: dict[str, list[tuple[Entry, Path]]] = {}
+    found: dict[str, list[tuple[Entry, NodePath]]] = {}
     for entry in outline.entries.values():
         for where, id, row in invoked(entry):
             found.setdefault(id, []).append((entry, (*where, "id" if "id" in row else "behavior")))
     for id, uses in found.items():
-        said: set[Path] = set()
+        said: set[NodePath] = set()
         for (one, _), (other, where) in combinations(uses, 2):
             if where not in said and _together(one, other):
                 said.add(where)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.interpreters.choreography import at_speed, joined, mirrored, placed
-from lumen.language.diagnostics import Path, did_you_mean, has_errors
+from lumen.language.diagnostics import NodePath, did_you_mean, has_errors
 from lumen.language.motions import Cue, Interpolation, Key, Motion
 from lumen.loading.poses import PoseReader
 from lumen.loading.source import Report
@@ -32,7 +32,7 @@ class KeyframeReader:
     motions: Mapping[str, Motion]
     broken: Collection[str] = ()
 
-    def read(self, items: list[Any], path: Path, interpolation: Interpolation) -> Motion:
+    def read(self, items: list[Any], path: NodePath, interpolation: Interpolation) -> Motion:
         """The motion that a list of keyframes and blocks makes, its times from the list's own beginning."""
         parts: list[tuple[float, Motion]] = []
         now, moved, count = 0.0, 0.0, 0
@@ -59,7 +59,7 @@ class KeyframeReader:
             moved = now if part.tracks else moved
         return joined(parts, now)
 
-    def _keyframe(self, item: Mapping[str, Any], here: Path, interpolation: Interpolation) -> Motion:
+    def _keyframe(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> Motion:
         """One keyframe at time 0."""
         how = Interpolation(item.get("interpolation", interpolation))
         handles = self.poses.handles(item, here)
@@ -80,7 +80,7 @@ class KeyframeReader:
         part = Motion("", 0.0, tracks, cues)
         return mirrored(part) if item.get("mirror") is True else part
 
-    def _block(self, item: Mapping[str, Any], here: Path, interpolation: Interpolation) -> Motion:
+    def _block(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> Motion:
         """A block or another motion, as often, as fast and on the side that the item says."""
         for word in (
             "joints",
@@ -104,7 +104,7 @@ class KeyframeReader:
             part = at_speed(part, item["speed"])
         return self._repeated(part, item.get("repeat", 1), item.get("mirror", False), here)
 
-    def _played(self, name: str, here: Path) -> Motion:
+    def _played(self, name: str, here: NodePath) -> Motion:
         path = (*here, "play")
         if name in self.motions:
             return placed(self.motions[name], path)
@@ -115,7 +115,7 @@ class KeyframeReader:
             self.report("unknown-motion", path, f"there is no motion `{name}`", hint=hint)
         return Motion(name, 0.0, {})
 
-    def _repeated(self, part: Motion, times: int, mirror: bool | str, here: Path) -> Motion:
+    def _repeated(self, part: Motion, times: int, mirror: bool | str, here: NodePath) -> Motion:
         if times > 1 and part.duration <= 0.0:
             if has_errors(self.report.diagnostics):
                 return part  # what would take its time is broken
@@ -129,7 +129,7 @@ class KeyframeReader:
         rounds = [other if mirror is True or (mirror and i % 2) else part for i in range(times)]
         return joined(((i * part.duration, round) for i, round in enumerate(rounds)), part.duration * times)
 
-    def _moment(self, item: Mapping[str, Any], here: Path) -> float | None:
+    def _moment(self, item: Mapping[str, Any], here: NodePath) -> float | None:
         """When an item begins, from the beginning of its list [s]; None where it says nothing that can be used."""
         if "at" in item and "beat" in item:
             hint = "keep one of them"
@@ -148,13 +148,13 @@ class KeyframeReader:
             return None
         return item["beat"] * self.beat if self.poses.number(item["beat"], (*here, "beat")) else None
 
-    def _no_time(self, item: Mapping[str, Any], here: Path) -> None:
+    def _no_time(self, item: Mapping[str, Any], here: NodePath) -> None:
         gone = {(*here, key) for key in ("at", "beat", "keyframes", "play")}
         if "at" not in item and "beat" not in item and not self.report.pruned & gone:
             hint = "write `at: 1.5s`" if self.beat is None else "write `beat: 4` or `at: 1.5s`"
             self.report("no-time", here, "this keyframe does not say when", hint=hint)
 
-    def _too_early(self, item: Mapping[str, Any], here: Path, begin: float, now: float) -> None:
+    def _too_early(self, item: Mapping[str, Any], here: NodePath, begin: float, now: float) -> None:
         path = (*here, "at") if "at" in item else (*here, "beat") if "beat" in item else here
         if begin <= 0.0:
             message, hint = "no joint can be there at once", "give the robot time: begin at 0.5s or later"
@@ -165,7 +165,7 @@ class KeyframeReader:
         cause = f"{self.report.document.file} {here[:-1]} until {now}"
         self.report("time-not-increasing", path, message, hint=hint, cause=cause)
 
-    def _too_many(self, here: Path) -> None:
+    def _too_many(self, here: NodePath) -> None:
         hint = "use fewer keyframes, joints or rounds"
         self.report("too-many-keys", here, f"the motion would have more than {MAX_KEYS:,} keys", hint=hint)
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.interpreters.statechart.types import fits, refusal, type_checks
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Machine
 from lumen.loading.messages import examine
 from lumen.loading.numbers import finite
@@ -28,7 +28,7 @@ def check_memory(machine: Machine, report: Report) -> list[tuple[str, str]]:
     return unsound
 
 
-def _numbers(value: Any, path: Path) -> Iterator[tuple[Path, float]]:
+def _numbers(value: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
     if isinstance(value, int | float) and not isinstance(value, bool):
         yield path, value
     items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
-from lumen.language.diagnostics import Diagnostic, Path, Place
+from lumen.language.diagnostics import Diagnostic, NodePath, Place
 from lumen.loading.schema import schema_faults
 from lumen.loading.source import MAX_DEPTH, Document, Report, merge_conflict, parse
 
@@ -63,7 +63,7 @@ def _depth(data: Any) -> int:
     return 1 + max(map(_depth, inner), default=0)
 
 
-def examine(schema: Any, report: Report, where: Path = ()) -> bool:
+def examine(schema: Any, report: Report, where: NodePath = ()) -> bool:
     """Whether the JSON Schema at `where` in the report's document is sound; what is wrong with it is reported."""
     before = len(report.diagnostics)
     for found in schema_faults(schema):
@@ -73,7 +73,7 @@ def examine(schema: Any, report: Report, where: Path = ()) -> bool:
     return len(report.diagnostics) == before
 
 
-def _refer(data: Any, report: Report, where: Path) -> None:
+def _refer(data: Any, report: Report, where: NodePath) -> None:
     """What the schema of schemas can't tell: patterns, and where references lead."""
     for inner, key, text in _texts(data):
         path = (*where, *inner)
@@ -89,9 +89,9 @@ def _refer(data: Any, report: Report, where: Path) -> None:
             report("endless-reference", path, f"`{text}` leads back to itself, for the same value", hint=hint)
 
 
-def _texts(data: Any) -> Iterator[tuple[Path, str, str]]:
+def _texts(data: Any) -> Iterator[tuple[NodePath, str, str]]:
     """Every text of a schema under its key, and the keys of `patternProperties` as texts."""
-    waiting: list[tuple[Path, Any]] = [((), data)]
+    waiting: list[tuple[NodePath, Any]] = [((), data)]
     while waiting:
         path, item = waiting.pop()
         if isinstance(item, dict):
@@ -107,7 +107,7 @@ def _texts(data: Any) -> Iterator[tuple[Path, str, str]]:
             waiting += [((*path, i), value) for i, value in enumerate(item)]
 
 
-def _pattern(path: Path, text: str, report: Report) -> None:
+def _pattern(path: NodePath, text: str, report: Report) -> None:
     try:
         re.compile(text)
     except (re.error, RecursionError, OverflowError) as error:

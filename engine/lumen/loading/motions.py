@@ -7,7 +7,7 @@ from graphlib import CycleError, TopologicalSorter
 from typing import Any, TypeVar
 
 from lumen.interpreters.choreography import at_speed, mirrored, returning
-from lumen.language.diagnostics import Path, has_errors
+from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.motions import Interpolation, Motion
 from lumen.language.robots import Body
 from lumen.loading.keyframes import KeyframeReader
@@ -107,9 +107,9 @@ def _finished(part: Motion, data: Mapping[str, Any], poses: PoseReader, name: st
     return into(**values)
 
 
-def _played(data: Any) -> Iterator[tuple[str, Path]]:
+def _played(data: Any) -> Iterator[tuple[str, NodePath]]:
     """Every motion that a file plays, and where."""
-    waiting: list[tuple[Any, Path]] = [(data, ())]
+    waiting: list[tuple[Any, NodePath]] = [(data, ())]
     while waiting:
         item, path = waiting.pop()
         if isinstance(item, Mapping):

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from math import isfinite, isinf, isnan
 from typing import Any
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.loading.pruning import prune
 from lumen.loading.source import Report
 
@@ -12,7 +12,7 @@ LEAST, GREATEST = 1e-12, 1e12
 """A number of a controller is 0, or its size lies between these: their squares and quotients are floats as well."""
 
 
-def finite(value: float, report: Report, path: Path) -> bool:
+def finite(value: float, report: Report, path: NodePath) -> bool:
     """Whether that is an ordinary number; reported where it is not."""
     try:
         sound = isfinite(value)
@@ -24,7 +24,7 @@ def finite(value: float, report: Report, path: Path) -> bool:
     return sound
 
 
-def without_extremes(data: Any, report: Report, endless: Callable[[Path], bool]) -> Any:
+def without_extremes(data: Any, report: Report, endless: Callable[[NodePath], bool]) -> Any:
     """The data of the report's document without the keys whose numbers can't be counted with, each of them reported.
 
     `endless` tells where a number may be infinite.
@@ -36,7 +36,7 @@ def without_extremes(data: Any, report: Report, endless: Callable[[Path], bool])
     return report.document.data
 
 
-def _usable(number: float, report: Report, path: Path, endless: Callable[[Path], bool]) -> bool:
+def _usable(number: float, report: Report, path: NodePath, endless: Callable[[NodePath], bool]) -> bool:
     if isinstance(number, float) and isnan(number):
         message = "`.nan` is not a number that a controller can use"
         report("not-a-number", path, message, hint="write a number")
@@ -53,7 +53,7 @@ def _usable(number: float, report: Report, path: Path, endless: Callable[[Path],
     return False
 
 
-def _numbers(data: Any, path: Path) -> Iterator[tuple[Path, float]]:
+def _numbers(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
     if isinstance(data, int | float) and not isinstance(data, bool):
         yield path, data
     children = data.items() if isinstance(data, Mapping) else enumerate(data) if isinstance(data, list) else ()
@@ -61,7 +61,7 @@ def _numbers(data: Any, path: Path) -> Iterator[tuple[Path, float]]:
         yield from _numbers(child, (*path, key))
 
 
-def _key(path: Path) -> Path:
+def _key(path: NodePath) -> NodePath:
     """The key that a number stands under: a list without it would say something else."""
     while not isinstance(path[-1], str):
         path = path[:-1]

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.language.diagnostics import COMPARED, Path, did_you_mean, nearest
+from lumen.language.diagnostics import COMPARED, NodePath, did_you_mean, nearest
 from lumen.language.machines import Kind
 from lumen.loading.source import Report
 
@@ -16,7 +16,7 @@ class Entry:
     path: str
     parent: "Entry | None"
     data: Mapping[str, Any]
-    where: Path
+    where: NodePath
     kind: Kind
     alias: str = ""
     children: "dict[str, Entry]" = field(default_factory=dict)
@@ -50,7 +50,7 @@ class Outline:
         for entry in self.entries.values():
             self._alias(entry)
 
-    def resolve(self, source: Entry, target: str, where: Path, written: str = "") -> Entry | None:
+    def resolve(self, source: Entry, target: str, where: NodePath, written: str = "") -> Entry | None:
         """The state that `target` means in a transition of `source`; reported where there is none.
 
         `written` is how the file has it, where that differs. A state that was itself reported as broken is not missed
@@ -66,7 +66,7 @@ class Outline:
             self._unknown(source, target, where, written or target)
         return found
 
-    def _unknown(self, source: Entry, target: str, where: Path, written: str) -> None:
+    def _unknown(self, source: Entry, target: str, where: NodePath, written: str) -> None:
         self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
         message = f"there is no state `{written}` to go to from {source.title}"
         if len(self.report.missed) > COMPARED:  # what was meant by each would take long to find out
@@ -113,7 +113,7 @@ class Outline:
         head, _, rest = name.partition(".")
         return _descend(self.aliases[head], rest) if rest and head in self.aliases else None
 
-    def _enter(self, path: str, parent: Entry | None, data: Mapping[str, Any], where: Path) -> Entry:
+    def _enter(self, path: str, parent: Entry | None, data: Mapping[str, Any], where: NodePath) -> Entry:
         entry = Entry(path, parent, data, where, _kind(data), "" if parent is None else data.get("id", ""))
         self.entries[path] = entry
         for key, child in (data.get("states") or {}).items():

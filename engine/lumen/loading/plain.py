@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.diagnostics import Diagnostic, Path, Place
+from lumen.language.diagnostics import Diagnostic, NodePath, Place
 from lumen.loading.source import MAX_DEPTH, MAX_NODES, Document, Span
 
 
@@ -21,11 +21,11 @@ def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnost
 class _Reader:
     def __init__(self, name: str) -> None:
         self.name = name
-        self.spans: dict[Path, Span] = {}
+        self.spans: dict[NodePath, Span] = {}
         self.diagnostics: list[Diagnostic] = []
         self.full = False
 
-    def read(self, value: Any, path: Path) -> Any:
+    def read(self, value: Any, path: NodePath) -> Any:
         place = self.place(path)
         self.spans[path] = Span(place, place)
         if len(path) > MAX_DEPTH or len(self.spans) > MAX_NODES:
@@ -42,7 +42,7 @@ class _Reader:
         self.say("wrong-type", path, f"a {type(value).__name__} can't stand in a file", hint)
         return None
 
-    def overflow(self, path: Path) -> None:
+    def overflow(self, path: NodePath) -> None:
         if not self.full:
             self.full = True
             what = f"deeper than {MAX_DEPTH} levels" if len(path) > MAX_DEPTH else f"more than {MAX_NODES:,} values"
@@ -50,14 +50,14 @@ class _Reader:
                 "too-large", path, f"this is too large to be read: {what}", "use fewer levels, and no dict in itself"
             )
 
-    def is_key(self, key: object, path: Path) -> bool:
+    def is_key(self, key: object, path: NodePath) -> bool:
         if not isinstance(key, str):
             self.say("wrong-type", path, f"the key {key!r} is not a text", "put quotes around it")
         return isinstance(key, str)
 
-    def say(self, code: str, path: Path, message: str, hint: str) -> None:
+    def say(self, code: str, path: NodePath, message: str, hint: str) -> None:
         self.diagnostics.append(Diagnostic(code, message, self.place(path), hint))
 
-    def place(self, path: Path) -> Place:
+    def place(self, path: NodePath) -> Place:
         shown = ".".join(map(str, path[:12])) + (" …" if len(path) > 12 else "")
         return Place(f"{self.name} ({shown})" if path else self.name)

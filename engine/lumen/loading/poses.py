@@ -6,12 +6,12 @@ from math import isfinite, pi
 from typing import Any
 
 from lumen.interpreters.choreography import mirrored_joint
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
 from lumen.loading.source import Report
 from lumen.loading.units import ANGLES, seconds
 
-Angles = dict[str, tuple[float, Path]]
+Angles = dict[str, tuple[float, NodePath]]
 """For every joint its angle [rad; a hand 0..1] and where it stands in the file."""
 
 Handles = dict[str, tuple[tuple[float, float], tuple[float, float]]]
@@ -30,13 +30,13 @@ class PoseReader:
     factor: float
     poses: dict[str, Angles] = field(default_factory=dict)
 
-    def define(self, poses: Mapping[str, Any], path: Path) -> None:
+    def define(self, poses: Mapping[str, Any], path: NodePath) -> None:
         """Learn the poses under `poses:`; one may build on those above it."""
         for name, pose in poses.items():
             angles = self.read(pose, (*path, name))
             self.poses[name] = _mirrored(angles) if pose.get("mirror") else angles
 
-    def read(self, item: Mapping[str, Any], here: Path) -> Angles:
+    def read(self, item: Mapping[str, Any], here: NodePath) -> Angles:
         """The joints of a keyframe or pose: posture, then poses, then `joints` and `hands`, the later ones winning."""
         angles: Angles = {}
         if "posture" in item:
@@ -48,7 +48,7 @@ class PoseReader:
         own |= self._hands(item.get("hands") or {}, (*here, "hands"))
         return self._shared(angles | own, own)
 
-    def posture(self, name: str, path: Path) -> Mapping[str, float] | None:
+    def posture(self, name: str, path: NodePath) -> Mapping[str, float] | None:
         """The angles of a posture [rad], None (and a diagnostic) where the robot does not know it."""
         if name in self.body.postures:
             return self.body.postures[name]
@@ -56,13 +56,13 @@ class PoseReader:
         self.report("unknown-posture", path, f"there is no posture `{name}`", hint=hint, cause=f"posture {name}")
         return None
 
-    def number(self, value: float, path: Path) -> bool:
+    def number(self, value: float, path: NodePath) -> bool:
         """Whether a number is one to count with."""
         if not isfinite(value):
             self.report("not-a-number", path, f"`{value}` can't be used here", hint="write an ordinary number")
         return isfinite(value)
 
-    def handles(self, item: Mapping[str, Any], here: Path) -> Handles:
+    def handles(self, item: Mapping[str, Any], here: NodePath) -> Handles:
         """The Bezier handles of a keyframe, as (dt [s], da [rad]) before and after the key."""
         found: Handles = {}
         for joint, sides in (item.get("handles") or {}).items():
@@ -71,24 +71,24 @@ class PoseReader:
                 found[joint] = self._handle(joint, sides, "in", path), self._handle(joint, sides, "out", path)
         return found
 
-    def _handle(self, joint: str, sides: Mapping[str, Any], side: str, path: Path) -> tuple[float, float]:
+    def _handle(self, joint: str, sides: Mapping[str, Any], side: str, path: NodePath) -> tuple[float, float]:
         handle = sides.get(side) or {}
         dt, da = seconds(handle.get("before" if side == "in" else "after")), handle.get("angle", 0)
         if dt is None or not self.number(da, (*path, side, "angle")):
             return 0.0, 0.0
         return (-dt if side == "in" else dt), da * (1.0 if joint in self.body.hands else self.factor)
 
-    def _posture(self, name: str, path: Path) -> Angles:
+    def _posture(self, name: str, path: NodePath) -> Angles:
         return {joint: (angle, path) for joint, angle in (self.posture(name, path) or {}).items()}
 
-    def _pose(self, name: str, path: Path) -> Angles:
+    def _pose(self, name: str, path: NodePath) -> Angles:
         if name not in self.poses and ("poses",) not in self.report.pruned:
             hint = did_you_mean(name, self.poses, "`poses` has")
             cause = f"{self.report.document.file} pose {name}"
             self.report("unknown-pose", path, f"there is no pose `{name}`", hint=hint, cause=cause)
         return {joint: (angle, path) for joint, (angle, _) in self.poses.get(name, {}).items()}
 
-    def _joints(self, joints: Mapping[str, float], path: Path) -> Angles:
+    def _joints(self, joints: Mapping[str, float], path: NodePath) -> Angles:
         found: Angles = {}
         for name, value in joints.items():
             here = (*path, name)
@@ -100,7 +100,7 @@ class PoseReader:
                 found[name] = value * self.factor, here
         return found
 
-    def _known(self, joint: str, path: Path) -> bool:
+    def _known(self, joint: str, path: NodePath) -> bool:
         if joint not in self.body.joints:
             hint = did_you_mean(joint, self.body.joints, f"{self.body.name} has")
             self.report(
@@ -108,7 +108,7 @@ class PoseReader:
             )
         return joint in self.body.joints
 
-    def _inside(self, name: str, value: float, path: Path) -> bool:
+    def _inside(self, name: str, value: float, path: NodePath) -> bool:
         joint = self.body.joints[name]
         if self._fits(name, value * self.factor):
             return True
@@ -130,7 +130,7 @@ class PoseReader:
         joint = self.body.joints[name]
         return joint.minimum - TOLERANCE <= angle <= joint.maximum + TOLERANCE
 
-    def _hands(self, hands: Mapping[str, float], path: Path) -> Angles:
+    def _hands(self, hands: Mapping[str, float], path: NodePath) -> Angles:
         found: Angles = {}
         for side, value in hands.items():
             if self.number(value, (*path, side)):
@@ -139,7 +139,7 @@ class PoseReader:
                         found |= self._hand(joint, value, (*path, side))
         return found
 
-    def _hand(self, joint: str, value: float, path: Path) -> Angles:
+    def _hand(self, joint: str, value: float, path: NodePath) -> Angles:
         if 0.0 <= value <= 1.0:
             return {joint: (value, path)}
         hint = "0 is closed, 1 is open"

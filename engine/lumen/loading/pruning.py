@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.loading.source import Document, Report, Span
 
 
-def prune(report: Report, doomed: set[Path]) -> None:
+def prune(report: Report, doomed: set[NodePath]) -> None:
     """Take these nodes out of the report's document, and remember what was lost with them.
 
     Items of lists move up, and their places with them.
@@ -27,12 +27,12 @@ def prune(report: Report, doomed: set[Path]) -> None:
 class _Copy:
     """A copy of a document's data without what is doomed; `moved` maps old paths to new ones."""
 
-    def __init__(self, document: Document, doomed: set[Path]) -> None:
+    def __init__(self, document: Document, doomed: set[NodePath]) -> None:
         self._document, self._doomed = document, doomed
-        self.spans: dict[Path, Span] = {}
-        self.moved: dict[Path, Path] = {}
+        self.spans: dict[NodePath, Span] = {}
+        self.moved: dict[NodePath, NodePath] = {}
 
-    def of(self, data: Any, old: Path, new: Path) -> Any:
+    def of(self, data: Any, old: NodePath, new: NodePath) -> Any:
         """The copy of what stood at `old`, its places under `new`."""
         self.moved[old] = new
         if old in self._document.spans:
@@ -46,7 +46,7 @@ class _Copy:
         return data
 
 
-def _at(data: Any, path: Path) -> Any:
+def _at(data: Any, path: NodePath) -> Any:
     for step in path:
         data = data[step]
     return data

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.controllers import Activation, Block, Operators, Rule, Variable
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.loading.rules import Mention, RuleSyntaxError, Word, parse_rule
 from lumen.loading.source import Report
 from lumen.loading.words import report_word
@@ -43,11 +43,11 @@ class Rulebook:
         activation = operators.get("activation") or {}
         return Operators(**given, activation=Activation(**activation) if "method" in activation else Activation())
 
-    def rules(self, path: Path, texts: Any) -> list[Rule]:
+    def rules(self, path: NodePath, texts: Any) -> list[Rule]:
         found = (self.rule((*path, i), text) for i, text in enumerate(texts))
         return [rule for rule in found if rule]
 
-    def rule(self, path: Path, text: str) -> Rule | None:
+    def rule(self, path: NodePath, text: str) -> Rule | None:
         try:
             said = parse_rule(text)
         except RuleSyntaxError as error:
@@ -56,7 +56,7 @@ class Rulebook:
         known = [self.mentioned(path, text, mention) for mention in said.mentions]
         return Rule(said.antecedent, said.consequents, said.weight, text, path) if all(known) else None
 
-    def mentioned(self, path: Path, text: str, mention: Mention) -> bool:
+    def mentioned(self, path: NodePath, text: str, mention: Mention) -> bool:
         """Whether both words of a proposition name something usable."""
         word, term = mention.variable, mention.term
         side = "outputs" if mention.concluded or word.text not in self.data["inputs"] else "inputs"
@@ -72,7 +72,7 @@ class Rulebook:
         variable = self.built[side].get(word.text)
         return variable is not None and (term is None or term.text in variable.terms)
 
-    def unknown_variable(self, path: Path, text: str, mention: Mention) -> None:
+    def unknown_variable(self, path: NodePath, text: str, mention: Mention) -> None:
         word = mention.variable
         if mention.concluded and word.text in self.data["inputs"]:
             hint = did_you_mean(word.text, self.data["outputs"], "the outputs are")
@@ -83,6 +83,6 @@ class Rulebook:
         hint = did_you_mean(word.text, names, "the variables are")
         self.at_word("unknown-variable", path, text, word, f"there is no variable `{word.text}`", hint)
 
-    def at_word(self, code: str, path: Path, text: str, word: Word, message: str, hint: str) -> None:
+    def at_word(self, code: str, path: NodePath, text: str, word: Word, message: str, hint: str) -> None:
         """Report something of one word of a rule."""
         report_word(self.report, code, path, text, word.offset, len(word.text), message, hint)

@@ -6,7 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import LumenError
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.loading.complaints import Complaint, complaints
 from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
@@ -34,7 +34,7 @@ def check_schema(document: Document, kind: str, report: Report) -> Any:
     report's document becomes the pruned one, so that paths into the returned data have the right places; its `lost`
     names stand in what was taken out.
     """
-    said: set[Path] = set()
+    said: set[NodePath] = set()
     for _ in range(ROUNDS):
         try:
             if _quick(kind)(report.document.data):
@@ -109,12 +109,12 @@ def _complaints(validator: "Draft202012Validator", data: Any) -> Iterator[Compla
         yield from complaints(error, validator.schema)
 
 
-def _judge(found: list[Complaint], report: Report, said: set[Path]) -> set[Path]:
+def _judge(found: list[Complaint], report: Report, said: set[NodePath]) -> set[NodePath]:
     """The nodes that have to go. What follows from a node that went before, and what was said, is not said again."""
     suggested = {(c.path[:-1], c.suggestion) for c in found if c.suggestion}
     doomed = {c.doomed for c in found if c.doomed is not None}
     emptied, outdented = _emptied(found, report), _outdented(found, report)
-    spoken: set[Path] = set()
+    spoken: set[NodePath] = set()
     for complaint in found:
         about = complaint.about
         if complaint.missing and (beside := (*about[:-1], complaint.missing)) in outdented:
@@ -142,10 +142,10 @@ def _judge(found: list[Complaint], report: Report, said: set[Path]) -> set[Path]
     return doomed
 
 
-def _emptied(found: list[Complaint], report: Report) -> dict[Path, Path]:
+def _emptied(found: list[Complaint], report: Report) -> dict[NodePath, NodePath]:
     """The nodes in which a key is empty and keys after it are unknown, each with that key: those belong below it."""
     empty = {c.about[:-1]: c.path for c in found if c.code == "wrong-type" and c.path and _at(report, c.path) is None}
-    found_below: dict[Path, Path] = {}
+    found_below: dict[NodePath, NodePath] = {}
     for complaint in found:
         if complaint.code in _ASTRAY and complaint.about:
             parent = complaint.about if complaint.about in empty else complaint.about[:-1]
@@ -154,14 +154,14 @@ def _emptied(found: list[Complaint], report: Report) -> dict[Path, Path]:
     return found_below
 
 
-def _outdented(found: list[Complaint], report: Report) -> set[Path]:
+def _outdented(found: list[Complaint], report: Report) -> set[NodePath]:
     """The nodes that mean nothing where they stand, and that the node before them lacks."""
     wrong = {path[:n] for c in found if not c.missing for path in (c.about, c.path) for n in range(1, len(path) + 1)}
     missed = ((c, (*c.about[:-1], c.missing)) for c in found if c.missing and c.about)
     return {beside for c, beside in missed if beside in wrong and _stands_after(report, beside, c.about)}
 
 
-def _stands_after(report: Report, path: Path, other: Path) -> bool:
+def _stands_after(report: Report, path: NodePath, other: NodePath) -> bool:
     spans = report.document.spans
     return path in spans and other in spans and spans[path].value > spans[other].value
 
@@ -175,7 +175,7 @@ def _cause(complaint: Complaint, report: Report) -> str:
     return f"{report.document.file} keys of {complaint.about}"
 
 
-def _at(report: Report, path: Path) -> Any:
+def _at(report: Report, path: NodePath) -> Any:
     node = report.document.data
     for step in path:
         node = node[step]

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import yaml
 
-from lumen.language.diagnostics import Diagnostic, Path, Place, Related, Severity
+from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related, Severity
 from lumen.loading.recollection import again
 
 T = TypeVar("T")
@@ -70,11 +70,11 @@ class Document:
 
     file: str
     data: Any
-    spans: Mapping[Path, Span] = field(default_factory=dict, repr=False, compare=False)
+    spans: Mapping[NodePath, Span] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
     dropped: frozenset[str] = field(default=frozenset(), repr=False, compare=False)
 
-    def place(self, path: Path, *, key: bool = False) -> Place:
+    def place(self, path: NodePath, *, key: bool = False) -> Place:
         """The place of the node at `path`, or of its key; of the nearest node above it where there is none.
 
         Where the node itself is missing, that is the key of its parent: what to look at when something is absent.
@@ -103,7 +103,7 @@ class Report:
     def __init__(self, document: Document) -> None:
         self.document = document
         self.diagnostics: list[Diagnostic] = []
-        self.pruned: set[Path] = set()
+        self.pruned: set[NodePath] = set()
         self.lost: set[str] = {*document.dropped}
         self.missed: set[str] = set()
         self.whole = True
@@ -111,13 +111,13 @@ class Report:
     def __call__(
         self,
         code: str,
-        path: Path,
+        path: NodePath,
         message: str,
         *,
         hint: str = "",
         key: bool = False,
         severity: Severity = Severity.ERROR,
-        related: Iterable[tuple[Path, str]] = (),
+        related: Iterable[tuple[NodePath, str]] = (),
         cause: str = "",
         root: str = "",
     ) -> None:
@@ -149,7 +149,7 @@ class Report:
         self.take(after)
         return made
 
-    def broken(self, path: Path) -> bool:
+    def broken(self, path: NodePath) -> bool:
         """Whether the node at `path`, one above it or one in it, was pruned."""
         return any(lost[: len(path)] == path[: len(lost)] for lost in self.pruned)
 
@@ -215,12 +215,12 @@ class _Reader:
 
     def __init__(self, file: str) -> None:
         self.file = file
-        self.spans: dict[Path, Span] = {}
+        self.spans: dict[NodePath, Span] = {}
         self.diagnostics: list[Diagnostic] = []
         self.full = False
         self.dropped: set[str] = set()
 
-    def read(self, node: yaml.Node, path: Path, key: yaml.Node | None, depth: int) -> Any:
+    def read(self, node: yaml.Node, path: NodePath, key: yaml.Node | None, depth: int) -> Any:
         self.spans[path] = Span(self.place(key) if key else None, self.place(node))
         if depth > MAX_DEPTH or len(self.spans) > MAX_NODES:
             self.overflow(node, depth)
@@ -238,7 +238,7 @@ class _Reader:
             return [self.read(child, (*path, i), None, depth + 1) for i, child in enumerate(node.value)]
         return self.mapping(node, path, depth)
 
-    def mapping(self, node: yaml.Node, path: Path, depth: int) -> dict[str, Any]:
+    def mapping(self, node: yaml.Node, path: NodePath, depth: int) -> dict[str, Any]:
         data: dict[str, Any] = {}
         last: yaml.Node | None = None
         for key, value in node.value:
@@ -266,7 +266,7 @@ class _Reader:
         message = f"a comma ends the number {before.value}, and `{key.value}` would be a key"
         self.diagnostics.append(Diagnostic("decimal-comma", message, place, f"write a point: {number}"))
 
-    def again(self, key: yaml.Node, path: Path) -> None:
+    def again(self, key: yaml.Node, path: NodePath) -> None:
         """Report a key that stands a second time; those of one map are one finding."""
         first = self.spans[(*path, key.value)].key
         hint = f"the first one stands in line {first.line}" if first else ""

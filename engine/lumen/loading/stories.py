@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any, TypeVar
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.stories import (
     Arrive,
     Deed,
@@ -47,7 +47,7 @@ def build_story(data: Any, report: Report, *, name: str, into: type[S] = Story) 
     )
 
 
-def _performance(how: str, report: Report, where: Path) -> str | float:
+def _performance(how: str, report: Report, where: NodePath) -> str | float:
     """`fails`, `hangs`, or a duration [s]."""
     if how in ("fails", "hangs"):
         return how
@@ -58,7 +58,7 @@ def _performance(how: str, report: Report, where: Path) -> str | float:
     return length
 
 
-def _deed(row: Mapping[str, Any], report: Report, where: Path) -> Deed | None:
+def _deed(row: Mapping[str, Any], report: Report, where: NodePath) -> Deed | None:
     [(verb, body)] = row.items()
     match verb:
         case "visitor":
@@ -79,7 +79,7 @@ def _deed(row: Mapping[str, Any], report: Report, where: Path) -> Deed | None:
     return None
 
 
-def _visitor(body: Any, report: Report, where: Path) -> Deed | None:
+def _visitor(body: Any, report: Report, where: NodePath) -> Deed | None:
     if isinstance(body, str):
         return Arrive(Visitor()) if body == "arrives" else Leave()
     for key, value in body.items():
@@ -89,7 +89,7 @@ def _visitor(body: Any, report: Report, where: Path) -> Deed | None:
     return Arrive(Visitor(**{key: float(value) for key, value in body.items()}))
 
 
-def _expect(body: Mapping[str, Any], report: Report, where: Path) -> Expect:
+def _expect(body: Mapping[str, Any], report: Report, where: NodePath) -> Expect:
     states, published = body.get("state", ()), body.get("published")
     message = published if isinstance(published, Mapping) else {"route": published}
     within = duration(body, "within", report, where)

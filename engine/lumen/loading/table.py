@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.loading.source import Document, Report, Span
 
 
@@ -35,10 +35,10 @@ class _Table:
             for side in ("inputs", "outputs")
         }
         self.data = {**data, **self.sides}
-        self.places: dict[Path, Span] = dict(report.document.spans)
+        self.places: dict[NodePath, Span] = dict(report.document.spans)
 
     def cell(self, kind: str, term: str, name: str, parameters: Any) -> None:
-        path: Path = ("terms", kind, term, name)
+        path: NodePath = ("terms", kind, term, name)
         side = next((side for side, variables in self.sides.items() if name in variables), "")
         if not side:
             names = [name for variables in self.sides.values() for name in variables]
@@ -54,7 +54,7 @@ class _Table:
         self.sides[side][name]["terms"][term] = {kind: parameters}
         self.moved(path, (side, name, "terms", term), kind)
 
-    def moved(self, path: Path, to: Path, kind: str) -> None:
+    def moved(self, path: NodePath, to: NodePath, kind: str) -> None:
         """The cell's place under its new path, and those of its numbers."""
         if any(lost[: len(path)] == path for lost in self.report.pruned):
             self.report.pruned.add((*to, kind))
@@ -69,7 +69,7 @@ class _Table:
 def termless(data: Mapping[str, Any], report: Report) -> None:
     """Report outputs without a term."""
     for name, spec in data["outputs"].items():
-        path: Path = ("outputs", name)
+        path: NodePath = ("outputs", name)
         if not (spec.get("terms") or report.broken(path) or report.broken(("terms",))):
             message = f"the output `{name}` has no terms"
             hint = "write `terms:` in it, or a table `terms:` for all variables"

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from itertools import combinations
 from typing import Any
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Kind, Transition
 from lumen.loading.actions import Actions
 from lumen.loading.expressions import Expressions
@@ -12,7 +12,7 @@ from lumen.loading.invocations import invoked
 from lumen.loading.outline import Entry, Outline
 from lumen.loading.source import Report
 
-Row = tuple[Path, Any]
+Row = tuple[NodePath, Any]
 
 
 class Transitions:
@@ -26,7 +26,7 @@ class Transitions:
         """The candidates of a state, in the order of the file; broken ones are left out."""
         return tuple(found for key, body in entry.data.items() for found in self._under(entry, key, body))
 
-    def targets(self, entry: Entry, body: Any, where: Path, written: Any = None) -> list[Entry] | None:
+    def targets(self, entry: Entry, body: Any, where: NodePath, written: Any = None) -> list[Entry] | None:
         """The states that a target or a list of them names; None (and reported) where one is wrong.
 
         `written` is how the file has them, where that differs.
@@ -60,7 +60,7 @@ class Transitions:
             case "onError":
                 yield from self._candidates(entry, body, where, event=f"error.do.{entry.name}", exact=True)
 
-    def _after(self, entry: Entry, body: Mapping[str, Any], where: Path) -> Iterator[Transition]:
+    def _after(self, entry: Entry, body: Mapping[str, Any], where: NodePath) -> Iterator[Transition]:
         for text, rows in body.items():
             delay = self.actions.duration(text, (*where, text), key=True)
             if delay is not None:
@@ -71,7 +71,7 @@ class Transitions:
         self,
         entry: Entry,
         body: Any,
-        where: Path,
+        where: NodePath,
         *,
         event: str = "",
         exact: bool = False,
@@ -83,7 +83,7 @@ class Transitions:
                     entry.path, event, found.targets, found.guard, found.actions, found.reenter, delay, exact, place
                 )
 
-    def _one(self, entry: Entry, row: Any, where: Path, event: str) -> Transition | None:
+    def _one(self, entry: Entry, row: Any, where: NodePath, event: str) -> Transition | None:
         if isinstance(row, str):
             row, place = {"target": row}, where
         else:
@@ -101,7 +101,7 @@ class Transitions:
         paths = tuple(target.path for target in targets)
         return Transition(entry.path, event, paths, guard, actions, row.get("reenter", False))
 
-    def _together(self, states: list[Entry], where: Path) -> bool:
+    def _together(self, states: list[Entry], where: NodePath) -> bool:
         for one, other in combinations(states, 2):
             if not _fit(one, other):
                 message = f"`{one.path}` and `{other.path}` can't be active together"
@@ -128,5 +128,5 @@ def _meeting(one: Entry, other: Entry) -> Entry:
     return other
 
 
-def _rows(body: Any, where: Path) -> list[Row]:
+def _rows(body: Any, where: NodePath) -> list[Row]:
     return [((*where, i), row) for i, row in enumerate(body)] if isinstance(body, list | tuple) else [(where, body)]

@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.interpreters.inference.weighted import INVERSES
 from lumen.language.controllers import VALUES, WEIGHTED, Variable
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.loading.source import Report
 from lumen.loading.terms import build_terms, plain_name
 
@@ -33,7 +33,7 @@ class _Variables:
         low, high = (float(end) for end in spec["range"])
         if not self.spans(name, low, high):
             return None
-        path: Path = (self.side, name)
+        path: NodePath = (self.side, name)
         variable = Variable(
             name,
             low,
@@ -70,7 +70,7 @@ class _Variables:
 
     def spans(self, name: str, low: float, high: float) -> bool:
         """Whether the range holds something; an input's may be without end."""
-        path: Path = (self.side, name, "range")
+        path: NodePath = (self.side, name, "range")
         if not low < high:
             hint = f"write [{high:g}, {low:g}]" if high < low else "the second number has to be greater"
             self.report("empty-range", path, f"the range [{low:g}, {high:g}] of `{name}` is empty", hint=hint)

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.loading.source import resolve
 from lumen.loading.units import seconds
 
@@ -24,7 +24,7 @@ _NUMBER = re.compile(r"([-+]?\d[\d_]*(?:[.,]\d+)?) ?(°|deg|rad|mm|cm|m|%|px|s|)
 _TRUTHS = {"yes": "true", "y": "true", "on": "true", "no": "false", "n": "false", "off": "false"}
 
 
-def node(path: Path) -> str:
+def node(path: NodePath) -> str:
     """What to call the node at that path."""
     if not path:
         return "this"
@@ -50,7 +50,7 @@ def kind(value: Any) -> str:
     return f"the number {value:g}" if isinstance(value, float) else "a number"
 
 
-def wording(error: Error, path: Path) -> tuple[str, str]:
+def wording(error: Error, path: NodePath) -> tuple[str, str]:
     """Message and hint of a value that is of the wrong type, or not one of those allowed."""
     value, bound, name = error.instance, error.validator_value, node(path)
     hint = describe(error.schema)

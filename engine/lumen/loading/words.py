@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-from lumen.language.diagnostics import Path, Place
+from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.source import Document, Report
 
 
 def report_word(
-    report: Report, code: str, path: Path, text: str, offset: int, length: int, message: str, hint: str
+    report: Report, code: str, path: NodePath, text: str, offset: int, length: int, message: str, hint: str
 ) -> None:
     """Report something of `text[offset : offset + length]`, where `text` is the scalar at `path`."""
     before = len(report.diagnostics)
@@ -18,7 +18,7 @@ def report_word(
         report.diagnostics[-1] = replace(report.diagnostics[-1], place=place)
 
 
-def place_of(document: Document, path: Path, text: str, offset: int, length: int) -> Place:
+def place_of(document: Document, path: NodePath, text: str, offset: int, length: int) -> Place:
     """The place of `text[offset : offset + length]`, where `text` is the scalar at `path`.
 
     Follows the text through quotes, folded lines and blocks by its visible characters. What can't be followed so (an

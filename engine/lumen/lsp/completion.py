@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions.functions import FUNCTIONS
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.events import ROBOT_EVENTS
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.cursor import MARK, Cursor, cursor
@@ -71,14 +71,14 @@ class _Completion:
         if not here.before and named is None:
             yield from self.keys(path)
 
-    def keys(self, path: Path) -> Iterator[Item]:
+    def keys(self, path: NodePath) -> Iterator[Item]:
         there = self.value(path)
         taken = there if isinstance(there, dict) else {}
         for key, schema in keys_at(self.kind, path).items():
             if key not in taken:
                 yield Item(f"{key}: ", "key", len(self.here.word), str(schema.get("description", "")))
 
-    def names(self, kind: Kind, path: Path, *, key: bool = False) -> Iterator[Item]:
+    def names(self, kind: Kind, path: NodePath, *, key: bool = False) -> Iterator[Item]:
         wide, end = len(self.here.word), ": " if key else ""
         for name, detail in self.candidates(kind, path, key=key):
             if MARK not in name:
@@ -89,7 +89,7 @@ class _Completion:
         """Whether the cursor stands in quotes, where a `#` begins no comment."""
         return self.here.quote != ""
 
-    def candidates(self, kind: Kind, path: Path, *, key: bool) -> Iterator[tuple[str, str]]:
+    def candidates(self, kind: Kind, path: NodePath, *, key: bool) -> Iterator[tuple[str, str]]:
         match kind:
             case Kind.STATE:
                 yield from self.states(path) if not key else ()
@@ -104,7 +104,7 @@ class _Completion:
                 scope = stem(self.file) if kind is Kind.POSE else scope
                 yield from ((name, "") for name in self.index.names(kind, scope))
 
-    def states(self, path: Path) -> Iterator[tuple[str, str]]:
+    def states(self, path: NodePath) -> Iterator[tuple[str, str]]:
         """What a target may say: states beside this one, children, and all others by their ids."""
         tree = self.index.outlines.get(self.scope)
         if tree is None:
@@ -139,12 +139,12 @@ class _Completion:
         else:
             yield from (Item(name, "route", len(route)) for name in self.index.names(Kind.ROUTE))
 
-    def body(self, path: Path) -> Iterator[tuple[str, str]]:
+    def body(self, path: NodePath) -> Iterator[tuple[str, str]]:
         around = self.value(path[:-2])
         route = around.get("route") if isinstance(around, dict) else None
         yield from ((name, "field") for name in self.fields(self.schema(str(route))))
 
-    def expression(self, before: str, path: Path) -> Iterator[Item]:
+    def expression(self, before: str, path: NodePath) -> Iterator[Item]:
         if call := _CALL.search(before):
             kind = _NAMED[call[1]]
             names = self.index.names(kind, self.scope)
@@ -165,7 +165,7 @@ class _Completion:
             yield from (Item(name, "", wide) for name in ("context", "event", "state"))
             yield from (Item(f"{name}(", "function", wide) for name in FUNCTIONS)
 
-    def event_fields(self, path: Path) -> list[str]:
+    def event_fields(self, path: NodePath) -> list[str]:
         """The fields of the events that can arrive where an expression stands."""
         event = next((str(path[i + 1]) for i in range(len(path) - 2, -1, -1) if path[i] == "on"), "")
         found = (schema for name, schema in self.declared() if event and hears(event, name))
@@ -189,14 +189,14 @@ class _Completion:
         properties = schema.get("properties") if isinstance(schema, Mapping) else None
         return list(properties) if isinstance(properties, Mapping) else []
 
-    def value(self, path: Path) -> Any:
+    def value(self, path: NodePath) -> Any:
         node: Any = self.here.document.data
         for step in path:
             node = node[step]
         return node
 
 
-def _steps(path: Path) -> Iterator[str]:
+def _steps(path: NodePath) -> Iterator[str]:
     """The keys of the states that a node lies in."""
     for i in range(0, len(path) - 1, 2):
         if path[i] != "states":

@@ -3,7 +3,7 @@
 import re
 from typing import NamedTuple
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.loading.source import Document, parse
 
 MARK = "Here0Stands1The2Cursor"
@@ -17,7 +17,7 @@ class Cursor(NamedTuple):
     `word` is what a completion replaces, `quote` the quote before it; `document` the file with the cursor's mark in it.
     """
 
-    path: Path
+    path: NodePath
     key: bool
     before: str
     word: str
@@ -71,7 +71,7 @@ def _closed(head: str) -> str:
     return quote + "".join(reversed(stack))
 
 
-def _marked(document: Document) -> tuple[Path, bool, str] | None:
+def _marked(document: Document) -> tuple[NodePath, bool, str] | None:
     """The path of the key or of the text that holds the mark."""
     for path in document.spans:
         if path and isinstance(path[-1], str) and MARK in path[-1]:

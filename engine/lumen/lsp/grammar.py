@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from pathlib import PurePosixPath
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.loading.packaged import MAIN_FILE
 from lumen.lsp.words import Kind
 
@@ -138,7 +138,7 @@ def kind_of(file: str) -> str:
     return FILES.get(str(path.parent), "") if path.suffix in (".yaml", ".json") else ""
 
 
-def key_kind(kind: str, path: Path) -> Kind | None:
+def key_kind(kind: str, path: NodePath) -> Kind | None:
     """What the key at the end of a path names, in a file of that kind."""
     steps = _steps(path)
     if kind == "behavior" and steps[:1] in (("types",), ("events",)) and len(steps) > 2:
@@ -150,7 +150,7 @@ def key_kind(kind: str, path: Path) -> Kind | None:
     return _found(_KEYS.get(kind, {}), steps)
 
 
-def value_kind(kind: str, path: Path) -> Kind | None:
+def value_kind(kind: str, path: NodePath) -> Kind | None:
     """What the text at a path names, in a file of that kind."""
     steps = _steps(path)
     if kind == "behavior":
@@ -163,7 +163,7 @@ def value_kind(kind: str, path: Path) -> Kind | None:
     return _found(_VALUES.get(kind, {}), steps)
 
 
-def defines(kind: str, path: Path, what: Kind) -> bool:
+def defines(kind: str, path: NodePath, what: Kind) -> bool:
     """Whether the name at that path is where the thing is made known."""
     steps = _steps(path)
     if kind == "behavior" and what is Kind.STATE:
@@ -180,7 +180,7 @@ def _in_data(kind: str, steps: tuple[str, ...]) -> bool:
     return any(name in steps[1:] for name in _DATA.get(kind, ()))
 
 
-def _steps(path: Path) -> tuple[str, ...]:
+def _steps(path: NodePath) -> tuple[str, ...]:
     return tuple(step for step in path if isinstance(step, str))
 
 

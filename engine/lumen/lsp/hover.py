@@ -3,7 +3,7 @@
 from math import degrees
 from pathlib import PurePosixPath
 
-from lumen.language.diagnostics import Diagnostic, Path
+from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.loading.draft import Draft
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import kind_of
@@ -103,7 +103,7 @@ def _described(analysis: Analysis, file: str, line: int, column: int) -> str:
     document = analysis.documents.get(file)
     if document is None or PurePosixPath(file).suffix != ".yaml":
         return ""
-    found: Path = ()
+    found: NodePath = ()
     for path, span in document.spans.items():
         if span.key and covers(span.key, line, column):
             found = path

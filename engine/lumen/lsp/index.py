@@ -5,7 +5,7 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from typing import Any
 
-from lumen.language.diagnostics import Path, Place
+from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.messages import ENDING
 from lumen.loading.outline import Entry, Outline
 from lumen.loading.source import Document, Report
@@ -74,7 +74,7 @@ class _Reader:
             elif isinstance(value, str) and path[-1:] == ("id",) and path[-3:-2] == ("states",):
                 yield from self.alias(path, value)
 
-    def named(self, kind: Kind, path: Path, *, key: bool = False) -> Iterator[Word]:
+    def named(self, kind: Kind, path: NodePath, *, key: bool = False) -> Iterator[Word]:
         """The word that a whole key or value is."""
         place = self.lines.scalar(path, key=key)
         text = str(path[-1]) if key else str(_value(self.document.data, path))
@@ -83,7 +83,7 @@ class _Reader:
         name = _state_at(path) if kind is Kind.STATE else text
         yield self.word(kind, name, text, place, defining=defines(self.kind, path, kind))
 
-    def valued(self, kind: Kind, path: Path, value: str) -> Iterator[Word]:
+    def valued(self, kind: Kind, path: NodePath, value: str) -> Iterator[Word]:
         match kind:
             case Kind.EXPRESSION:
                 yield from self.parts(path, value, in_expression(value))
@@ -97,7 +97,7 @@ class _Reader:
             case _:
                 yield from self.named(kind, path)
 
-    def parts(self, path: Path, value: str, parts: Iterator[Part]) -> Iterator[Word]:
+    def parts(self, path: NodePath, value: str, parts: Iterator[Part]) -> Iterator[Word]:
         place = self.document.place(path)
         for part in parts:
             if part.kind is Kind.STATE:
@@ -105,7 +105,7 @@ class _Reader:
             elif here := self.lines.part(place, value, part.offset, len(part.text)):
                 yield self.word(part.kind, part.text, part.text, here)
 
-    def target(self, path: Path, value: str) -> Iterator[Word]:
+    def target(self, path: NodePath, value: str) -> Iterator[Word]:
         """A target, or a state as a story calls it: each step of a dotted one is a state's name."""
         if self.kind == "story":
             yield from self.segments(path, value, value, 0, self._named_state)
@@ -119,7 +119,7 @@ class _Reader:
                 found = lambda text: outline.resolve(source, written[:begin] + text, path)  # noqa: E731
                 yield from self.segments(path, value, written[begin:], begin + shift, found)
 
-    def segments(self, path: Path, value: str, dotted: str, offset: int, find: Any) -> Iterator[Word]:
+    def segments(self, path: NodePath, value: str, dotted: str, offset: int, find: Any) -> Iterator[Word]:
         """A word for each step of a dotted name that leads to a state; an id may hold dots itself."""
         place, done = self.document.place(path), 0
         steps = dotted.split(".")
@@ -138,7 +138,7 @@ class _Reader:
             return None
         return self.outline.entries.get(name) or self.outline.aliases.get(name)
 
-    def alias(self, path: Path, value: str) -> Iterator[Word]:
+    def alias(self, path: NodePath, value: str) -> Iterator[Word]:
         if place := self.lines.scalar(path):
             yield self.word(Kind.STATE, _state_at(path), value, place)
 
@@ -152,7 +152,7 @@ def stem(file: str) -> str:
     return name.removesuffix(ENDING) if name.endswith(ENDING) else PurePosixPath(file).stem
 
 
-def _state_at(path: Path) -> str:
+def _state_at(path: NodePath) -> str:
     """The path of the innermost state around a node, or of the state whose key it is."""
     steps, at = [], 0
     while at + 1 < len(path) and path[at] == "states":
@@ -185,7 +185,7 @@ def _states(data: Any) -> dict[str, Any]:
     return state
 
 
-def _value(data: Any, path: Path) -> Any:
+def _value(data: Any, path: NodePath) -> Any:
     for step in path:
         data = data[step]
     return data

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.tokens import Token, tokenize
-from lumen.language.diagnostics import Path, Place
+from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.source import Document
 from lumen.lsp.words import Kind
 
@@ -55,13 +55,13 @@ class Lines:
         column = start - self._starts[line] + 1
         return Place(self.document.file, line + 1, column, line + 1, column + length)
 
-    def scalar(self, path: Path, *, key: bool = False) -> Place | None:
+    def scalar(self, path: NodePath, *, key: bool = False) -> Place | None:
         """The place of a key or of a text, without its quotes."""
         place = self.document.place(path, key=key)
         value = path[-1] if key else self._value(path)
         return self.part(place, str(value), 0, len(str(value)))
 
-    def _value(self, path: Path) -> object:
+    def _value(self, path: NodePath) -> object:
         node = self.document.data
         for step in path:
             node = node[step]

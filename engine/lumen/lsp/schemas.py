@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any
 
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.loading.schema import KINDS, load_schema
 
 _SAME = ("allOf", "anyOf", "oneOf")
@@ -16,7 +16,7 @@ def _root(kind: str) -> Mapping[str, Any]:
     return load_schema(kind) if kind in KINDS else {}
 
 
-def schemas_at(kind: str, path: Path) -> list[Mapping[str, Any]]:
+def schemas_at(kind: str, path: NodePath) -> list[Mapping[str, Any]]:
     """All schemas that speak of the node at a path, whichever branch it takes; the nearest first."""
     root = _root(kind)
     found = list(_here(root, root))
@@ -25,7 +25,7 @@ def schemas_at(kind: str, path: Path) -> list[Mapping[str, Any]]:
     return found
 
 
-def keys_at(kind: str, path: Path) -> dict[str, Mapping[str, Any]]:
+def keys_at(kind: str, path: NodePath) -> dict[str, Mapping[str, Any]]:
     """The keys that a map at that path may have, each with its schema."""
     found: dict[str, Mapping[str, Any]] = {}
     for schema in schemas_at(kind, path):
@@ -35,7 +35,7 @@ def keys_at(kind: str, path: Path) -> dict[str, Mapping[str, Any]]:
     return found
 
 
-def values_at(kind: str, path: Path) -> list[str]:
+def values_at(kind: str, path: NodePath) -> list[str]:
     """The values that the schemas of a node list, as they are written in YAML."""
     values: list[str] = []
     for schema in schemas_at(kind, path):
@@ -45,7 +45,7 @@ def values_at(kind: str, path: Path) -> list[str]:
     return list(dict.fromkeys(values))
 
 
-def description_at(kind: str, path: Path) -> str:
+def description_at(kind: str, path: NodePath) -> str:
     """What the schemas say of a node, with an example."""
     schemas = schemas_at(kind, path)
     text = next((s["description"] for s in schemas if "description" in s), "")

@@ -1,7 +1,7 @@
 """Controllers that are bound: whether a joint is turned the right way, as far as it can, and not too eagerly."""
 
 from lumen.language.controllers import Controller, OutputBinding, Proposition, Variable
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.robots import Body
 from lumen.language.scales import ranks
 from lumen.loading.draft import Draft
@@ -20,7 +20,7 @@ def check(controller: Controller, report: Report, draft: Draft) -> None:
     """Report gains that overshoot, signs that turn away, and outputs beyond what a joint can do."""
     for binding in controller.output_bindings:
         variable = controller.outputs[binding.variable]
-        path: Path = first(report, (*binding.where, "gain"), binding.where)
+        path: NodePath = first(report, (*binding.where, "gain"), binding.where)
         _sense(controller, variable, report)
         _sign(variable, binding, path, report)
         _gain(controller, binding, path, report, draft)
@@ -64,7 +64,7 @@ def _trend(controller: Controller, variable: Variable, output: Variable) -> int:
     return int(slope > 0) - int(slope < 0)
 
 
-def _sign(variable: Variable, binding: OutputBinding, path: Path, report: Report) -> None:
+def _sign(variable: Variable, binding: OutputBinding, path: NodePath, report: Report) -> None:
     counts = next((way for kind, way in COUNTS.items() if binding.joint.endswith(kind)), "")
     wanted = {counts: 1, OPPOSITE.get(counts, ""): -1}.get(variable.direction, 0) if variable.direction else 0
     if wanted * binding.gain < 0:
@@ -74,7 +74,7 @@ def _sign(variable: Variable, binding: OutputBinding, path: Path, report: Report
         find(report, "wrong-sign", path, message, hint, related=others)
 
 
-def _gain(controller: Controller, binding: OutputBinding, path: Path, report: Report, draft: Draft) -> None:
+def _gain(controller: Controller, binding: OutputBinding, path: NodePath, report: Report, draft: Draft) -> None:
     if abs(binding.gain) <= GREATEST_GAIN:
         return
     routes = draft.settings.routes if draft.settings else {}

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.controllers import Controller, InputBinding, OutputBinding
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
 from lumen.loading.draft import Draft
 from lumen.loading.recollection import again
@@ -57,7 +57,7 @@ def _input(draft: Draft, report: Report, binding: InputBinding) -> None:
 
 def _joints(controller: Controller, report: Report, body: Body, lost: set[str]) -> None:
     for binding in controller.output_bindings:
-        path: Path = ("bind", "outputs", binding.variable)
+        path: NodePath = ("bind", "outputs", binding.variable)
         if _known(report, (*path, "joint"), binding.joint, body, lost):
             _limits(controller, report, (*path, "limits"), binding, body)
     for what, joints in (("sweep", controller.tracking.sweep), ("ahead", controller.tracking.ahead)):
@@ -65,14 +65,14 @@ def _joints(controller: Controller, report: Report, body: Body, lost: set[str]) 
             _known(report, ("track", what, joint), joint, body, lost, key=True)
 
 
-def _known(report: Report, path: Path, joint: str, body: Body, lost: set[str], *, key: bool = False) -> bool:
+def _known(report: Report, path: NodePath, joint: str, body: Body, lost: set[str], *, key: bool = False) -> bool:
     if joint not in body.joints and joint not in lost:
         hint = did_you_mean(joint, body.joints, f"{body.name} has")
         find(report, "unknown-joint", path, f"there is no joint `{joint}`", hint, key=key, cause=f"joint {joint}")
     return joint in body.joints
 
 
-def _limits(controller: Controller, report: Report, path: Path, binding: OutputBinding, body: Body) -> None:
+def _limits(controller: Controller, report: Report, path: NodePath, binding: OutputBinding, body: Body) -> None:
     joint = body.joints[binding.joint]
     for i, limit in enumerate((binding.minimum, binding.maximum)):
         if limit is not None and not joint.minimum - SLACK <= limit <= joint.maximum + SLACK:

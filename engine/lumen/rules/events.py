@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.language.actions import Raise, Send
-from lumen.language.diagnostics import Path, did_you_mean, nearest
+from lumen.language.diagnostics import NodePath, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import Kind, Machine, Transition
 from lumen.loading.draft import Draft
@@ -129,7 +129,7 @@ def _of_the_engine(event: str) -> bool:
     return event.startswith(longer) or any(hears(event, family.removesuffix(".")) for family in FAMILIES)
 
 
-def _descriptor(where: Path, event: str) -> Path:
+def _descriptor(where: NodePath, event: str) -> NodePath:
     """The path of the key under `on`: a candidate may stand in a list below it."""
     return where if where[-1] == event else where[:-1]
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
 from lumen.rules.codes import CODES
@@ -12,12 +12,12 @@ from lumen.rules.codes import CODES
 def find(
     report: Report,
     code: str,
-    path: Path,
+    path: NodePath,
     message: str,
     hint: str = "",
     *,
     key: bool = False,
-    related: Iterable[tuple[Path, str]] = (),
+    related: Iterable[tuple[NodePath, str]] = (),
     cause: str = "",
     root: str = "",
 ) -> None:
@@ -26,12 +26,12 @@ def find(
     report(code, path, message, hint=hint, key=key, severity=severity, related=related, cause=cause, root=root)
 
 
-def first(report: Report, *paths: Path) -> Path:
+def first(report: Report, *paths: NodePath) -> NodePath:
     """The first of these paths that stands in the document: a value may be written short or at length."""
     return next((path for path in paths if path in report.document.spans), paths[-1])
 
 
-def value_at(report: Report, path: Path) -> Any:
+def value_at(report: Report, path: NodePath) -> Any:
     """The plain data at that path, None where there is nothing."""
     node = report.document.data
     for step in path:
@@ -59,7 +59,7 @@ class References:
         self._names = draft.names
         self._missing = draft.missing
 
-    def look_up(self, report: Report, path: Path, kind: str, name: str, *, key: bool = False) -> bool:
+    def look_up(self, report: Report, path: NodePath, kind: str, name: str, *, key: bool = False) -> bool:
         """Whether there is a file of that kind and name; reported at `path` where there is none."""
         folder, what = _FOLDERS[kind]
         names = self._names.get(folder, frozenset())

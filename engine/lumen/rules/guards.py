@@ -6,7 +6,7 @@ from typing import NamedTuple
 from lumen.interpreters.expressions.phrases import is_heard
 from lumen.interpreters.expressions.tree import Call, Literal, Logic, Node
 from lumen.language.actions import Expression
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Machine, State, Transition
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
@@ -38,7 +38,7 @@ def check(draft: Draft) -> None:
                 _late(machine, state, report)
 
 
-def _told(report: Report, where: Path) -> bool:
+def _told(report: Report, where: NodePath) -> bool:
     """Whether something else was already said of the text at that path."""
     place = report.document.place(where)
     return any(d.place.line == place.line and d.place.column >= place.column for d in report.diagnostics)

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.language.diagnostics import Diagnostic, Path, Place, Severity, did_you_mean, has_errors
+from lumen.language.diagnostics import Diagnostic, NodePath, Place, Severity, did_you_mean, has_errors
 from lumen.loading.source import Document
 from lumen.rules.codes import CODES
 
@@ -77,7 +77,7 @@ def _holds(place: Place | None, here: tuple[int, int]) -> bool:
     return place is not None and (place.line, place.column) < here < (place.end_line, place.end_column)
 
 
-def _value(document: Document, path: Path) -> Any:
+def _value(document: Document, path: NodePath) -> Any:
     node = document.data
     for step in path:
         try:

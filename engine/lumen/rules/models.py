@@ -4,8 +4,7 @@ What MuJoCo thinks of it is told when it is simulated; it is not imported here.
 """
 
 from collections.abc import Mapping
-from pathlib import Path as Folder
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 from xml.parsers import expat
 
@@ -92,7 +91,7 @@ def _assets(draft: Draft, file: str, elements: list[Element]) -> None:
                 _say(draft, file, element.line, element.column, len(element.name) + 1, f"there is no file {path}", hint)
 
 
-def _there(path: Folder) -> bool:
+def _there(path: Path) -> bool:
     try:
         return path.is_file()
     except (OSError, ValueError):

@@ -7,7 +7,7 @@ from math import ceil
 
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
 from lumen.loading.draft import Draft
@@ -46,13 +46,13 @@ def _excesses(motion: Motion, body: Body) -> tuple[tuple[Excess, ...], tuple[Exc
 
 def _by_key(fast: Iterable[Excess]) -> list[list[Excess]]:
     """The excesses of each key, the worst first: a key that comes too soon comes too soon for all of its joints."""
-    keys: dict[Path, list[Excess]] = {}
+    keys: dict[NodePath, list[Excess]] = {}
     for excess in sorted(fast, key=lambda e: -e.value / e.limit):
         keys.setdefault(_keyframe(excess.key.where), []).append(excess)
     return list(keys.values())
 
 
-def _keyframe(where: Path) -> Path:
+def _keyframe(where: NodePath) -> NodePath:
     """The path of the keyframe that a key stands in."""
     return where[: max((n for n, step in enumerate(where) if step == "keyframes"), default=len(where)) + 2]
 

@@ -2,7 +2,7 @@
 
 from lumen.language.actions import PublishBody
 from lumen.language.commands import Play, Posture, Track
-from lumen.language.diagnostics import Diagnostic, Path, Related, did_you_mean
+from lumen.language.diagnostics import Diagnostic, NodePath, Related, did_you_mean
 from lumen.language.routes import Direction
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
@@ -21,7 +21,7 @@ def check(draft: Draft) -> None:
             _action(draft, report, references, site)
 
 
-def known_route(draft: Draft, report: Report, path: Path, route: str) -> bool:
+def known_route(draft: Draft, report: Report, path: NodePath, route: str) -> bool:
     """Whether lumen.yaml has that route; reported at `path` where it does not, and was readable."""
     if draft.settings is None or draft.main is None:
         return False
@@ -50,7 +50,7 @@ def _main(draft: Draft, references: References) -> None:
         _model_file(draft, report, ("hall",), settings.hall)
 
 
-def _published(draft: Draft, report: Report, path: Path, name: str) -> None:
+def _published(draft: Draft, report: Report, path: NodePath, name: str) -> None:
     assert draft.settings is not None
     assert draft.main is not None
     route = draft.settings.routes[name]
@@ -63,7 +63,7 @@ def _published(draft: Draft, report: Report, path: Path, name: str) -> None:
         report.diagnostics.append(Diagnostic("wrong-direction", message, place, hint, severity, (declared,)))
 
 
-def _model_file(draft: Draft, report: Report, path: Path, name: str) -> None:
+def _model_file(draft: Draft, report: Report, path: NodePath, name: str) -> None:
     there = [
         file.removeprefix("models/") for file in draft.files if file.startswith("models/") and file.endswith(".xml")
     ]

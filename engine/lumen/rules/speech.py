@@ -6,7 +6,7 @@ from typing import Any
 from lumen.interpreters.expressions.phrases import is_heard
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
-from lumen.language.diagnostics import Diagnostic, Path, Place, Related, did_you_mean, nearest
+from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related, did_you_mean, nearest
 from lumen.language.machines import Answer, Machine
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
@@ -72,14 +72,14 @@ def _silent(draft: Draft, languages: tuple[str, ...]) -> dict[str, tuple[str, li
     }
 
 
-def _spoken(machine: Machine) -> Iterator[Path]:
+def _spoken(machine: Machine) -> Iterator[NodePath]:
     """Where texts stand that the machine says or answers."""
     yield from ((*s.step.where, "say") for s in sites(machine) if isinstance(s.step.action, SayText))
     for table, rows in machine.answers.items():
         yield from (("answers", table, i, "value") for i, row in enumerate(rows) if isinstance(row.value, Mapping))
 
 
-def _silence(report: Report, path: Path, message: str, hint: str, related: list[Related]) -> Diagnostic:
+def _silence(report: Report, path: NodePath, message: str, hint: str, related: list[Related]) -> Diagnostic:
     severity = CODES["missing-language"].severity
     return Diagnostic("missing-language", message, report.document.place(path), hint, severity, tuple(related))
 
@@ -104,7 +104,7 @@ class _Speech:
                 if isinstance(row.value, Mapping) and set(row.value) & set(self.languages):
                     self.texts(report, ("answers", table, i, "value"), row.value)
 
-    def texts(self, report: Report, path: Path, texts: Mapping[str, Any]) -> None:
+    def texts(self, report: Report, path: NodePath, texts: Mapping[str, Any]) -> None:
         """What is said in several languages should be said in all."""
         self.each(report, path, texts)
         said = {*texts, *_written(report, path)}
@@ -116,19 +116,19 @@ class _Speech:
             message = f"this is not said in {_listed(missing)}"
             find(report, "missing-language", path, message, f"write `{missing[0]}:` and the text beside it", key=True)
 
-    def each(self, report: Report, path: Path, languages: Iterable[str]) -> None:
+    def each(self, report: Report, path: NodePath, languages: Iterable[str]) -> None:
         for language in languages:
             if language:
                 self.known(report, (*path, language), language, key=True)
 
-    def known(self, report: Report, path: Path, language: str, *, key: bool = False) -> None:
+    def known(self, report: Report, path: NodePath, language: str, *, key: bool = False) -> None:
         if language not in self.languages and language not in self.lost:
             hint = did_you_mean(language, self.languages, "it speaks")
             message = f"the project does not speak `{language}`"
             find(report, "unknown-language", path, message, hint, key=key, cause=f"language {language}")
 
 
-def _written(report: Report, path: Path) -> set[str]:
+def _written(report: Report, path: NodePath) -> set[str]:
     """The languages of a text as the file has them, those of broken texts too."""
     node = value_at(report, path)
     gone = {str(lost[-1]) for lost in report.pruned if lost[:-1] == path}

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.interpreters.statechart.inside import INSIDE, meant
 from lumen.interpreters.statechart.types import fits, refusal, type_checks
-from lumen.language.diagnostics import Path, did_you_mean
+from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect, Happen, Send, Story, Touch
 from lumen.loading.draft import Draft
@@ -53,7 +53,7 @@ class _Script:
                 case Expect() as expected:
                     self.expect((*scene.where, "expect"), expected)
 
-    def expect(self, where: Path, expected: Expect) -> None:
+    def expect(self, where: NodePath, expected: Expect) -> None:
         for i, state in enumerate(expected.states):
             self.state(first(self.report, (*where, "state", i), (*where, "state")), state)
         for key, value in expected.context.items():
@@ -64,7 +64,7 @@ class _Script:
             place = first(self.report, (*where, "published", "route"), (*where, "published"))
             known_route(self.draft, self.report, place, expected.published)
 
-    def state(self, path: Path, name: str) -> None:
+    def state(self, path: NodePath, name: str) -> None:
         """A state as `configuration` calls it, by its id where it has one; `quiz/ask` of what is invoked as `quiz`."""
         if self.machine is None or self._lost(name) or any(_has(*reading) for reading in meant(self.machine, name)):
             return
@@ -88,7 +88,7 @@ class _Script:
             root=f"the states of {file}",
         )
 
-    def key(self, path: Path, key: str, value: Any) -> None:
+    def key(self, path: NodePath, key: str, value: Any) -> None:
         """A context key, and whether it can have that value."""
         if self.machine is None or self._lost(key):
             return
@@ -101,13 +101,13 @@ class _Script:
             hint = f"it begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}"
             find(self.report, "wrong-type", path, f"`{key}` {refusal(value, check)}", hint)
 
-    def sensor(self, path: Path, sensor: str) -> None:
+    def sensor(self, path: NodePath, sensor: str) -> None:
         body = self.draft.body
         if body and sensor not in body.tactile:
             hint = did_you_mean(sensor, body.tactile, f"{body.name} has")
             find(self.report, "unknown-sensor", path, f"there is no tactile sensor `{sensor}`", hint)
 
-    def event(self, path: Path, event: str) -> None:
+    def event(self, path: NodePath, event: str) -> None:
         machine: Machine | None = self.machine
         if machine is None or self._lost(event) or any(hears(d, event) for d in descriptors(machine)):
             return
@@ -119,12 +119,12 @@ class _Script:
             hint = did_you_mean(event, known | waited)
             find(self.report, "unknown-event", path, message, hint, cause=f"name {event}")
 
-    def message(self, where: Path, route: str, body: Any) -> None:
+    def message(self, where: NodePath, route: str, body: Any) -> None:
         known = known_route(self.draft, self.report, (*where, "route"), route)
         if known and self.draft.settings and (*where, "body") not in self.report.pruned:
             self.fits((*where, "body"), body, self.draft.messages.get(self.draft.settings.routes[route].schema))
 
-    def fits(self, path: Path, data: Any, schema: Any) -> None:
+    def fits(self, path: NodePath, data: Any, schema: Any) -> None:
         """Data that the story makes up has to be such as the world could send."""
         if isinstance(schema, Mapping):
             for complaint in faults(data, schema):

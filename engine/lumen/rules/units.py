@@ -5,7 +5,7 @@ from math import pi
 from typing import Any
 
 from lumen.language.commands import Look, Move, Walk
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Machine
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
@@ -51,9 +51,9 @@ def _radians(report: Report) -> None:
         find(report, "wrong-unit", path, f"{angle:g} deg is very little: it looks like radians", hint)
 
 
-def _angles(data: Any, path: Path) -> Iterator[tuple[Path, float]]:
+def _angles(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
     """Every angle of a motion's `joints`."""
-    waiting: list[tuple[Any, Path]] = [(data, path)]
+    waiting: list[tuple[Any, NodePath]] = [(data, path)]
     while waiting:
         item, here = waiting.pop(0)
         if isinstance(item, dict):
@@ -85,7 +85,7 @@ def _actions(machine: Machine, report: Report, body: Body | None, stage: Stage |
                     _walk(report, (*where, "walk", key), value, length, room)
 
 
-def _look(report: Report, path: Path, joint: str, value: float, unit: str, body: Body | None) -> None:
+def _look(report: Report, path: NodePath, joint: str, value: float, unit: str, body: Body | None) -> None:
     limits = body.joints.get(joint) if body else None
     if limits is None or limits.minimum - 0.02 <= value <= limits.maximum + 0.02:
         return
@@ -97,13 +97,13 @@ def _look(report: Report, path: Path, joint: str, value: float, unit: str, body:
     find(report, "wrong-unit", path, f"the head can't turn to {shown:g} {unit}", hint)
 
 
-def _turned(report: Report, path: Path, theta: float, unit: str) -> None:
+def _turned(report: Report, path: NodePath, theta: float, unit: str) -> None:
     message = f"{theta / ANGLES[unit]:g} {unit} is {abs(theta) / (2 * pi):.1f} times around"
     hint = "write `units: {angle: deg}` at the top: this file counts in radians" if unit == "rad" else "turn once"
     find(report, "wrong-unit", path, message, hint)
 
 
-def _move(report: Report, path: Path, move: Move, angle: str, length: str) -> None:
+def _move(report: Report, path: NodePath, move: Move, angle: str, length: str) -> None:
     from lumen.interpreters.gait import Pace, fastest  # takes 0.1 s, with numpy: only where somebody walks on
 
     most = fastest(Pace())
@@ -123,7 +123,7 @@ def _move(report: Report, path: Path, move: Move, angle: str, length: str) -> No
             )
 
 
-def _walk(report: Report, path: Path, value: float, unit: str, room: tuple[float, float] | None) -> None:
+def _walk(report: Report, path: NodePath, value: float, unit: str, room: tuple[float, float] | None) -> None:
     most = room[1] - room[0] if room else FAR
     if abs(value) <= most + 1e-6:
         return

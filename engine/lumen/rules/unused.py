@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from lumen.language.commands import Play, Track
-from lumen.language.diagnostics import Path, Severity, has_errors, nearest
+from lumen.language.diagnostics import NodePath, Severity, has_errors, nearest
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect
 from lumen.loading.draft import Draft
@@ -133,7 +133,7 @@ def _alike_inside(machine: Machine, report: Report) -> None:
         _say_alike(report, (*state.where, "states"), [path.rpartition(".")[2] for path in state.children])
 
 
-def _say_alike(report: Report, path: Path, names: Iterable[str]) -> None:
+def _say_alike(report: Report, path: NodePath, names: Iterable[str]) -> None:
     for name, other in _alike(names):
         message = f"`{name}` and `{other}` differ by case only"
         related = [((*path, other), "the other one stands here")]

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from lumen.language.actions import Raise, Send
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Kind, Machine, State, Transition
 from lumen.loading.draft import Draft
 from lumen.loading.source import Report
@@ -173,7 +173,7 @@ class _Ways:
             yield (path := waiting.pop())
             waiting.extend(self.machine.states[path].children)
 
-    def from_where(self, path: str) -> list[tuple[Path, str]]:
+    def from_where(self, path: str) -> list[tuple[NodePath, str]]:
         """How one gets there, where there is a single way."""
         ways = self.entered.get(path, [])
         return [(ways[0].where, "only entered from here")] if len(ways) == 1 else []

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.inside import ran
-from lumen.language.diagnostics import Path, Place
+from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import Kind, Machine, State, Transition
 from lumen.language.projects import Project
 from lumen.runtime.exhibition import Observer
@@ -25,7 +25,7 @@ class Coverage:
 
     project: Project
     entered: dict[str, set[str]] = field(default_factory=dict)
-    taken: dict[str, set[Path]] = field(default_factory=dict)
+    taken: dict[str, set[NodePath]] = field(default_factory=dict)
 
     def of(self, behavior: str) -> Observer:
         """Who watches a run of that behaviour."""

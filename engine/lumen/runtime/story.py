@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Protocol, assert_never
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.inside import active, entered
 from lumen.language.commands import Command, Play, Publish, Say, Start
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Expect, Happen, Leave, Pause, Send, Speak, Story, Touch
@@ -29,7 +29,7 @@ class Failure(NamedTuple):
 
     story: str
     step: int
-    where: Path
+    where: NodePath
     expected: str
     was: str
 

@@ -8,14 +8,14 @@ from lumen.errors import ExpressionError
 from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
 from lumen.language.actions import Assign, CancelSend, Expression, If, LogText, Raise, Send, Step, Value
 from lumen.language.commands import Command, Log, Play, Start
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.machines import Machine, State
 
 LIMIT = 1000
 """Microsteps and internal events of a macrostep; the interpreter promises to give up after as many."""
 
-Where = Path
+Where = NodePath
 
 
 class FaultError(Exception):

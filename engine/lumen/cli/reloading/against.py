@@ -11,8 +11,7 @@ from lumen.interpreters.changes import live
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.statechart.types import type_checks, type_name
-from lumen.language.diagnostics import Diagnostic, Place
-from lumen.language.diagnostics import Path as Where
+from lumen.language.diagnostics import Diagnostic, NodePath, Place
 from lumen.language.machines import Machine
 from lumen.language.projects import Project
 from lumen.rules import check_files
@@ -64,7 +63,7 @@ def _moved(old: Project, new: Project, everywhere: Fates) -> Iterator[Diagnostic
                 yield _finding("reload-moves", message, place, hint)
 
 
-def _says(old: Machine, new: Machine, identity: Identity, path: str) -> Where | None:
+def _says(old: Machine, new: Machine, identity: Identity, path: str) -> NodePath | None:
     """Where stands what is to be done about a state that is gone; None for one that is not, or goes without."""
     if identity.state(path) is not None:
         return None
@@ -93,7 +92,7 @@ def _forgotten(old: Project, new: Project) -> Iterator[Diagnostic]:
             yield _finding("reload-forgets", message, place, "let `types` allow both")
 
 
-def _place(project: Project, behavior: str, where: Where) -> Place:
+def _place(project: Project, behavior: str, where: NodePath) -> Place:
     file = f"behaviors/{behavior}.yaml"
     document = project.documents.get(file)
     return document.place(where, key=True) if document else Place(file)

@@ -6,7 +6,7 @@ from typing import Any
 from lumen.formats.findings import Findings
 from lumen.formats.nodes import MAX_LEVELS, Node, clean_id, free_key
 from lumen.formats.xstate.source import Source
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 
 class State(Node):
@@ -16,7 +16,7 @@ class State(Node):
     __slots__ = ("named", "original", "regular", "where")
 
     original: str
-    where: Path
+    where: NodePath
     named: "dict[str, State]"
     regular: "list[State]"
 
@@ -44,7 +44,7 @@ class Outline:
         self.root = self._state(source.data, None, "", "", ())
         self._fill(self.root, 1)
 
-    def _state(self, data: Mapping[str, Any], parent: Node | None, key: str, original: str, where: Path) -> State:
+    def _state(self, data: Mapping[str, Any], parent: Node | None, key: str, original: str, where: NodePath) -> State:
         id = data.get("id") if parent is not None else None
         named = clean_id(id) if isinstance(id, str) else ""
         path = parent.below(key) if parent else ""

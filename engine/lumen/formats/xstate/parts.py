@@ -8,7 +8,7 @@ from typing import Any
 from lumen.formats.durations import duration
 from lumen.formats.findings import Findings
 from lumen.formats.xstate.source import Source
-from lumen.language.diagnostics import Path, has_errors
+from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.machines import Machine
 from lumen.loading.behaviors import build_machine
 from lumen.loading.plain import plain_document
@@ -31,20 +31,20 @@ class Parts:
         self.surroundings: dict[str, Any] = {}
         self._guards: dict[str, str] = {}
 
-    def lost(self, where: Path, message: str, hint: str = "") -> None:
+    def lost(self, where: NodePath, message: str, hint: str = "") -> None:
         self.findings.lost(self.source.place(where), message, hint)
 
-    def changed(self, where: Path, message: str, hint: str = "") -> None:
+    def changed(self, where: NodePath, message: str, hint: str = "") -> None:
         self.findings.changed(self.source.place(where), message, hint)
 
-    def actions(self, data: Any, where: Path) -> list[Action]:
+    def actions(self, data: Any, where: NodePath) -> list[Action]:
         """A name, an object, or a list of these."""
         if data is None:
             return []
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         return [action for place, row in rows if (action := self._action(row, place))]
 
-    def _action(self, data: Any, where: Path) -> Action | None:
+    def _action(self, data: Any, where: NodePath) -> Action | None:
         kind = data.get("type") if isinstance(data, dict) else data
         if data is None:
             self.lost(where, "an action is null: JSON has no place for its code", "give it a name in `setup`")
@@ -95,7 +95,7 @@ class Parts:
         build_machine(check_schema(document, "behavior", report), report, name="machine", into=Machine)
         return not has_errors([*found, *(d for d in report.diagnostics if d.code != "unknown-state")])
 
-    def guard(self, data: Any, where: Path) -> str | None:
+    def guard(self, data: Any, where: NodePath) -> str | None:
         """Our expression, None (and reported) where this is no guard."""
         kind = data.get("type") if isinstance(data, dict) else data
         params = data.get("params") if isinstance(data, dict) else None
@@ -109,7 +109,7 @@ class Parts:
             return None
         return f"context.{self._placeholder(kind, params, where)}"
 
-    def _placeholder(self, kind: str, params: Any, where: Path) -> str:
+    def _placeholder(self, kind: str, params: Any, where: NodePath) -> str:
         named = kind if params is None else f"{kind} {json.dumps(params, ensure_ascii=False)}"
         key = self._guards.get(named)
         if key is None:
@@ -124,7 +124,7 @@ class Parts:
         self.lost(where, f"the code of the guard `{kind}` is not in the file", hint)
         return key
 
-    def delay(self, text: str, where: Path) -> str | None:
+    def delay(self, text: str, where: NodePath) -> str | None:
         """A key of `after`: milliseconds."""
         try:
             length = float(text)

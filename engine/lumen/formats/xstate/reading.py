@@ -13,7 +13,7 @@ from lumen.formats.xstate.outline import Outline, State
 from lumen.formats.xstate.parts import DO, Action, Parts
 from lumen.formats.xstate.source import parse_json
 from lumen.formats.xstate.transitions import Row, Transitions
-from lumen.language.diagnostics import Diagnostic, Path
+from lumen.language.diagnostics import Diagnostic, NodePath
 
 _MEANT = {
     "id", "key", "type", "initial", "states", "on", "always", "after", "entry", "exit", "onDone", "invoke", "history",
@@ -224,7 +224,7 @@ class _Machine:
             data.update(self._ends(state, where, row))
         return data | ({"invoke": single(invokes)} if invokes else {})
 
-    def _ends(self, state: State, where: Path, row: Mapping[str, Any]) -> dict[str, Any]:
+    def _ends(self, state: State, where: NodePath, row: Mapping[str, Any]) -> dict[str, Any]:
         """What follows the end of something that is invoked."""
         found = {
             key: self.transitions.under(state, (*where, key), row[key]) for key in ("onDone", "onError") if key in row
@@ -240,7 +240,7 @@ class _Machine:
         data |= {"input": inputs[id]} if inputs[id] else {}
         return data if self.parts.fits({"invoke": data}) else None
 
-    def _invocations(self, state: State) -> Iterator[tuple[Path, Mapping[str, Any]]]:
+    def _invocations(self, state: State) -> Iterator[tuple[NodePath, Mapping[str, Any]]]:
         data, where = state.source.get("invoke"), (*state.where, "invoke")
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         for place, row in rows:

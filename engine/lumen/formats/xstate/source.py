@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.formats.findings import broken
-from lumen.language.diagnostics import Path, Place
+from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.source import Document, parse
 
 MAX_BYTES = 4_000_000
@@ -19,7 +19,7 @@ class Source:
     data: Any
     document: Document
 
-    def place(self, path: Path) -> Place:
+    def place(self, path: NodePath) -> Place:
         """The place of a key (or item), or of the nearest thing around it."""
         return self.document.place(path, key=True)
 

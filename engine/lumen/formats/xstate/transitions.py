@@ -4,7 +4,7 @@ from typing import Any
 
 from lumen.formats.xstate.outline import Outline, State
 from lumen.formats.xstate.parts import Parts
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 Row = dict[str, Any]
 
@@ -21,7 +21,7 @@ class Transitions:
         """What stands under a key of the state."""
         return self.under(state, (*state.where, key), state.source[key], eventless=key == "always")
 
-    def under(self, state: State, where: Path, data: Any, *, eventless: bool = False) -> list[Row]:
+    def under(self, state: State, where: NodePath, data: Any, *, eventless: bool = False) -> list[Row]:
         """A target, an object, or a list of these."""
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         found = [self._row(state, place, {} if row is None else row) for place, row in rows]
@@ -31,7 +31,7 @@ class Transitions:
             kept = [row for row in kept if "target" in row or "guard" in row]
         return kept
 
-    def _row(self, state: State, where: Path, data: Any) -> Row | None:
+    def _row(self, state: State, where: NodePath, data: Any) -> Row | None:
         if isinstance(data, str):
             data = {"target": data}
         if not isinstance(data, dict):
@@ -57,7 +57,7 @@ class Transitions:
             row["actions"] = actions
         return row
 
-    def targets(self, state: State, data: Any, where: Path) -> list[State] | None:
+    def targets(self, state: State, data: Any, where: NodePath) -> list[State] | None:
         """The states meant, None (and reported) where one does not exist."""
         found = []
         for text in data if isinstance(data, list) else [data]:
@@ -73,7 +73,7 @@ class Transitions:
         names = [state.calls(target, self.outline.title) for target in targets]
         return names[0] if len(names) == 1 else names
 
-    def _way(self, state: State, where: Path, targets: list[State], reenter: bool) -> Row:
+    def _way(self, state: State, where: NodePath, targets: list[State], reenter: bool) -> Row:
         """`target` and `reenter`; a transition to the state itself that does not re-enter it stays in it."""
         if targets == [state] and not reenter and state.kind == "atomic":
             return {}
@@ -92,7 +92,7 @@ class Transitions:
         self._parallel(state, where, targets, reenter)
         return row
 
-    def _parallel(self, state: State, where: Path, targets: list[State], reenter: bool) -> None:
+    def _parallel(self, state: State, where: NodePath, targets: list[State], reenter: bool) -> None:
         """Tell where W3C's rule leaves and enters more: a parallel state is no domain of a transition there."""
         domain: State | None = (
             state if not reenter and all(t is state or t.lies_below(state) for t in targets) else None

@@ -11,7 +11,7 @@ from lumen.interpreters.statechart import Snapshot, Step, initial, step
 from lumen.interpreters.statechart.answers import answer_of
 from lumen.interpreters.statechart.program import compiled
 from lumen.language.commands import BodyCommand, Command, Start
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Machine
 
 
@@ -67,7 +67,7 @@ class Walk:
         self.spots: dict[Key, Spot] = {}
         self.steps = 0
         self.walked = 0
-        self.taken: set[Path] = set()
+        self.taken: set[NodePath] = set()
         self.entered: set[str] = set()
         self._waiting: list[tuple[int, int, Spot]] = []
         first = initial(machine, language=language, epoch=epoch)

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.statechart import Snapshot
 from lumen.language.commands import Command
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 
 class Plan(NamedTuple):
@@ -51,7 +51,7 @@ class Refusal(NamedTuple):
     hint: str = ""
     state: str = ""
     behavior: str = ""
-    where: Path = ()
+    where: NodePath = ()
 
 
 Verdict = Plan | Wait | Refusal

@@ -36,14 +36,14 @@ from lumen.language.commands import (
     Wake,
     Walk,
 )
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 
 if TYPE_CHECKING:
     from lumen.interpreters.statechart.workbench import Workbench
 
 Act: TypeAlias = "Callable[[Workbench], None]"
-Block: TypeAlias = "tuple[tuple[Act, Path], ...]"
+Block: TypeAlias = "tuple[tuple[Act, NodePath], ...]"
 Make: TypeAlias = "Callable[[Workbench], BodyCommand]"
 
 

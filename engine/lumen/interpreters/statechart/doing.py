@@ -20,7 +20,7 @@ from lumen.language.actions import (
     Step,
     Wait,
 )
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 
 if TYPE_CHECKING:
     from lumen.interpreters.statechart.workbench import Workbench
@@ -31,7 +31,7 @@ class Instant:
     """Done at once."""
 
     act: Act
-    where: Path
+    where: NodePath
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Awaited:
     """A robot's command, over when it is answered."""
 
     make: Make
-    where: Path
+    where: NodePath
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Choice:
     guard: Callable[[Scope], bool]
     then: "tuple[Deed, ...]"
     otherwise: "tuple[Deed, ...]"
-    where: Path
+    where: NodePath
 
     def block(self, name: str) -> "tuple[Deed, ...]":
         return self.then if name == "then" else self.otherwise
@@ -75,7 +75,7 @@ Deed: TypeAlias = Instant | Awaited | Pause | Choice | Together
 class DeedError(Exception):
     """A deed failed; carries the place and the reason."""
 
-    def __init__(self, reason: str, where: Path) -> None:
+    def __init__(self, reason: str, where: NodePath) -> None:
         super().__init__(reason)
         self.reason, self.where = reason, where
 
@@ -154,7 +154,7 @@ def _fork(branches: list[Position | None]) -> Fork | None:
 class _Failing:
     """Turns what an expression or action raises into a DeedError with its place."""
 
-    def __init__(self, where: Path) -> None:
+    def __init__(self, where: NodePath) -> None:
         self.where = where
 
     def __enter__(self) -> None: ...
@@ -164,7 +164,7 @@ class _Failing:
             raise DeedError(str(error), self.where) from error
 
 
-def _compile(action: Action, where: Path) -> Deed:
+def _compile(action: Action, where: NodePath) -> Deed:
     match action:
         case Wait(seconds):
             return Pause(seconds)

@@ -11,7 +11,7 @@ from lumen.interpreters.statechart.plans import Configuration
 from lumen.interpreters.statechart.program import Program
 from lumen.interpreters.statechart.values import Counters, Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command, Start
-from lumen.language.diagnostics import Path
+from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.machines import Transition
 
@@ -31,7 +31,7 @@ class Workbench:
     entered: tuple[str, ...] = ()
     transitions: tuple[Transition, ...] = ()
     raised: tuple[Event, ...] = ()
-    failed: frozenset[Path] = frozenset()
+    failed: frozenset[NodePath] = frozenset()
     begun: tuple[str, ...] = ()
     steps: tuple[tuple[str, Step], ...] = ()
     turns = 0
@@ -53,7 +53,7 @@ class Workbench:
         """Do the actions of a block; the first that fails ends it."""
         if node is not self.here:
             self.stand(node)
-        where: Path = ()
+        where: NodePath = ()
         try:
             for act, where in block:  # noqa: B007 - `where` is where it failed
                 act(self)
@@ -151,7 +151,7 @@ class Workbench:
             )
         return scope
 
-    def fail(self, reason: str, where: Path) -> None:
+    def fail(self, reason: str, where: NodePath) -> None:
         """Raise error.execution; not again for the same place while that is what is being handled."""
         handling = self.event is not None and self.event.name == "error.execution"
         if not (handling and where in self.failed):

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import degrees
 
-from lumen.language.diagnostics import Diagnostic, Path, Places
+from lumen.language.diagnostics import Diagnostic, NodePath, Places
 from lumen.language.motions import Key
 from lumen.rules.codes import CODES
 from lumen.rules.physics import FELL, Outcome, Rehearsal
@@ -115,7 +115,7 @@ class _Judge:
         joints = (what,) if code in _JOINTS else _LEGS if code == "feet-slide" else ()
         yield self._found(code, message, hint, self._keys(at, joints))
 
-    def _keys(self, at: float, joints: Iterable[str]) -> Path:
+    def _keys(self, at: float, joints: Iterable[str]) -> NodePath:
         """Where the keyframe stands that the robot was on its way to; of these joints, where some of them move."""
         tracks = self._case.motion.tracks
         chosen = [keys for name, keys in tracks.items() if any(part in name for part in joints)] or list(
@@ -125,7 +125,7 @@ class _Judge:
         keys = sorted(coming or [keys[-1] for keys in chosen], key=lambda key: key.time)
         return _keyframe(keys[0]) if keys else ()
 
-    def _found(self, code: str, message: str, hint: str, path: Path) -> Diagnostic:
+    def _found(self, code: str, message: str, hint: str, path: NodePath) -> Diagnostic:
         severity = CODES[code].severity
         return Diagnostic(code, message, self._document.place(path), hint, severity)
 
@@ -151,7 +151,7 @@ def _name(what: str) -> str:
     return _FEET.get(what, what if " " in what else f"`{what}`")
 
 
-def _keyframe(key: Key) -> Path:
+def _keyframe(key: Key) -> NodePath:
     """Where the keyframe of a key stands: the innermost item of a list of keyframes."""
     last = max((i for i, step in enumerate(key.where) if step == "keyframes"), default=None)
     if last == len(key.where) - 1:
