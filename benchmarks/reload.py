@@ -36,8 +36,8 @@ from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
-from lumen.runtime.exhibition import TICK
 from lumen.runtime.home import Home
+from lumen.runtime.loop import TICK
 
 RATE = 200
 PATIENCE = 60.0

@@ -11,7 +11,7 @@ from lumen.bus import connect
 from lumen.buses.consuming import Consuming
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Say
-from lumen.runtime.exhibition import Observer
+from lumen.runtime.loop import Observer
 from tests.live.conftest import PATIENT
 from tests.live.shows import Live
 from tests.rabbitmq import RabbitMQ

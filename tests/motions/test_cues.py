@@ -17,7 +17,7 @@ from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
-from lumen.runtime.exhibition import Observer
+from lumen.runtime.loop import Observer
 from tests.motions.making import ROOT, made, nao
 
 GREETING = """

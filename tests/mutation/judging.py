@@ -18,7 +18,7 @@ from lumen.language.stories import Story
 from lumen.loading.source import Document
 from lumen.rules import check_files
 from lumen.rules.codes import CODES
-from lumen.runtime.exhibition import Observer
+from lumen.runtime.loop import Observer
 
 PATIENCE = 5.0
 """CPU time that lint, or a story, may take [s]."""

@@ -19,7 +19,7 @@ from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
 from lumen.rules import load
-from lumen.runtime.exhibition import TICK, Exhibition, Observer
+from lumen.runtime.loop import TICK, BehaviorLoop, Observer
 from lumen.statechart import Machine
 from tests import exhibits
 from tests.tour.names import ROOT
@@ -44,15 +44,15 @@ def machine(**parts: object) -> Machine:
     return Machine.from_dict({"id": "tour", **parts}, "tour")
 
 
-def running(project: Project) -> tuple[Exhibition, Seen]:
+def running(project: Project) -> tuple[BehaviorLoop, Seen]:
     robot, seen = RecordingRobot(project.body), Seen()
-    exhibition = Exhibition(project, robot, MemoryBus(), SimulatedClock(robot.advance))
+    exhibition = BehaviorLoop(project, robot, MemoryBus(), SimulatedClock(robot.advance))
     exhibition.observers.append(seen)
     exhibition.start()
     return exhibition, seen
 
 
-def swap(exhibition: Exhibition, project: Project, **how: bool) -> Plan:
+def swap(exhibition: BehaviorLoop, project: Project, **how: bool) -> Plan:
     plan = exhibition.plan(project, **how)
     assert isinstance(plan, Plan)
     exhibition.apply(project, plan)

@@ -13,7 +13,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Hall, Robot
-from lumen.runtime.exhibition import Observer, Part
+from lumen.runtime.loop import Observer, TickHook
 from tests.tour.names import GUIDE
 
 
@@ -66,7 +66,7 @@ class Log(Observer):
             self.run.played.append(self.playing[id])
 
 
-def play(project: Project, story: Story, performer: Performer | None = None, *, part: Part | None = None) -> Run:
+def play(project: Project, story: Story, performer: Performer | None = None, *, part: TickHook | None = None) -> Run:
     """The story played to its end, or to its failure; `part` lives with it."""
     run = Run()
     chosen = Cast(performer, SimulatedClock(performer.advance), performer) if performer else None

@@ -22,7 +22,7 @@ from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
 from lumen.loading.source import Document, Report
 from lumen.ports import Perform, RobotCommand
-from lumen.runtime.exhibition import TICK
+from lumen.runtime.loop import TICK
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

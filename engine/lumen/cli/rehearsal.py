@@ -15,7 +15,7 @@ from lumen.errors import LumenError
 from lumen.language.diagnostics import Place
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.runtime.exhibition import Observer, Part
+from lumen.runtime.loop import Observer, TickHook
 from lumen.runtime.story import Failure, Lack, StoryPlayer
 
 REMEMBERED = 12
@@ -56,7 +56,7 @@ def rehearse(
     chosen: Cast | None = None,
     *,
     observers: Iterable[Observer] = (),
-    parts: Iterable[Part] = (),
+    parts: Iterable[TickHook] = (),
     whole: bool = False,
 ) -> Rehearsal:
     """Play the story to its end, or to its failure; `chosen` is another robot than the recording one.

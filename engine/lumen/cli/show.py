@@ -16,7 +16,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Deed, Story
 from lumen.ports import Sense
 from lumen.robots.server import Server
-from lumen.runtime.exhibition import Exhibition, Observer, Part
+from lumen.runtime.loop import BehaviorLoop, Observer, TickHook
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.story import StoryPlayer, staged
 from lumen.runtime.trace import Trace
@@ -49,7 +49,7 @@ class Show(Observer):
         project = staged(project, story)
         self.bus = validated(connect(bus), project) if isinstance(bus, str) else bus
         self.robot, self._story = chosen.robot, story
-        self.exhibition = Exhibition(project, chosen.robot, self.bus, chosen.clock, chosen.tracking)
+        self.exhibition = BehaviorLoop(project, chosen.robot, self.bus, chosen.clock, chosen.tracking)
         self._sensed: Callable[[Project], Project] = _all if sensing else _quiet
         self.server = None if chosen.remote else Server(self._sensed(project), chosen.robot, self.bus)
         self.trace = Trace(self.bus, lambda: self.exhibition.project, chosen.clock.now)
@@ -60,7 +60,7 @@ class Show(Observer):
         self.closing: list[Callable[[], None]] = [chosen.robot.close]
         if isinstance(bus, str):
             self.closing.insert(0, self.bus.close)
-        self.after: list[Part] = []
+        self.after: list[TickHook] = []
         self.exhibition.observers.append(self)
         if sensing:
             self.exhibition.observers.append(self.trace)

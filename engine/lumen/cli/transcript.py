@@ -30,7 +30,7 @@ from lumen.language.commands import (
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import Machine
 from lumen.language.stories import Arrive, Deed, Happen, Leave, Send, Speak, Touch
-from lumen.runtime.exhibition import Observer
+from lumen.runtime.loop import Observer
 
 INDENT = 18
 

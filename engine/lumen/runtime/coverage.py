@@ -9,7 +9,7 @@ from lumen.interpreters.statechart.inside import ran
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import Kind, Machine, State, Transition
 from lumen.language.projects import Project
-from lumen.runtime.exhibition import Observer
+from lumen.runtime.loop import Observer
 
 
 class Gap(NamedTuple):

@@ -12,7 +12,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Deed, Expect, Happen, Leave, Pause, Send, Speak, Story, Touch
 from lumen.ports import Bus, Hall
-from lumen.runtime.exhibition import Observer
+from lumen.runtime.loop import Observer
 from lumen.runtime.sending import send
 from lumen.runtime.visitor import Walker
 

@@ -12,7 +12,7 @@ from lumen.language.commands import Command, Log, Publish, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus
-from lumen.runtime.exhibition import Observer
+from lumen.runtime.loop import Observer
 
 KEY, ROUTE = "lumen.state", "state"
 LASTING = 10.0

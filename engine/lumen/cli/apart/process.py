@@ -14,7 +14,7 @@ from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.ports import Clock
 from lumen.robots.ways import COMMAND, key_of
-from lumen.runtime.exhibition import TICK
+from lumen.runtime.loop import TICK
 from lumen.runtime.presence import ROBOT, Presence, told
 from lumen.runtime.trace import KEY
 

@@ -6,10 +6,10 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from lumen.language.projects import Project
-from lumen.runtime.exhibition import Exhibition
 from lumen.runtime.home import Home
 from lumen.runtime.journal import Journal
 from lumen.runtime.keeping import Keeper
+from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.trials import Trials
 
 _log = logging.getLogger(__name__)
@@ -71,7 +71,7 @@ class Records:
         if self.keeper:
             self.keeper.prune(*(project.hash for project in projects if project))
 
-    def keep(self, exhibition: Exhibition) -> None:
+    def keep(self, exhibition: BehaviorLoop) -> None:
         """Have it written where the behaviour stands, where that is news and what was to be written before is."""
         snapshot = exhibition.runtime.snapshot
         if self.keeper is None or not self._settled() or not self.keeper.due(snapshot):

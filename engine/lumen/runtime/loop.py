@@ -1,4 +1,4 @@
-"""A running exhibition: the loop that owns the order of things, fifty times a second."""
+"""The loop of a running behaviour: the order of things, fifty times a second."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -19,8 +19,8 @@ from lumen.runtime.tracking import Following, Tracking
 TICK = 0.02
 BRAIN_LOST = 5.0
 
-Part = Callable[[float], None]
-"""Something that lives with the exhibition: called at each tick with its time [s]."""
+TickHook = Callable[[float], None]
+"""Something that runs with the loop: called at each tick with its time [s]."""
 
 
 class Observer:
@@ -36,7 +36,7 @@ class Observer:
         """The robot answered a command, or noticed something; the behaviour has not heard of it yet."""
 
 
-class Exhibition:
+class BehaviorLoop:
     """A project on a robot, a bus and a clock.
 
     At each tick: the clock waits, the `parts` live, what happened becomes events, the behaviour steps, its commands are
@@ -49,7 +49,7 @@ class Exhibition:
         self, project: Project, robot: Robot, bus: Bus, clock: Clock, tracking: Following | None = None
     ) -> None:
         self.robot, self.bus, self.clock = robot, bus, clock
-        self.parts: list[Part] = []
+        self.parts: list[TickHook] = []
         self.observers: list[Observer] = []
         self.rescue: Rescue = lambda _: None
         self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
