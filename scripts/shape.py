@@ -1,0 +1,418 @@
+"""Prints the shape of the house, from its code alone: `python scripts/shape.py [--markdown | --json]`.
+
+    python scripts/shape.py --write docs/architecture.md    puts the table between the markers of a page
+    python scripts/shape.py --check docs/architecture.md    fails where that table is no longer true
+    python scripts/shape.py --action say                    the files that know an action
+    python scripts/shape.py --commit HEAD                   the files that a commit touched
+
+What is counted are the Python files of the package, by what stands in them; nothing is imported. Sizes are lines as an
+editor counts them: a function's from its `def` to its end, its docstring included. Paths are beneath the package.
+"""
+
+import argparse
+import ast
+import json
+import re
+import subprocess
+import sys
+import tomllib
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from pathlib import Path
+from statistics import median_low
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = "engine/lumen"
+
+MAX_SHARING_FILES = 3
+"""More files than these with a constant, or a file name, in common are told of."""
+
+SHOWN_ACTION = "leds"
+"""The action whose files are counted where no other is asked for."""
+
+TOP_LEVEL = "top-level files"
+"""What stands in the package itself, in no floor's folder."""
+
+BEGIN, END = "<!-- shape: written by scripts/shape.py -->\n", "<!-- end of shape -->"
+
+_CONSTANT = re.compile(r"[A-Z][A-Z0-9_]+")
+_TYPE_NAME = re.compile(r"_?[A-Z]\w*[a-z]\w*")
+_DOTTED = re.compile(r"[\w.]+")
+_WORD = re.compile(r"[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])")
+
+
+class SourceFile(NamedTuple):
+    """A Python file of the package."""
+
+    path: str
+    module: str
+    text: str
+    tree: ast.Module
+
+    @property
+    def lines(self) -> int:
+        return len(self.text.splitlines())
+
+
+class When(StrEnum):
+    """When an import happens."""
+
+    LOADING = "at loading"
+    LATE = "in a function"
+    TYPES = "for types"
+
+
+class Import(NamedTuple):
+    """One file of the package imports another."""
+
+    source: str
+    target: str
+    when: When
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Size:
+    """How many lines something has."""
+
+    lines: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """A folder of the package, with all that is in it."""
+
+    name: str
+    files: int
+    lines: int
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """The figures. Names that several files have are given with those files; `circles` by the imports counted."""
+
+    floors: list[Floor]
+    median_file: int
+    largest_file: Size
+    median_function: int
+    largest_function: Size
+    repeated_types: dict[str, list[str]]
+    repeated_private_types: dict[str, list[str]]
+    repeated_constants: dict[str, list[str]]
+    repeated_file_names: dict[str, list[str]]
+    circles: dict[str, list[list[str]]]
+    arrows_up: list[str]
+    action: str
+    action_files: list[str]
+
+
+def read(package: Path) -> list[SourceFile]:
+    """The Python files beneath a folder, in the order of their paths; raises SyntaxError for one that is not Python."""
+    return [_source_file(package, path) for path in sorted(package.rglob("*.py"))]
+
+
+def _source_file(package: Path, path: Path) -> SourceFile:
+    beneath, text = path.relative_to(package), path.read_text(encoding="utf-8")
+    module = ".".join([package.name, *beneath.with_suffix("").parts]).removesuffix(".__init__")
+    return SourceFile(beneath.as_posix(), module, text, ast.parse(text, str(path)))
+
+
+def floor_order(pyproject: str) -> list[set[str]]:
+    """What stands on each floor, from the top: the first contract of layers in the text of a pyproject.toml."""
+    contracts = tomllib.loads(pyproject)["tool"]["importlinter"]["contracts"]
+    layers = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
+    return [{name.strip(" ()").partition(".")[2] for name in row.split("|")} for row in layers]
+
+
+def floors(files: Iterable[SourceFile], order: Sequence[set[str]]) -> list[Floor]:
+    """Files and lines of each floor from the top; folders that are no floor, and single files, come last."""
+    found: dict[str, list[int]] = defaultdict(list)
+    for file in files:
+        found[file.path.split("/")[0] if "/" in file.path else TOP_LEVEL].append(file.lines)
+    names = [name for row in order for name in sorted(row) if name in found]
+    names += [name for name in found if name not in names]
+    return [Floor(name, len(found[name]), sum(found[name])) for name in names]
+
+
+def file_sizes(files: Iterable[SourceFile]) -> list[Size]:
+    """The files by their lines, smallest first, without those that hold nothing."""
+    return sorted(Size(file.lines, file.path) for file in files if file.lines)
+
+
+def function_sizes(files: Iterable[SourceFile]) -> list[Size]:
+    """The functions and methods by their lines, smallest first."""
+    return sorted(
+        Size((node.end_lineno or node.lineno) - node.lineno + 1, f"{node.name} in {file.path}")
+        for file in files
+        for node in ast.walk(file.tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+    )
+
+
+def type_names(file: SourceFile) -> set[str]:
+    """The classes and the aliases of types at a file's top level."""
+    classes = {node.name for node in _top_level(file.tree.body) if isinstance(node, ast.ClassDef)}
+    return classes | {name for name in _assigned(file, aliases=True) if _TYPE_NAME.fullmatch(name)}
+
+
+def constants(file: SourceFile) -> set[str]:
+    """The public constants at a file's top level."""
+    return {name for name in _assigned(file) if _CONSTANT.fullmatch(name)}
+
+
+def _assigned(file: SourceFile, *, aliases: bool = False) -> Iterator[str]:
+    """The names that are given values at a file's top level; with `aliases`, those that may be types."""
+    for node in _top_level(file.tree.body):
+        if isinstance(node, ast.Assign | ast.AnnAssign) and not (aliases and _is_made(node.value)):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            parts = (part for target in targets for part in ast.walk(target))
+            yield from (part.id for part in parts if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store))
+
+
+def _is_made(value: ast.expr | None) -> bool:
+    """Whether a value is what a call returns, as a TypeVar is; a NewType is a type all the same."""
+    return isinstance(value, ast.Call) and not (isinstance(value.func, ast.Name) and value.func.id == "NewType")
+
+
+def _top_level(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
+    """The statements of a module, those under an `if` or a `try` too."""
+    for node in body:
+        yield node
+        if isinstance(node, ast.If | ast.Try):
+            yield from _top_level([*node.body, *node.orelse])
+
+
+def shared(
+    names: Callable[[SourceFile], Iterable[str]], files: Iterable[SourceFile], most: int
+) -> dict[str, list[str]]:
+    """The names that more than `most` files have, with those files."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for file in files:
+        for name in names(file):
+            found[name].append(file.path)
+    return {name: found[name] for name in sorted(found) if len(found[name]) > most}
+
+
+def file_name(file: SourceFile) -> list[str]:
+    """The base name of a file, of one that has a name of its own."""
+    name = file.path.rpartition("/")[2]
+    return [] if name.startswith("__") else [name]
+
+
+def imports(files: Sequence[SourceFile]) -> list[Import]:
+    """Which file imports which, as it is written: that a package is loaded before what is in it does not count."""
+    paths = {file.module: file.path for file in files}
+    return sorted(
+        {
+            Import(file.path, paths[module], when)
+            for file in files
+            for node, when in _import_statements(file.tree.body)
+            for module in _imported(node, paths)
+        }
+    )
+
+
+def _import_statements(
+    body: Iterable[ast.AST], when: When = When.LOADING
+) -> Iterator[tuple[ast.Import | ast.ImportFrom, When]]:
+    """The imports in these statements, at any depth, each with when it happens."""
+    for node in body:
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield node, when
+        elif isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
+            yield from _import_statements(node.body, When.TYPES)
+            yield from _import_statements(node.orelse, when)
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield from _import_statements(node.body, When.LATE)
+        elif isinstance(node, ast.stmt | ast.excepthandler | ast.match_case):
+            yield from _import_statements(ast.iter_child_nodes(node), when)
+
+
+def _imported(node: ast.Import | ast.ImportFrom, modules: Iterable[str]) -> Iterator[str]:
+    """Those of the modules that a statement imports; `from a import b` imports `a.b` where that is one, else `a`."""
+    for alias in node.names:
+        parent = node.module if isinstance(node, ast.ImportFrom) else None
+        yield from [name for name in (f"{parent}.{alias.name}", parent or alias.name) if name in modules][:1]
+
+
+def circles(arrows: Iterable[Import], counted: Iterable[When]) -> list[list[str]]:
+    """The groups of files of which each reaches every other, largest first."""
+    targets: dict[str, set[str]] = defaultdict(set)
+    for arrow in arrows:
+        if arrow.when in counted and arrow.source != arrow.target:
+            targets[arrow.source].add(arrow.target)
+    reached = {file: _reached(file, targets) for file in list(targets)}
+    groups = {frozenset(b for b in reached[a] if a in reached.get(b, ())) for a in reached if a in reached[a]}
+    return sorted((sorted(group) for group in groups), key=lambda group: (-len(group), group))
+
+
+def _reached(file: str, targets: Mapping[str, set[str]]) -> set[str]:
+    found: set[str] = set()
+    waiting = [file]
+    while waiting:
+        new = targets.get(waiting.pop(), set()) - found
+        found |= new
+        waiting += new
+    return found
+
+
+def arrows_up(arrows: Iterable[Import], order: Sequence[set[str]]) -> list[str]:
+    """The imports, whenever they happen, of a floor above one's own or beside it."""
+    rank = {name: number for number, row in enumerate(order) for name in row}
+    found = []
+    for arrow in arrows:
+        source, target = (path.split("/")[0].removesuffix(".py") for path in arrow[:2])
+        if source != target and rank.get(source, -1) >= rank.get(target, len(order)):
+            found.append(f"{arrow.source} -> {arrow.target} ({arrow.when})")
+    return found
+
+
+def action_files(files: Iterable[SourceFile], action: str) -> list[str]:
+    """The files that know an action: its name is a word of an identifier, or of a text that is nothing but names."""
+    return [file.path for file in files if action in file.text.lower() and action in _words(file.tree)]
+
+
+def _words(tree: ast.Module) -> set[str]:
+    """The words, in small letters, of all names in a file: of `SayText`, of `say_text` and of `"say.text"` the same."""
+    values = (value for node in ast.walk(tree) for _, value in ast.iter_fields(node))
+    names = {value for value in values if isinstance(value, str) and _DOTTED.fullmatch(value)}
+    return {word.lower() for name in names for word in _WORD.findall(name)}
+
+
+def commit_files(root: Path, commit: str) -> list[str]:
+    """The Python files of the package that a commit touched; raises CalledProcessError for one that is not there."""
+    command = ["git", "show", "--name-only", "--format=", commit, "--", PACKAGE]
+    names = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stdout.split("\n")
+    return [name.removeprefix(f"{PACKAGE}/") for name in names if name.endswith(".py")]
+
+
+def measure(files: Sequence[SourceFile], order: Sequence[set[str]], action: str = SHOWN_ACTION) -> Shape:
+    """All figures of the files of a package, whose floors stand in that order from the top."""
+    by_file, by_function, arrows = file_sizes(files), function_sizes(files), imports(files)
+    types = shared(type_names, files, 1)
+    counted = [[When.LOADING], [When.LOADING, When.TYPES], [When.LOADING, When.LATE], list(When)]
+    return Shape(
+        floors=floors(files, order),
+        median_file=median_low(size.lines for size in by_file),
+        largest_file=by_file[-1],
+        median_function=median_low(size.lines for size in by_function),
+        largest_function=by_function[-1],
+        repeated_types={name: where for name, where in types.items() if not name.startswith("_")},
+        repeated_private_types={name: where for name, where in types.items() if name.startswith("_")},
+        repeated_constants=shared(constants, files, MAX_SHARING_FILES),
+        repeated_file_names=shared(file_name, files, MAX_SHARING_FILES),
+        circles={" + ".join(whens): circles(arrows, whens) for whens in counted},
+        arrows_up=arrows_up(arrows, order),
+        action=action,
+        action_files=action_files(files, action),
+    )
+
+
+def report(shape: Shape) -> str:
+    """All figures, and the names behind them."""
+    sizes = [
+        f"{floor.name:<16}{floor.files:>5} files {floor.lines:>7} lines" for floor in (*shape.floors, total(shape))
+    ]
+    file, function, most = shape.largest_file, shape.largest_function, MAX_SHARING_FILES
+    parts = [
+        *sizes,
+        f"median file {shape.median_file} lines, largest {file.lines}: {file.name}",
+        f"median function {shape.median_function} lines, largest {function.lines}: {function.name}",
+        _several("public types defined in more than one file", shape.repeated_types),
+        _several("private types defined in more than one file", shape.repeated_private_types),
+        _several(f"public constants defined in more than {most} files", shape.repeated_constants),
+        _several(f"names of more than {most} files", shape.repeated_file_names),
+        *(_listed(f"circles, imports {whens}", map(" ".join, found)) for whens, found in shape.circles.items()),
+        _listed("imports up the floors or across", shape.arrows_up),
+        _listed(f"files that know the action `{shape.action}`", shape.action_files),
+    ]
+    return "\n".join(parts)
+
+
+def _several(title: str, names: Mapping[str, Sequence[str]]) -> str:
+    return _listed(title, (f"{name} ({len(files)}): {', '.join(files)}" for name, files in names.items()))
+
+
+def _listed(title: str, items: Iterable[str]) -> str:
+    lines = [f"  {item}" for item in items]
+    return "\n".join([f"{title}: {len(lines)}", *lines])
+
+
+def total(shape: Shape) -> Floor:
+    """All floors as one."""
+    return Floor("together", sum(floor.files for floor in shape.floors), sum(floor.lines for floor in shape.floors))
+
+
+def table(shape: Shape) -> str:
+    """The figures for the docs, in Markdown; lines are rounded, so that not every change makes them stale."""
+    most, every = MAX_SHARING_FILES, " + ".join(When)
+    rows = [
+        *((f"`{floor.name}`", f"{floor.files} files, {rounded(floor.lines):,} lines") for floor in shape.floors),
+        ("together", f"{total(shape).files} files, {rounded(total(shape).lines):,} lines"),
+        ("a file", f"median {shape.median_file} lines, largest {_size(shape.largest_file)}"),
+        ("a function", f"median {shape.median_function} lines, largest {_size(shape.largest_function)}"),
+        ("public types of the same name", f"{len(shape.repeated_types)}"),
+        (f"constants whose name stands in more than {most} files", f"{len(shape.repeated_constants)}"),
+        (f"file names used more than {most} times", f"{len(shape.repeated_file_names)}"),
+        ("circles of imports, type-only and late ones counted", f"{len(shape.circles[every])}"),
+        ("imports up the floors", f"{len(shape.arrows_up)}"),
+        (f"files that know the action `{shape.action}`", f"{len(shape.action_files)}"),
+    ]
+    return "".join(f"| {name} | {figure} |\n" for name, figure in [("what", "how much"), ("---", "---"), *rows])
+
+
+def _size(size: Size) -> str:
+    return f"{rounded(size.lines)} (`{size.name}`)"
+
+
+def rounded(number: int) -> int:
+    """A number to two significant digits."""
+    return int(float(f"{number:.2g}"))
+
+
+def placed(page: str, text: str) -> str:
+    """A page with the text between its markers; raises ValueError for one without them."""
+    before, begin, rest = page.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not end:
+        raise ValueError(f"the page has no lines {BEGIN.strip()} and {END}")
+    return f"{before}{begin}{text}{end}{after}"
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--root", type=Path, default=ROOT, help="another checkout")
+    parser.add_argument("--action", default=SHOWN_ACTION, help="count the files that know this action")
+    parser.add_argument("--commit", help="only count the files of the package that this commit touched")
+    output = parser.add_mutually_exclusive_group()
+    output.add_argument("--markdown", action="store_true", help="the table for the docs")
+    output.add_argument("--json", action="store_true", help="all figures and names")
+    output.add_argument("--write", type=Path, metavar="PAGE", help="put the table into a page")
+    output.add_argument("--check", type=Path, metavar="PAGE", help="fail where the table of a page is stale")
+    asked = parser.parse_args(arguments)
+    if asked.commit:
+        print(_listed(f"Python files of the package in {asked.commit}", commit_files(asked.root, asked.commit)))
+        return
+    order = floor_order((asked.root / "pyproject.toml").read_text(encoding="utf-8"))
+    shape = measure(read(asked.root / PACKAGE), order, asked.action)
+    if page := asked.write or asked.check:
+        _keep(page, table(shape), only_check=asked.check is not None)
+    else:
+        print(json.dumps(asdict(shape), indent=2) if asked.json else table(shape) if asked.markdown else report(shape))
+
+
+def _keep(page: Path, text: str, *, only_check: bool) -> None:
+    """Put the table into a page, or end with 1 where it does not stand there."""
+    now = page.read_text(encoding="utf-8")
+    new = placed(now, text)
+    if only_check and now != new:
+        sys.exit(f"{page} is stale: run `python scripts/shape.py --write {page}`")
+    if not only_check:
+        page.write_text(new, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
