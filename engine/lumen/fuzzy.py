@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, Self
 
 from lumen.errors import ProjectError, UsageError
 from lumen.interpreters.inference import Evaluator, Explanation, explain
-from lumen.language import controllers
+from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import has_errors
 from lumen.loading.controllers import build_controller
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Document, Report, parse
+from lumen.loading.source import Document, DocumentReport, parse
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["Controller", "Evaluator", "Explanation"]
 
 
-class Controller(controllers.Controller):
+class Controller(ControllerDefinition):
     """A fuzzy controller that can be asked; compiled when it first is."""
 
     @classmethod
@@ -42,7 +42,7 @@ class Controller(controllers.Controller):
 
     @classmethod
     def _build(cls, document: Document, name: str) -> Self:
-        report = Report(document)
+        report = DocumentReport(document)
         controller = build_controller(check_schema(document, "controller", report), report, name=name, into=cls)
         if controller is None or has_errors(report.diagnostics):
             raise ProjectError(report.diagnostics)

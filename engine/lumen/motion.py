@@ -11,11 +11,12 @@ from lumen.interpreters.trajectory import Trajectory
 from lumen.language import motions
 from lumen.language.diagnostics import has_errors
 from lumen.language.robots import Body
+from lumen.loading.draft import ProjectDraft
 from lumen.loading.motions import build_motion, countable
 from lumen.loading.packaged import MAIN_FILE, find_project, shipped_root
-from lumen.loading.project import Draft, draft, read_files
+from lumen.loading.project import draft, read_files
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Document, Report, parse
+from lumen.loading.source import Document, DocumentReport, parse
 
 __all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]
 
@@ -46,8 +47,8 @@ class Motion(motions.Motion):
         return cls._build(Document(name, data), name, _surroundings(shipped_root()))
 
     @classmethod
-    def _build(cls, document: Document, name: str, around: Draft) -> Self:
-        report, body = Report(document), _body(around)
+    def _build(cls, document: Document, name: str, around: ProjectDraft) -> Self:
+        report, body = DocumentReport(document), _body(around)
         if not countable(document.data, report):
             raise ProjectError(report.diagnostics)
         data = check_schema(document, "motion", report)
@@ -76,13 +77,13 @@ def _home(path: Path) -> Path:
     return folder.parent if folder.name == "motions" and (folder.parent / "models").is_dir() else find_project()
 
 
-def _surroundings(root: Path) -> Draft:
+def _surroundings(root: Path) -> ProjectDraft:
     """What a motion needs of a project: its robot and its other motions."""
     wanted = ("models/", "motions/")
     return draft({file: c for file, c in read_files(root).items() if file.startswith(wanted) or file == MAIN_FILE})
 
 
-def _body(around: Draft) -> Body:
+def _body(around: ProjectDraft) -> Body:
     body = around.body or next(iter(around.bodies.values()), None)
     if body is None:
         raise ProjectError(around.diagnostics)

@@ -19,7 +19,7 @@ from lumen.language.motions import Motion
 from lumen.loading.motions import build_motion
 from lumen.loading.packaged import shipped_root
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Report, parse
+from lumen.loading.source import DocumentReport, parse
 
 BODY = lumen.load(shipped_root()).body
 
@@ -74,7 +74,7 @@ def built(data: dict[str, Any]) -> Motion:
     """The motion of a file with that data, which has nothing wrong with it."""
     document, found = parse("motion.yaml", document_yaml(data, "motion").encode())
     assert document is not None
-    report = Report(document)
+    report = DocumentReport(document)
     motion = build_motion(check_schema(document, "motion", report), report, name="motion", body=BODY)
     assert [*found, *report.diagnostics] == []
     assert motion is not None

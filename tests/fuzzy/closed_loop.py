@@ -7,7 +7,7 @@ from math import copysign, inf, radians
 
 from lumen.interpreters.projection import Vector, centring, seen
 from lumen.interpreters.tracking import Tracker
-from lumen.language.controllers import Controller
+from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Camera
 from tests.fuzzy.nao import HEAD, TOP
 
@@ -45,7 +45,7 @@ class Run:
 
 
 def run(
-    controller: Controller,
+    controller: ControllerDefinition,
     face: Callable[[float], Vector],
     start: Pose,
     *,

@@ -14,7 +14,7 @@ from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
 from lumen.interpreters.inference.formulas import FUNCTIONS, formula
 from lumen.loading.controllers import build_controller
 from lumen.loading.schema import check_schema, load_schema
-from lumen.loading.source import Report, parse
+from lumen.loading.source import DocumentReport, parse
 
 TABLE = """inputs:
   a: {range: [0, 10]}
@@ -34,7 +34,7 @@ rules:
 def found(text: str) -> list[str]:
     document, _ = parse("f.yaml", text.encode())
     assert document
-    report = Report(document)
+    report = DocumentReport(document)
     build_controller(check_schema(document, "controller", report), report, name="f")
     places = [(d.place, d.code) for d in report.diagnostics]
     lines = text.splitlines()

@@ -12,7 +12,7 @@ from lumen.language.controllers import ACTIVATIONS, COMPARISONS, DEFUZZIFIERS, S
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.loading.controllers import build_controller
 from lumen.loading.schema import check_schema, load_schema
-from lumen.loading.source import Report, parse
+from lumen.loading.source import DocumentReport, parse
 
 HEAD = Path("tests/fuzzy/at_length.yaml").read_text()
 
@@ -20,7 +20,7 @@ HEAD = Path("tests/fuzzy/at_length.yaml").read_text()
 def diagnose(text: str) -> list[Diagnostic]:
     document, found = parse("head.yaml", text.encode())
     assert document
-    report = Report(document)
+    report = DocumentReport(document)
     build_controller(check_schema(document, "controller", report), report, name="head")
     return [*found, *report.diagnostics]
 

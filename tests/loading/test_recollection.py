@@ -7,7 +7,7 @@ import pytest
 
 from lumen.loading import motions, reading, recollection
 from lumen.loading.files import read_files
-from lumen.loading.recollection import again
+from lumen.loading.recollection import memoize
 from lumen.rules import check_files
 
 BASE = read_files(Path(__file__).parents[1] / "lint/base")
@@ -27,14 +27,14 @@ def test_equal_input_is_answered_from_memory_and_other_input_anew() -> None:
         made.append(1)
         return len(made)
 
-    assert [again("slot", given, make) for given in ("a", "a", "b", "b", "a")] == [1, 1, 2, 2, 3]
+    assert [memoize("slot", given, make) for given in ("a", "a", "b", "b", "a")] == [1, 1, 2, 2, 3]
 
 
 def test_memory_does_not_grow_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recollection, "MAX_SLOTS", 3)
     monkeypatch.setattr(recollection, "_last", {})
     for i in range(10):
-        again(("slot", i), i, int)
+        memoize(("slot", i), i, int)
     assert len(recollection._last) <= 3
 
 

@@ -8,14 +8,14 @@ import pytest
 
 from lumen.loading.packaged import schema_folder
 from lumen.loading.schema import KINDS, check_schema, load_schema
-from lumen.loading.source import Report, parse
+from lumen.loading.source import DocumentReport, parse
 
 
-def check(text: str, kind: str = "behavior") -> tuple[Any, Report]:
+def check(text: str, kind: str = "behavior") -> tuple[Any, DocumentReport]:
     document, diagnostics = parse("x.yaml", text.encode())
     assert document
     assert not diagnostics
-    report = Report(document)
+    report = DocumentReport(document)
     return check_schema(document, kind, report), report
 
 

@@ -11,7 +11,7 @@ from lumen.language.robots import Body
 from lumen.loading.bodies import build_body
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Report, parse
+from lumen.loading.source import DocumentReport, parse
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = ("goodbye", "dance", "sing", "photo")
@@ -21,7 +21,7 @@ SHIPPED = ("goodbye", "dance", "sing", "photo")
 def nao() -> Body:
     document, _ = parse("models/nao.yaml", (ROOT / "models/nao.yaml").read_bytes())
     assert document is not None
-    body = build_body(document.data, Report(document), name="nao")
+    body = build_body(document.data, DocumentReport(document), name="nao")
     assert body is not None
     return body
 
@@ -32,7 +32,7 @@ def read(
     """The motion in the text of a file, and everything that is wrong with it."""
     document, diagnostics = parse(f"motions/{name}.yaml", text.encode())
     assert document is not None
-    report = Report(document)
+    report = DocumentReport(document)
     data = check_schema(document, "motion", report)
     return build_motion(data, report, name=name, body=nao(), motions=motions), [*diagnostics, *report.diagnostics]
 

@@ -9,7 +9,7 @@ from lumen.errors import ProjectError
 from lumen.language.diagnostics import Severity
 from lumen.loading.motions import build_motions
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Report, parse
+from lumen.loading.source import DocumentReport, parse
 from lumen.motion import Motion
 from tests.motions.making import nao, read
 
@@ -65,7 +65,7 @@ def project(**files: str) -> tuple[dict[str, object], list[str]]:
     for name, text in files.items():
         document, _ = parse(f"motions/{name}.yaml", text.encode())
         assert document is not None
-        report = Report(document)
+        report = DocumentReport(document)
         sources[name] = (check_schema(document, "motion", report), report)
     built = build_motions(sources, nao())
     found = [f"{n}: {d.code}" for n, (_, report) in sources.items() for d in report.diagnostics]

@@ -10,7 +10,7 @@ import pytest
 
 from lumen.language.robots import Body
 from lumen.loading.bodies import build_body
-from lumen.loading.source import Document, Report, parse
+from lumen.loading.source import Document, DocumentReport, parse
 
 ROOT = Path(__file__).parents[2]
 NAOQI = [
@@ -29,7 +29,7 @@ def document() -> Document:
 
 
 def build(data: Any) -> tuple[Body | None, list[str]]:
-    report = Report(document())
+    report = DocumentReport(document())
     return build_body(data, report, name="nao"), [d.code for d in report.diagnostics]
 
 

@@ -30,7 +30,7 @@ from lumen.loading.behaviors import build_machine
 from lumen.loading.controllers import build_controller
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Report, parse
+from lumen.loading.source import DocumentReport, parse
 
 Reader = Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]
 
@@ -119,7 +119,7 @@ def _faults(file: str, text: str, kind: str, body: Body | None) -> list[Diagnost
     document, found = parse(file, text.encode())
     if document is None:
         return found
-    report = Report(document)
+    report = DocumentReport(document)
     data = check_schema(document, kind, report)
     if body:
         build_motion(data, report, name="imported", body=body)

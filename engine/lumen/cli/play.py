@@ -20,7 +20,7 @@ from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Document, Report
+from lumen.loading.source import Document, DocumentReport
 from lumen.ports import Perform, RobotCommand
 from lumen.runtime.loop import TICK
 
@@ -122,7 +122,7 @@ def _foreign(project: Project, path: Path, timeline: str) -> Motion:
         raise UsageError(one_line(error.diagnostic)) from None
     for diagnostic in diagnostics:
         print(diagnostic, file=sys.stderr)
-    report = Report(Document(str(path), data))
+    report = DocumentReport(Document(str(path), data))
     motion = build_motion(check_schema(report.document, "motion", report), report, name=path.stem, body=project.body)
     if motion is None or has_errors(report.diagnostics):
         raise ProjectError(report.diagnostics)

@@ -13,7 +13,7 @@ from lumen.formats.fll.drafts import Draft, operators, ranged
 from lumen.formats.fll.words import SHAPES, plain
 from lumen.language.controllers import TERMS, WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.loading.rules import Word
+from lumen.loading.rules import RuleWord
 
 _COMMENT = re.compile(r"(?P<open>\(\*|/\*)|//[^\n]*")
 _OPEN = re.compile(r"(VAR_INPUT|VAR_OUTPUT|FUZZIFY|DEFUZZIFY|RULEBLOCK)\b", re.IGNORECASE)
@@ -239,7 +239,7 @@ class _Reader:
             return ""
         begin = statement.offset + match.start(1)
 
-        def spot(word: Word) -> Place:
+        def spot(word: RuleWord) -> Place:
             return self.place(begin + min(word.offset, len(match[1])), len(word.text))
 
         return self.draft.rule(match[1], self.at(statement), spot)

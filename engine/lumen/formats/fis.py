@@ -14,7 +14,7 @@ from lumen.formats.fll.drafts import Draft, operators, ranged
 from lumen.formats.fll.words import written
 from lumen.language.controllers import WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.loading.rules import Word
+from lumen.loading.rules import RuleWord
 
 _SECTION = re.compile(r"\[(System|Input|Output|Rules)\s*(\d*)\]", re.IGNORECASE)
 _TERM = re.compile(r"'(?P<name>[^']*)'\s*:\s*'(?P<shape>\w+)'\s*,\s*\[(?P<values>[^\]]*)\]")
@@ -184,7 +184,7 @@ class _Reader:
         return self.written(join.join(inputs) or everything, " and ".join(outputs), weight, line)
 
     def written(self, asked: str, said: str, weight: float, line: Line) -> str:
-        def spot(_: Word) -> Place:
+        def spot(_: RuleWord) -> Place:
             return line.place
 
         suffix = "" if weight == 1.0 else f" with {written(weight) if isfinite(weight) else weight}"

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping
 
 from lumen.interpreters.inference import Evaluator
 from lumen.interpreters.projection import after_turning
-from lumen.language.controllers import Controller
+from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 
 Angles = dict[str, float]
@@ -29,7 +29,7 @@ _YAW, _PITCH = "HeadYaw", "HeadPitch"
 class Glance:
     """Turns a sight into a turn, for a controller bound to joints of a body."""
 
-    def __init__(self, controller: Controller, body: Body) -> None:
+    def __init__(self, controller: ControllerDefinition, body: Body) -> None:
         self._controller, self._body = controller, body
         self._evaluator = Evaluator(controller)
         self._bindings = [b for b in controller.output_bindings if b.joint in body.joints]
@@ -87,7 +87,7 @@ class Glance:
         return {**inputs, self._across: pixel[0], self._down: pixel[1]} if pixel else None
 
 
-def _image_inputs(controller: Controller) -> tuple[str, str]:
+def _image_inputs(controller: ControllerDefinition) -> tuple[str, str]:
     """The inputs that are a place in the image: in pixels to the right, and down; empty where there is none."""
     found = {v.direction: name for name, v in controller.inputs.items() if v.unit == "px"}
     return found.get("right", ""), found.get("down", "")

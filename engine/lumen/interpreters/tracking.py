@@ -16,7 +16,7 @@ from lumen.errors import LumenError
 from lumen.interpreters.course import Angles, Course
 from lumen.interpreters.glance import Glance
 from lumen.interpreters.limits import coupled_range
-from lumen.language.controllers import Controller
+from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 
 SWING = 0.5235987755982988
@@ -42,7 +42,7 @@ class Tracker:
     (`idle`). `routes` are those whose messages it wants, `joints` those that it moves.
     """
 
-    def __init__(self, controller: Controller, body: Body) -> None:
+    def __init__(self, controller: ControllerDefinition, body: Body) -> None:
         self.controller = controller
         self.routes = frozenset(binding.route for binding in controller.input_bindings)
         self.joints = tuple(dict.fromkeys(b.joint for b in controller.output_bindings if b.joint in body.joints))

@@ -171,7 +171,7 @@ class Operators:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class RuleBlock:
     """Rules that are activated together; a later block may ask for what an earlier one concluded."""
 
     rules: tuple[Rule, ...]
@@ -206,7 +206,7 @@ class OutputBinding:
 
 
 @dataclass(frozen=True, slots=True)
-class Tracking:
+class TrackingSettings:
     """How joints follow what is seen, and what they do when it is lost.
 
     For `hold` [s] they stay; for `search` [s] they swing by `sweep` [rad] to either side, once in `period` [s]; then
@@ -227,16 +227,16 @@ class Tracking:
 
 
 @dataclass(frozen=True)
-class Controller:
+class ControllerDefinition:
     """A fuzzy controller; `angle` [rad] is the file's unit of angles."""
 
     name: str
     inputs: Mapping[str, Variable]
     outputs: Mapping[str, Variable]
-    blocks: tuple[Block, ...]
+    blocks: tuple[RuleBlock, ...]
     input_bindings: tuple[InputBinding, ...] = ()
     output_bindings: tuple[OutputBinding, ...] = ()
-    tracking: Tracking = Tracking()
+    tracking: TrackingSettings = TrackingSettings()
     angle: float = 1.0
 
     @property

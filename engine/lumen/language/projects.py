@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from lumen.language.controllers import Controller
+from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.machines import Machine
 from lumen.language.modules import ModuleSettings
@@ -39,7 +39,7 @@ class Project:
     hall: str
     behavior: str
     behaviors: Mapping[str, Machine]
-    controllers: Mapping[str, Controller] = field(default_factory=dict)
+    controllers: Mapping[str, ControllerDefinition] = field(default_factory=dict)
     motions: Mapping[str, Motion] = field(default_factory=dict)
     routes: Mapping[str, Route] = field(default_factory=dict)
     stories: Mapping[str, Story] = field(default_factory=dict)

@@ -22,7 +22,7 @@ from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, S
 from lumen.language.diagnostics import NodePath
 from lumen.loading.expressions import Expressions
 from lumen.loading.numbers import finite
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, LENGTHS, seconds
 
 DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
@@ -31,7 +31,7 @@ DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
 class Actions:
     """Reads the actions of one document; `units` are the file's."""
 
-    def __init__(self, report: Report, expressions: Expressions, units: Mapping[str, str]) -> None:
+    def __init__(self, report: DocumentReport, expressions: Expressions, units: Mapping[str, str]) -> None:
         self.report, self.expressions = report, expressions
         self.angle = ANGLES.get(units.get("angle", "rad"), 1.0)
         self.length = LENGTHS.get(units.get("length", "m"), 1.0)

@@ -10,10 +10,10 @@ from lumen.language.machines import Answer, Kind, Machine, State
 from lumen.loading.actions import Actions
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import check_ids, invocations
-from lumen.loading.outline import Entry, Outline
+from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.shapes import check_shapes
-from lumen.loading.source import Report
-from lumen.loading.transitions import Transitions
+from lumen.loading.source import DocumentReport
+from lumen.loading.transitions import TransitionReader
 
 M = TypeVar("M", bound=Machine)
 
@@ -21,7 +21,7 @@ CONTEXT = "context"
 """How `renamed` calls keys of the context: `context.name: context.visitor`."""
 
 
-def build_machine(data: Any, report: Report, *, name: str, into: type[M]) -> M | None:
+def build_machine(data: Any, report: DocumentReport, *, name: str, into: type[M]) -> M | None:
     """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
 
     `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out. `into` is the
@@ -41,12 +41,12 @@ def fingerprint(data: Any) -> str:
 class _Builder:
     """Reads one file: first the tree of its states, then what stands in each."""
 
-    def __init__(self, data: Mapping[str, Any], report: Report, name: str) -> None:
+    def __init__(self, data: Mapping[str, Any], report: DocumentReport, name: str) -> None:
         self.data, self.report = data, report
-        self.outline = Outline(data, name, report)
+        self.outline = BehaviorOutline(data, name, report)
         self.expressions = Expressions(report, data, {*self.outline.entries, *self.outline.aliases})
         self.actions = Actions(report, self.expressions, data.get("units") or {})
-        self.transitions = Transitions(report, self.outline, self.actions, self.expressions)
+        self.transitions = TransitionReader(report, self.outline, self.actions, self.expressions)
         self.beginnings: dict[str, tuple[str, ...]] = {}
 
     def fields(self) -> dict[str, Any]:
@@ -66,7 +66,7 @@ class _Builder:
             "hash": fingerprint(data),
         }
 
-    def state(self, entry: Entry) -> State:
+    def state(self, entry: OutlinedState) -> State:
         data, where = entry.data, entry.where
         return State(
             path=entry.path,
@@ -86,13 +86,13 @@ class _Builder:
             where=where,
         )
 
-    def initial(self, entry: Entry) -> tuple[str, ...]:
+    def initial(self, entry: OutlinedState) -> tuple[str, ...]:
         """The paths entered by default: what the file says, else the first child."""
         if entry.path not in self.beginnings:
             self.beginnings[entry.path] = self.remembered(entry) if entry.kind is Kind.HISTORY else self.begin(entry)
         return self.beginnings[entry.path]
 
-    def begin(self, entry: Entry) -> tuple[str, ...]:
+    def begin(self, entry: OutlinedState) -> tuple[str, ...]:
         if entry.kind is not Kind.COMPOUND:
             return ()
         where = (*entry.where, "initial")
@@ -103,7 +103,7 @@ class _Builder:
                 return tuple(state.path for state in found)
         return _children(entry)[:1]
 
-    def remembered(self, entry: Entry) -> tuple[str, ...]:
+    def remembered(self, entry: OutlinedState) -> tuple[str, ...]:
         """Where a history state leads before there is a history: its target, else as its parent begins."""
         parent = entry.parent
         assert parent is not None  # the schema lets no behaviour be a history state
@@ -117,7 +117,9 @@ class _Builder:
         begin = _children(parent) if parent.kind is Kind.PARALLEL else self.initial(parent)
         return begin if entry.path not in begin else _children(parent)[:1]
 
-    def within(self, home: Entry, source: Entry, body: Any, where: NodePath, written: Any = None) -> list[Entry]:
+    def within(
+        self, home: OutlinedState, source: OutlinedState, body: Any, where: NodePath, written: Any = None
+    ) -> list[OutlinedState]:
         """The states named, all of them below `home`; none (and reported) where one is wrong."""
         found = self.transitions.targets(source, body, where, written) or []
         for state in found:
@@ -127,7 +129,7 @@ class _Builder:
                 return []
         return found
 
-    def on_reload(self, entry: Entry) -> str:
+    def on_reload(self, entry: OutlinedState) -> str:
         if "onReload" not in entry.data:
             return ""
         found = self.outline.resolve(entry, entry.data["onReload"], (*entry.where, "onReload"))
@@ -161,7 +163,7 @@ class _Builder:
             self.report("unknown-state", where, f"there is no state `{name}`", hint=hint)
 
 
-def _children(entry: Entry) -> tuple[str, ...]:
+def _children(entry: OutlinedState) -> tuple[str, ...]:
     return tuple(child.path for child in entry.children.values() if child.kind is not Kind.HISTORY)
 
 

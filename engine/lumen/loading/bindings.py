@@ -5,14 +5,16 @@ from typing import Any
 
 from lumen.language.controllers import InputBinding, OutputBinding, Variable
 from lumen.language.diagnostics import NodePath, Severity, did_you_mean
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES
 
 
 class Bindings:
     """Reads `bind:` of one file, whose unit of angles is `angle` [rad]; without it nothing has to be bound."""
 
-    def __init__(self, data: Mapping[str, Any], report: Report, outputs: Mapping[str, Variable], angle: float) -> None:
+    def __init__(
+        self, data: Mapping[str, Any], report: DocumentReport, outputs: Mapping[str, Variable], angle: float
+    ) -> None:
         self.data, self.report, self.usable, self.angle = data, report, outputs, angle
         bind = data.get("bind") or {}
         self.fields: Mapping[str, str] = bind.get("inputs") or {}

@@ -8,7 +8,7 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body, Camera, CoupledLimit, Joint, Link, Ultrasound
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, LENGTHS
 
 POSTURES = ("Stand", "Crouch")
@@ -18,7 +18,7 @@ SLACK = 2e-3
 """How far a posture may lie outside a limit [rad]: published postures are rounded."""
 
 
-def build_body(data: Any, report: Report, *, name: str) -> Body | None:
+def build_body(data: Any, report: DocumentReport, *, name: str) -> Body | None:
     """The body that the data of `models/NAME.yaml` describes, None where it has no joints or no camera.
 
     One that is like another waits for that: `build_likes`.
@@ -29,7 +29,7 @@ def build_body(data: Any, report: Report, *, name: str) -> Body | None:
 
 
 def build_likes(
-    bodies: Mapping[str, Body], sources: Mapping[str, tuple[Any, Report]], names: Collection[str]
+    bodies: Mapping[str, Body], sources: Mapping[str, tuple[Any, DocumentReport]], names: Collection[str]
 ) -> dict[str, Body]:
     """All these bodies, and those that are like one of them; `sources` are the data and report of each file.
 
@@ -50,7 +50,7 @@ def build_likes(
 class _Builder:
     """Reads one file; joints first, since everything else names them."""
 
-    def __init__(self, data: Mapping[str, Any], report: Report) -> None:
+    def __init__(self, data: Mapping[str, Any], report: DocumentReport) -> None:
         self.data, self.report = data, report
         units = data.get("units") or {}
         self.angle = ANGLES.get(units.get("angle", "rad"), 1.0)

@@ -3,20 +3,20 @@
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from lumen.language.controllers import Controller, Tracking
+from lumen.language.controllers import ControllerDefinition, TrackingSettings
 from lumen.language.diagnostics import NodePath
 from lumen.loading.bindings import Bindings
 from lumen.loading.numbers import without_extremes
 from lumen.loading.rulebook import Rulebook
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.table import spread, termless
 from lumen.loading.units import ANGLES, seconds
 from lumen.loading.variables import build_variables
 
-C = TypeVar("C", bound=Controller)
+C = TypeVar("C", bound=ControllerDefinition)
 
 
-def build_controller(data: Any, report: Report, *, name: str, into: type[C] = Controller) -> C | None:  # type: ignore[assignment]
+def build_controller(data: Any, report: DocumentReport, *, name: str, into: type[C] = ControllerDefinition) -> C | None:  # type: ignore[assignment]
     """The controller that the data of `fuzzy/NAME.yaml` describes, None where it has no inputs or no outputs."""
     if not isinstance(data, Mapping) or not data.get("inputs") or not data.get("outputs"):
         return None
@@ -44,7 +44,7 @@ def _endless(path: NodePath) -> bool:
     return "terms" in path or "range" in path
 
 
-def _tracking(data: Mapping[str, Any], report: Report, angle: float) -> Tracking:
+def _tracking(data: Mapping[str, Any], report: DocumentReport, angle: float) -> TrackingSettings:
     """The file's times in [s] and angles in [rad], and the defaults of those that it leaves out."""
     said: dict[str, Any] = {key: data[key] for key in ("speed", "looks", "zoom") if key in data}
     times = {key: seconds(data.get(key)) for key in ("hold", "search", "period", "stale")}
@@ -55,4 +55,4 @@ def _tracking(data: Mapping[str, Any], report: Report, angle: float) -> Tracking
     said.update({key: time for key, time in times.items() if time is not None})
     for key in ("sweep", "ahead"):
         said[key] = {joint: float(value) * angle for joint, value in (data.get(key) or {}).items()}
-    return Tracking(**said)
+    return TrackingSettings(**said)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from lumen.language.controllers import Controller
+from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Diagnostic, Place, Severity, gathered
 from lumen.language.machines import Machine
 from lumen.language.motions import Motion
@@ -13,11 +13,11 @@ from lumen.language.robots import Body
 from lumen.language.stories import Story
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.settings import Settings
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 
 
 @dataclass
-class Draft:
+class ProjectDraft:
     """What could be built from a project's files, and what is wrong with them.
 
     `names` has for each folder the names of all files in it, whether they could be built or not; `reports` the report
@@ -30,19 +30,19 @@ class Draft:
     settings: Settings | None = None
     bodies: dict[str, Body] = field(default_factory=dict)
     behaviors: dict[str, Machine] = field(default_factory=dict)
-    controllers: dict[str, Controller] = field(default_factory=dict)
+    controllers: dict[str, ControllerDefinition] = field(default_factory=dict)
     motions: dict[str, Motion] = field(default_factory=dict)
     stories: dict[str, Story] = field(default_factory=dict)
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     names: dict[str, frozenset[str]] = field(default_factory=dict)
-    reports: dict[str, Report] = field(default_factory=dict)
+    reports: dict[str, DocumentReport] = field(default_factory=dict)
     loose: list[Diagnostic] = field(default_factory=list)
     missing: set[str] = field(default_factory=set)
     unsound: set[tuple[str, str, str]] = field(default_factory=set)
     root: Path | None = None
 
     @property
-    def main(self) -> Report | None:
+    def main(self) -> DocumentReport | None:
         """The report of lumen.yaml."""
         return self.reports.get(MAIN_FILE)
 
@@ -57,7 +57,7 @@ class Draft:
         found = [d for r in self.reports.values() for d in r.diagnostics if not r.follows(d.code, d.message)]
         return gathered([*found, *self.loose])
 
-    def report(self, folder: str, name: str) -> Report:
+    def report(self, folder: str, name: str) -> DocumentReport:
         """The report of `FOLDER/NAME.yaml`."""
         return self.reports[f"{folder}/{name}.yaml"]
 

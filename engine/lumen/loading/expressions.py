@@ -8,7 +8,7 @@ from lumen.language.actions import Expression, Template, Value
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, did_you_mean
 from lumen.loading.numbers import finite
 from lumen.loading.scalars import within
-from lumen.loading.source import Document, Report
+from lumen.loading.source import Document, DocumentReport
 
 
 class Expressions:
@@ -17,7 +17,7 @@ class Expressions:
     What is told here needs no knowledge of types: syntax, functions, and the names that the file itself declares.
     """
 
-    def __init__(self, report: Report, data: Mapping[str, Any], states: Iterable[str]) -> None:
+    def __init__(self, report: DocumentReport, data: Mapping[str, Any], states: Iterable[str]) -> None:
         self.report = report
         self.keys = frozenset(data.get("context") or ())
         self.names: dict[str, Any] = {

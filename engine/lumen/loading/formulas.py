@@ -7,13 +7,13 @@ from lumen.interpreters.expressions import parse_expression
 from lumen.interpreters.expressions.tree import Binary, Call, Choice, Literal, Logic, Name, Node, Unary, walk
 from lumen.interpreters.inference.formulas import FUNCTIONS
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.words import report_word
 
 _PLAIN = (Name, Unary, Logic, Choice)
 
 
-def check_formula(text: str, names: Sequence[str], report: Report, path: NodePath) -> bool:
+def check_formula(text: str, names: Sequence[str], report: DocumentReport, path: NodePath) -> bool:
     """Whether the text at `path` is a formula of x and the variables called `names`; what is wrong is reported."""
     try:
         tree = parse_expression(text)
@@ -24,7 +24,7 @@ def check_formula(text: str, names: Sequence[str], report: Report, path: NodePat
     return all(found)
 
 
-def _sound(node: Node, text: str, names: Sequence[str], report: Report, path: NodePath) -> bool:
+def _sound(node: Node, text: str, names: Sequence[str], report: DocumentReport, path: NodePath) -> bool:
     def refuse(code: str, offset: int, length: int, message: str, hint: str) -> bool:
         report_word(report, code, path, text, offset, length, message, hint)
         return False

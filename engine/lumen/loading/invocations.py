@@ -7,11 +7,11 @@ from typing import Any
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, Kind
 from lumen.loading.expressions import Expressions
-from lumen.loading.outline import Entry, Outline
-from lumen.loading.source import Report
+from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.loading.source import DocumentReport
 
 
-def invocations(entry: Entry, expressions: Expressions) -> tuple[Invoke, ...]:
+def invocations(entry: OutlinedState, expressions: Expressions) -> tuple[Invoke, ...]:
     """What a state invokes, in the order of the file."""
     found = []
     for where, id, row in invoked(entry):
@@ -21,7 +21,7 @@ def invocations(entry: Entry, expressions: Expressions) -> tuple[Invoke, ...]:
     return tuple(found)
 
 
-def invoked(entry: Entry) -> Iterator[tuple[NodePath, str, dict[str, Any]]]:
+def invoked(entry: OutlinedState) -> Iterator[tuple[NodePath, str, dict[str, Any]]]:
     """Each item under `invoke`, with its place and its id."""
     body, where = entry.data.get("invoke"), (*entry.where, "invoke")
     rows = [((*where, i), row) for i, row in enumerate(body)] if isinstance(body, list) else [(where, body)]
@@ -30,9 +30,9 @@ def invoked(entry: Entry) -> Iterator[tuple[NodePath, str, dict[str, Any]]]:
             yield place, row.get("id") or row["behavior"], row
 
 
-def check_ids(outline: Outline, report: Report) -> None:
+def check_ids(outline: BehaviorOutline, report: DocumentReport) -> None:
     """Report where two behaviours that can run at the same time have the same id."""
-    found: dict[str, list[tuple[Entry, NodePath]]] = {}
+    found: dict[str, list[tuple[OutlinedState, NodePath]]] = {}
     for entry in outline.entries.values():
         for where, id, row in invoked(entry):
             found.setdefault(id, []).append((entry, (*where, "id" if "id" in row else "behavior")))
@@ -45,7 +45,7 @@ def check_ids(outline: Outline, report: Report) -> None:
                 report("duplicate-id", where, message, hint="give each an `id` of its own")
 
 
-def _together(one: Entry, other: Entry) -> bool:
+def _together(one: OutlinedState, other: OutlinedState) -> bool:
     """Whether two states can be active at the same time."""
     inner = other
     while not one.lies_in(inner):

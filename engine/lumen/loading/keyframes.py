@@ -8,7 +8,7 @@ from lumen.interpreters.choreography import at_speed, joined, mirrored, placed
 from lumen.language.diagnostics import NodePath, did_you_mean, has_errors
 from lumen.language.motions import Cue, Interpolation, Key, Motion
 from lumen.loading.poses import PoseReader
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import seconds
 
 MAX_KEYS = 200_000
@@ -25,7 +25,7 @@ class KeyframeReader:
     `motions` are those that `play` may name; what is wrong with one in `broken` has been said where it stands.
     """
 
-    report: Report
+    report: DocumentReport
     name: str
     poses: PoseReader
     beat: float | None

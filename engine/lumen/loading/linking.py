@@ -8,7 +8,7 @@ from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import Invoke, Machine
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 
 M = TypeVar("M", bound=Machine)
 
@@ -16,7 +16,7 @@ DEPTH = 16
 """How many levels of behaviours may run within one another."""
 
 
-def link(machines: Mapping[str, M], reports: Mapping[str, Report], names: Collection[str]) -> dict[str, M]:
+def link(machines: Mapping[str, M], reports: Mapping[str, DocumentReport], names: Collection[str]) -> dict[str, M]:
     """These machines by name, each with those that it invokes; what can't be invoked is reported.
 
     `names` are all behaviours that there are; one that could not be read is among them and is not missed.
@@ -28,7 +28,9 @@ def link(machines: Mapping[str, M], reports: Mapping[str, Report], names: Collec
 class _Linker(Generic[M]):
     """Goes down from each behaviour to what it invokes; `way` are those above the one that is being linked."""
 
-    def __init__(self, machines: Mapping[str, M], reports: Mapping[str, Report], names: Collection[str]) -> None:
+    def __init__(
+        self, machines: Mapping[str, M], reports: Mapping[str, DocumentReport], names: Collection[str]
+    ) -> None:
         self.machines, self.reports, self.names = machines, reports, names
         self.linked: dict[str, M] = {}
         self.levels: dict[str, int] = {}

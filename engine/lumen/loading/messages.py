@@ -8,7 +8,7 @@ from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place
 from lumen.loading.schema import schema_faults
-from lumen.loading.source import MAX_DEPTH, Document, Report, merge_conflict, parse
+from lumen.loading.source import MAX_DEPTH, Document, DocumentReport, merge_conflict, parse
 
 ENDING = ".schema.json"
 
@@ -29,7 +29,7 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
     if _plainly_sound(data, content):
         return data, ()
     document, found = parse(file, content.replace(b"\t", b" "))  # JSON may be indented with tabs
-    report = Report(document or Document(file, data))
+    report = DocumentReport(document or Document(file, data))
     report.diagnostics += found
     data = document.data if document and found else data  # of a key that stands twice, JSON keeps the second
     if isinstance(data, dict):
@@ -47,7 +47,7 @@ def _plainly_sound(data: Any, content: bytes) -> bool:
             return False
     except (KeyError, RecursionError):
         return False
-    return examine(data, Report(Document("", data)))
+    return examine(data, DocumentReport(Document("", data)))
 
 
 def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -63,7 +63,7 @@ def _depth(data: Any) -> int:
     return 1 + max(map(_depth, inner), default=0)
 
 
-def examine(schema: Any, report: Report, where: NodePath = ()) -> bool:
+def examine(schema: Any, report: DocumentReport, where: NodePath = ()) -> bool:
     """Whether the JSON Schema at `where` in the report's document is sound; what is wrong with it is reported."""
     before = len(report.diagnostics)
     for found in schema_faults(schema):
@@ -73,7 +73,7 @@ def examine(schema: Any, report: Report, where: NodePath = ()) -> bool:
     return len(report.diagnostics) == before
 
 
-def _refer(data: Any, report: Report, where: NodePath) -> None:
+def _refer(data: Any, report: DocumentReport, where: NodePath) -> None:
     """What the schema of schemas can't tell: patterns, and where references lead."""
     for inner, key, text in _texts(data):
         path = (*where, *inner)
@@ -107,7 +107,7 @@ def _texts(data: Any) -> Iterator[tuple[NodePath, str, str]]:
             waiting += [((*path, i), value) for i, value in enumerate(item)]
 
 
-def _pattern(path: NodePath, text: str, report: Report) -> None:
+def _pattern(path: NodePath, text: str, report: DocumentReport) -> None:
     try:
         re.compile(text)
     except (re.error, RecursionError, OverflowError) as error:

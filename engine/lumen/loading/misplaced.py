@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 
 
 class _Kind(NamedTuple):
@@ -27,7 +27,7 @@ _KINDS: Mapping[str, _Kind] = {
 }
 
 
-def misplaced(data: Any, kind: str, report: Report) -> bool:
+def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
     """Whether the data is that of another kind of file, and has nothing that makes one of this kind; it is reported."""
     own = _KINDS[kind]
     if not isinstance(data, Mapping) or {*own.marks, own.alone} & data.keys():

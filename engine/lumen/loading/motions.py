@@ -13,7 +13,7 @@ from lumen.language.robots import Body
 from lumen.loading.keyframes import KeyframeReader
 from lumen.loading.poses import PoseReader
 from lumen.loading.reading import unless_too_deep
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, seconds
 
 STANDING = "Stand"
@@ -27,7 +27,7 @@ M = TypeVar("M", bound=Motion)
 
 def build_motion(
     data: Any,
-    report: Report,
+    report: DocumentReport,
     *,
     name: str,
     body: Body,
@@ -59,7 +59,12 @@ def build_motion(
     return _finished(part, data, poses, name, into)
 
 
-def build_motions(files: Mapping[str, tuple[Any, Report]], body: Body, *, into: type[M] = Motion) -> dict[str, M]:  # type: ignore[assignment]
+def build_motions(
+    files: Mapping[str, tuple[Any, DocumentReport]],
+    body: Body,
+    *,
+    into: type[M] = Motion,  # type: ignore[assignment]
+) -> dict[str, M]:
     """Every motion of a project that can be built, from the data and the report of each by its name.
 
     Motions are built after those that they play; a circle of them is reported where it closes.
@@ -74,13 +79,13 @@ def build_motions(files: Mapping[str, tuple[Any, Report]], body: Body, *, into: 
         data, report = files[name]
         given = (into, body, {played: (built.get(played), played in files) for played in plays[name]})
         build = partial(build_motion, data, report, name=name, body=body, motions=built, broken=files.keys(), into=into)
-        motion = report.again(("motion", report.document.file), given, partial(unless_too_deep, report, build))
+        motion = report.memoize(("motion", report.document.file), given, partial(unless_too_deep, report, build))
         if motion is not None:
             built[name] = motion
     return {name: built[name] for name in files if name in built}
 
 
-def countable(data: Any, report: Report) -> bool:
+def countable(data: Any, report: DocumentReport) -> bool:
     """Whether there are few enough keyframes to be read at all; where not, it is said."""
     if not isinstance(data, Mapping) or not isinstance(data.get("keyframes"), list):
         return True

@@ -6,13 +6,13 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath
 from lumen.loading.pruning import prune
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 
 LEAST, GREATEST = 1e-12, 1e12
 """A number of a controller is 0, or its size lies between these: their squares and quotients are floats as well."""
 
 
-def finite(value: float, report: Report, path: NodePath) -> bool:
+def finite(value: float, report: DocumentReport, path: NodePath) -> bool:
     """Whether that is an ordinary number; reported where it is not."""
     try:
         sound = isfinite(value)
@@ -24,7 +24,7 @@ def finite(value: float, report: Report, path: NodePath) -> bool:
     return sound
 
 
-def without_extremes(data: Any, report: Report, endless: Callable[[NodePath], bool]) -> Any:
+def without_extremes(data: Any, report: DocumentReport, endless: Callable[[NodePath], bool]) -> Any:
     """The data of the report's document without the keys whose numbers can't be counted with, each of them reported.
 
     `endless` tells where a number may be infinite.
@@ -36,7 +36,7 @@ def without_extremes(data: Any, report: Report, endless: Callable[[NodePath], bo
     return report.document.data
 
 
-def _usable(number: float, report: Report, path: NodePath, endless: Callable[[NodePath], bool]) -> bool:
+def _usable(number: float, report: DocumentReport, path: NodePath, endless: Callable[[NodePath], bool]) -> bool:
     if isinstance(number, float) and isnan(number):
         message = "`.nan` is not a number that a controller can use"
         report("not-a-number", path, message, hint="write a number")

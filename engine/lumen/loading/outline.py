@@ -6,24 +6,24 @@ from typing import Any
 
 from lumen.language.diagnostics import COMPARED, NodePath, did_you_mean, nearest
 from lumen.language.machines import Kind
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 
 
 @dataclass(slots=True)
-class Entry:
+class OutlinedState:
     """A state's place in the tree, and what the file says of it."""
 
     path: str
-    parent: "Entry | None"
+    parent: "OutlinedState | None"
     data: Mapping[str, Any]
     where: NodePath
     kind: Kind
     alias: str = ""
-    children: "dict[str, Entry]" = field(default_factory=dict)
+    children: "dict[str, OutlinedState]" = field(default_factory=dict)
 
-    def lies_in(self, other: "Entry") -> bool:
+    def lies_in(self, other: "OutlinedState") -> bool:
         """Whether it is the other one or anywhere below it."""
-        entry: Entry | None = self
+        entry: OutlinedState | None = self
         while entry is not None and entry is not other:
             entry = entry.parent
         return entry is other
@@ -38,19 +38,19 @@ class Entry:
         return f"`{self.path}`" if self.path else "the behaviour itself"
 
 
-class Outline:
+class BehaviorOutline:
     """All states by path, in document order, and by alias."""
 
-    def __init__(self, data: Mapping[str, Any], name: str, report: Report) -> None:
+    def __init__(self, data: Mapping[str, Any], name: str, report: DocumentReport) -> None:
         self.report = report
-        self.entries: dict[str, Entry] = {}
-        self.aliases: dict[str, Entry] = {}
+        self.entries: dict[str, OutlinedState] = {}
+        self.aliases: dict[str, OutlinedState] = {}
         self.root = self._enter("", None, data, ())
         self.root.alias = data.get("id", name)
         for entry in self.entries.values():
             self._alias(entry)
 
-    def resolve(self, source: Entry, target: str, where: NodePath, written: str = "") -> Entry | None:
+    def resolve(self, source: OutlinedState, target: str, where: NodePath, written: str = "") -> OutlinedState | None:
         """The state that `target` means in a transition of `source`; reported where there is none.
 
         `written` is how the file has it, where that differs. A state that was itself reported as broken is not missed
@@ -66,7 +66,7 @@ class Outline:
             self._unknown(source, target, where, written or target)
         return found
 
-    def _unknown(self, source: Entry, target: str, where: NodePath, written: str) -> None:
+    def _unknown(self, source: OutlinedState, target: str, where: NodePath, written: str) -> None:
         self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
         message = f"there is no state `{written}` to go to from {source.title}"
         if len(self.report.missed) > COMPARED:  # what was meant by each would take long to find out
@@ -82,7 +82,7 @@ class Outline:
         cause = f"{self.report.document.file} state {target.lstrip('#.')}"
         self.report("unknown-state", where, message, hint=hint, related=related, cause=cause)
 
-    def _known(self, source: Entry, target: str) -> list[str]:
+    def _known(self, source: OutlinedState, target: str) -> list[str]:
         """What could have been written in place of a target."""
         if target.startswith("#"):
             return [f"#{e.name}" for e in self.entries.values() if e.name]
@@ -92,12 +92,12 @@ class Outline:
         aliases = [f"#{e.alias}" for e in self.entries.values() if e.parent and e.alias]
         return [*(source.parent.children if source.parent else ()), *children, *aliases]
 
-    def _meant(self, source: Entry, target: str) -> Entry | None:
+    def _meant(self, source: OutlinedState, target: str) -> OutlinedState | None:
         if target.startswith("#"):
             return self._by_id(target[1:])
         return _descend(source, target[1:]) if target.startswith(".") else _descend(source.parent, target)
 
-    def _hint(self, source: Entry, target: str, known: Iterable[str]) -> str:
+    def _hint(self, source: OutlinedState, target: str, known: Iterable[str]) -> str:
         key = target.lstrip("#.")
         if key in source.children:
             return f"a child is written `.{key}`"
@@ -107,21 +107,23 @@ class Outline:
             return f"a state elsewhere in the tree is written `#{deeper[0].name}`"
         return did_you_mean(target, known)
 
-    def _by_id(self, name: str) -> Entry | None:
+    def _by_id(self, name: str) -> OutlinedState | None:
         if found := self.aliases.get(name) or (self.entries.get(name) if name else None):
             return found
         head, _, rest = name.partition(".")
         return _descend(self.aliases[head], rest) if rest and head in self.aliases else None
 
-    def _enter(self, path: str, parent: Entry | None, data: Mapping[str, Any], where: NodePath) -> Entry:
-        entry = Entry(path, parent, data, where, _kind(data), "" if parent is None else data.get("id", ""))
+    def _enter(
+        self, path: str, parent: OutlinedState | None, data: Mapping[str, Any], where: NodePath
+    ) -> OutlinedState:
+        entry = OutlinedState(path, parent, data, where, _kind(data), "" if parent is None else data.get("id", ""))
         self.entries[path] = entry
         for key, child in (data.get("states") or {}).items():
             below = f"{path}.{key}" if path else key
             entry.children[key] = self._enter(below, entry, child or {}, (*where, "states", key))
         return entry
 
-    def _alias(self, entry: Entry) -> None:
+    def _alias(self, entry: OutlinedState) -> None:
         alias = entry.alias
         if not alias:
             return
@@ -145,7 +147,7 @@ def _kind(data: Mapping[str, Any]) -> Kind:
     return Kind.COMPOUND if data.get("states") else Kind.ATOMIC
 
 
-def _descend(entry: Entry | None, path: str) -> Entry | None:
+def _descend(entry: OutlinedState | None, path: str) -> OutlinedState | None:
     for key in path.split("."):
         entry = entry.children.get(key) if entry else None
     return entry

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place
-from lumen.loading.source import MAX_DEPTH, MAX_NODES, Document, Span
+from lumen.loading.source import MAX_DEPTH, MAX_NODES, Document, NodeSpan
 
 
 def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnostic]]:
@@ -21,13 +21,13 @@ def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnost
 class _Reader:
     def __init__(self, name: str) -> None:
         self.name = name
-        self.spans: dict[NodePath, Span] = {}
+        self.spans: dict[NodePath, NodeSpan] = {}
         self.diagnostics: list[Diagnostic] = []
         self.full = False
 
     def read(self, value: Any, path: NodePath) -> Any:
         place = self.place(path)
-        self.spans[path] = Span(place, place)
+        self.spans[path] = NodeSpan(place, place)
         if len(path) > MAX_DEPTH or len(self.spans) > MAX_NODES:
             self.overflow(path)
             return None

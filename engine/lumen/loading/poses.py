@@ -8,10 +8,10 @@ from typing import Any
 from lumen.interpreters.choreography import mirrored_joint
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, seconds
 
-Angles = dict[str, tuple[float, NodePath]]
+PlacedAngles = dict[str, tuple[float, NodePath]]
 """For every joint its angle [rad; a hand 0..1] and where it stands in the file."""
 
 Handles = dict[str, tuple[tuple[float, float], tuple[float, float]]]
@@ -24,11 +24,11 @@ _SIDES = {"left": "L", "right": "R"}
 class PoseReader:
     """Reads what places joints. `unit` is the name of the file's angle, `factor` what one of it is in [rad]."""
 
-    report: Report
+    report: DocumentReport
     body: Body
     unit: str
     factor: float
-    poses: dict[str, Angles] = field(default_factory=dict)
+    poses: dict[str, PlacedAngles] = field(default_factory=dict)
 
     def define(self, poses: Mapping[str, Any], path: NodePath) -> None:
         """Learn the poses under `poses:`; one may build on those above it."""
@@ -36,9 +36,9 @@ class PoseReader:
             angles = self.read(pose, (*path, name))
             self.poses[name] = _mirrored(angles) if pose.get("mirror") else angles
 
-    def read(self, item: Mapping[str, Any], here: NodePath) -> Angles:
+    def read(self, item: Mapping[str, Any], here: NodePath) -> PlacedAngles:
         """The joints of a keyframe or pose: posture, then poses, then `joints` and `hands`, the later ones winning."""
-        angles: Angles = {}
+        angles: PlacedAngles = {}
         if "posture" in item:
             angles |= self._posture(item["posture"], (*here, "posture"))
         names = item.get("pose", [])
@@ -78,18 +78,18 @@ class PoseReader:
             return 0.0, 0.0
         return (-dt if side == "in" else dt), da * (1.0 if joint in self.body.hands else self.factor)
 
-    def _posture(self, name: str, path: NodePath) -> Angles:
+    def _posture(self, name: str, path: NodePath) -> PlacedAngles:
         return {joint: (angle, path) for joint, angle in (self.posture(name, path) or {}).items()}
 
-    def _pose(self, name: str, path: NodePath) -> Angles:
+    def _pose(self, name: str, path: NodePath) -> PlacedAngles:
         if name not in self.poses and ("poses",) not in self.report.pruned:
             hint = did_you_mean(name, self.poses, "`poses` has")
             cause = f"{self.report.document.file} pose {name}"
             self.report("unknown-pose", path, f"there is no pose `{name}`", hint=hint, cause=cause)
         return {joint: (angle, path) for joint, (angle, _) in self.poses.get(name, {}).items()}
 
-    def _joints(self, joints: Mapping[str, float], path: NodePath) -> Angles:
-        found: Angles = {}
+    def _joints(self, joints: Mapping[str, float], path: NodePath) -> PlacedAngles:
+        found: PlacedAngles = {}
         for name, value in joints.items():
             here = (*path, name)
             if not self._known(name, here) or not self.number(value, here):
@@ -130,8 +130,8 @@ class PoseReader:
         joint = self.body.joints[name]
         return joint.minimum - TOLERANCE <= angle <= joint.maximum + TOLERANCE
 
-    def _hands(self, hands: Mapping[str, float], path: NodePath) -> Angles:
-        found: Angles = {}
+    def _hands(self, hands: Mapping[str, float], path: NodePath) -> PlacedAngles:
+        found: PlacedAngles = {}
         for side, value in hands.items():
             if self.number(value, (*path, side)):
                 for joint in self.body.hands:
@@ -139,14 +139,14 @@ class PoseReader:
                         found |= self._hand(joint, value, (*path, side))
         return found
 
-    def _hand(self, joint: str, value: float, path: NodePath) -> Angles:
+    def _hand(self, joint: str, value: float, path: NodePath) -> PlacedAngles:
         if 0.0 <= value <= 1.0:
             return {joint: (value, path)}
         hint = "0 is closed, 1 is open"
         self.report("hand-out-of-range", path, f"a hand can't be opened to {value:g}", hint=hint)
         return {}
 
-    def _shared(self, angles: Angles, own: Angles) -> Angles:
+    def _shared(self, angles: PlacedAngles, own: PlacedAngles) -> PlacedAngles:
         """Joints on one drive move together: what is said of one holds for both."""
         for follower, leader in self.body.shared.items():
             if follower in own and leader in own and abs(own[follower][0] - own[leader][0]) > TOLERANCE:
@@ -158,7 +158,7 @@ class PoseReader:
         return angles
 
 
-def _mirrored(angles: Angles) -> Angles:
+def _mirrored(angles: PlacedAngles) -> PlacedAngles:
     return {
         other: (sign * angle, where)
         for joint, (angle, where) in angles.items()

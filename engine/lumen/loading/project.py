@@ -1,4 +1,4 @@
-"""A whole project: all its files built into a `Draft`, and that into a `Project` where nothing is wrong."""
+"""A whole project: all its files built into a `ProjectDraft`, and that into a `Project` where nothing is wrong."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -12,18 +12,18 @@ from lumen.language.projects import Project
 from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.controllers import build_controller
-from lumen.loading.draft import Draft
+from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_files
 from lumen.loading.linking import link
 from lumen.loading.messages import ENDING, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
-from lumen.loading.reading import Build, File, read_file
+from lumen.loading.reading import Build, BuiltFile, read_file
 from lumen.loading.settings import build_settings
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.stories import build_story
 
-__all__ = ["FOLDERS", "MAIN_FILE", "Draft", "assemble", "draft", "read_files"]
+__all__ = ["FOLDERS", "MAIN_FILE", "assemble", "draft", "read_files"]
 
 T = TypeVar("T")
 
@@ -37,9 +37,9 @@ _KINDS: Mapping[str, str] = {
 }
 
 
-def draft(files: Mapping[str, bytes]) -> Draft:
+def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     """Everything that can be built from these files; it depends on nothing else and never raises for what they say."""
-    found = Draft(files)
+    found = ProjectDraft(files)
     if (content := files.get(MAIN_FILE)) is None:
         found.say("missing-file", MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
     elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
@@ -61,7 +61,7 @@ def draft(files: Mapping[str, bytes]) -> Draft:
     return found
 
 
-def assemble(found: Draft, root: str) -> Project:
+def assemble(found: ProjectDraft, root: str) -> Project:
     """The project, from a draft without errors."""
     settings, body = found.settings, found.body
     assert settings is not None
@@ -90,9 +90,9 @@ def assemble(found: Draft, root: str) -> Project:
     )
 
 
-def _each(found: Draft, folder: str, build: Build[T]) -> dict[str, File[T]]:
+def _each(found: ProjectDraft, folder: str, build: Build[T]) -> dict[str, BuiltFile[T]]:
     """What the documents of a folder hold, by name."""
-    names, read = set(), dict[str, File[T]]()
+    names, read = set(), dict[str, BuiltFile[T]]()
     for file, content in found.files.items():
         path = PurePosixPath(file)
         if str(path.parent) != folder or path.suffix not in (".yaml", ".yml"):
@@ -108,12 +108,12 @@ def _each(found: Draft, folder: str, build: Build[T]) -> dict[str, File[T]]:
     return read
 
 
-def _built(files: Mapping[str, File[T]]) -> dict[str, T]:
+def _built(files: Mapping[str, BuiltFile[T]]) -> dict[str, T]:
     """What was built of these files; one that holds too little for that is left out."""
     return {name: file.built for name, file in files.items() if file.built is not None}
 
 
-def _read(found: Draft, file: str, content: bytes, kind: str, build: Build[T]) -> File[T] | None:
+def _read(found: ProjectDraft, file: str, content: bytes, kind: str, build: Build[T]) -> BuiltFile[T] | None:
     """What one document holds, None where it can't be read at all."""
     if isinstance(content, Unreadable):
         hint = "put a readable file there, or delete it"
@@ -126,13 +126,13 @@ def _read(found: Draft, file: str, content: bytes, kind: str, build: Build[T]) -
     return read
 
 
-def _machine(data: Any, report: Report, *, name: str) -> Machine | None:
+def _machine(data: Any, report: DocumentReport, *, name: str) -> Machine | None:
     return build_machine(data, report, name=name, into=Machine)
 
 
-def _motions(found: Draft, folder: str) -> dict[str, Motion]:
+def _motions(found: ProjectDraft, folder: str) -> dict[str, Motion]:
     """The motions of a folder, which can be read only where the robot's body is known."""
-    files: Mapping[str, File[None]] = _each(found, folder, lambda data, report, name: None)
+    files: Mapping[str, BuiltFile[None]] = _each(found, folder, lambda data, report, name: None)
     only = next(iter(found.bodies)) if found.settings is None and len(found.bodies) == 1 else ""
     model = found.settings.model if found.settings else only
     if model not in found.bodies:
@@ -142,7 +142,7 @@ def _motions(found: Draft, folder: str) -> dict[str, Motion]:
     return build_motions({name: (file.data, file.report) for name, file in files.items()}, found.bodies[model])
 
 
-def _messages(found: Draft) -> None:
+def _messages(found: ProjectDraft) -> None:
     names = set()
     for file, content in found.files.items():
         path = PurePosixPath(file)

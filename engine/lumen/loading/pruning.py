@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
-from lumen.loading.source import Document, Report, Span
+from lumen.loading.source import Document, DocumentReport, NodeSpan
 
 
-def prune(report: Report, doomed: set[NodePath]) -> None:
+def prune(report: DocumentReport, doomed: set[NodePath]) -> None:
     """Take these nodes out of the report's document, and remember what was lost with them.
 
     Items of lists move up, and their places with them.
@@ -29,7 +29,7 @@ class _Copy:
 
     def __init__(self, document: Document, doomed: set[NodePath]) -> None:
         self._document, self._doomed = document, doomed
-        self.spans: dict[NodePath, Span] = {}
+        self.spans: dict[NodePath, NodeSpan] = {}
         self.moved: dict[NodePath, NodePath] = {}
 
     def of(self, data: Any, old: NodePath, new: NodePath) -> Any:

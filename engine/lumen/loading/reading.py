@@ -5,9 +5,9 @@ from pathlib import PurePosixPath
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.recollection import again
+from lumen.loading.recollection import memoize
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Report, parse
+from lumen.loading.source import DocumentReport, parse
 
 T = TypeVar("T")
 B = TypeVar("B", covariant=True)
@@ -16,36 +16,36 @@ B = TypeVar("B", covariant=True)
 class Build(Protocol[B]):
     """Makes something of a document's checked data; what is wrong with it is reported."""
 
-    def __call__(self, data: Any, report: Report, *, name: str) -> B | None: ...
+    def __call__(self, data: Any, report: DocumentReport, *, name: str) -> B | None: ...
 
 
-class File(NamedTuple, Generic[T]):
+class BuiltFile(NamedTuple, Generic[T]):
     """A document's checked data, its report, and what was built of it, None where it holds too little for that."""
 
     data: Any
-    report: Report
+    report: DocumentReport
     built: T | None
 
 
-def read_file(file: str, content: bytes, kind: str, build: Build[T]) -> tuple[File[T] | None, list[Diagnostic]]:
+def read_file(file: str, content: bytes, kind: str, build: Build[T]) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
     """What a file holds, None where it can't be read at all, and what is wrong with its text.
 
     Its report is the caller's own, to which more may be said; all else is shared with whoever reads the same.
     """
-    read, found = again(("file", file), content, lambda: _read(file, content, kind, build))
+    read, found = memoize(("file", file), content, lambda: _read(file, content, kind, build))
     return read and read._replace(report=read.report.copy()), found
 
 
-def _read(file: str, content: bytes, kind: str, build: Build[T]) -> tuple[File[T] | None, list[Diagnostic]]:
+def _read(file: str, content: bytes, kind: str, build: Build[T]) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
     document, found = parse(file, content)
     if document is None:
         return None, found
-    report, name = Report(document), PurePosixPath(file).stem
+    report, name = DocumentReport(document), PurePosixPath(file).stem
     data = check_schema(document, kind, report)
-    return File(data, report, unless_too_deep(report, lambda: build(data, report, name=name))), found
+    return BuiltFile(data, report, unless_too_deep(report, lambda: build(data, report, name=name))), found
 
 
-def unless_too_deep(report: Report, build: Callable[[], T | None]) -> T | None:
+def unless_too_deep(report: DocumentReport, build: Callable[[], T | None]) -> T | None:
     """What `build` makes; a file may nest more deeply than Python can follow."""
     try:
         return build()

@@ -13,7 +13,7 @@ MAX_SLOTS = 10_000
 _last: dict[Hashable, tuple[Any, Any]] = {}
 
 
-def again(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
+def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
     """What `make` made in this slot when last given an equal `given`, else what it makes now.
 
     `given` is all that the result depends on.

@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.routes import COMMAND, STOP, Carried, Direction, Route, Size
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import seconds
 
 DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
@@ -16,12 +16,12 @@ _USUAL = {COMMAND: Carried.COMMAND, STOP: Carried.STOP}
 """How the routes are carried whose names say it."""
 
 
-def build_routes(data: Mapping[str, Any], report: Report, where: NodePath = ("routes",)) -> dict[str, Route]:
+def build_routes(data: Mapping[str, Any], report: DocumentReport, where: NodePath = ("routes",)) -> dict[str, Route]:
     """The routes by name, in the order written."""
     return {name: build_route(name, row, report, (*where, name)) for name, row in data.items()}
 
 
-def build_route(name: str, data: Mapping[str, Any], report: Report, where: NodePath) -> Route:
+def build_route(name: str, data: Mapping[str, Any], report: DocumentReport, where: NodePath) -> Route:
     """One row; a duration that can't be read is reported and left out."""
     latency = duration(data, "latency", report, where)
     carried = Carried(data.get("carried", _USUAL.get(name, Carried.TELEMETRY)))
@@ -47,7 +47,7 @@ def _size(data: Mapping[str, Any]) -> Size | None:
 
 
 def duration(
-    data: Mapping[str, Any], key: str, report: Report, where: NodePath, *, positive: bool = False
+    data: Mapping[str, Any], key: str, report: DocumentReport, where: NodePath, *, positive: bool = False
 ) -> float | None:
     """The duration under that key [s]; None where there is none, or (reported) none that can be read."""
     if key not in data:

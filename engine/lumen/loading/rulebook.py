@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.controllers import Activation, Block, Operators, Rule, Variable
+from lumen.language.controllers import Activation, Operators, Rule, RuleBlock, Variable
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.loading.rules import Mention, RuleSyntaxError, Word, parse_rule
-from lumen.loading.source import Report
+from lumen.loading.rules import Mention, RuleSyntaxError, RuleWord, parse_rule
+from lumen.loading.source import DocumentReport
 from lumen.loading.words import report_word
 
 
@@ -18,19 +18,23 @@ class Rulebook:
     """
 
     def __init__(
-        self, data: Mapping[str, Any], report: Report, inputs: Mapping[str, Variable], outputs: Mapping[str, Variable]
+        self,
+        data: Mapping[str, Any],
+        report: DocumentReport,
+        inputs: Mapping[str, Variable],
+        outputs: Mapping[str, Variable],
     ) -> None:
         self.data, self.report = data, report
         self.built = {"inputs": inputs, "outputs": outputs}
         self.operators = data.get("operators") or {}
 
-    def blocks(self) -> list[Block]:
+    def blocks(self) -> list[RuleBlock]:
         """The rules under `rules:`, then those of each of `blocks:`."""
-        own = Block(tuple(self.rules(("rules",), self.data.get("rules") or ())), self.combination({}))
+        own = RuleBlock(tuple(self.rules(("rules",), self.data.get("rules") or ())), self.combination({}))
         blocks = [own] if own.rules else []
         for name, spec in (self.data.get("blocks") or {}).items():
             rules = tuple(self.rules(("blocks", name, "rules"), spec.get("rules") or ()))
-            blocks.append(Block(rules, self.combination(spec.get("operators") or {}), name))
+            blocks.append(RuleBlock(rules, self.combination(spec.get("operators") or {}), name))
         if not any(block.rules for block in blocks) and not self.report.diagnostics:
             self.report("no-rules", (), "the controller has no rules", hint="write `rules:` and a list of them")
         return blocks
@@ -83,6 +87,6 @@ class Rulebook:
         hint = did_you_mean(word.text, names, "the variables are")
         self.at_word("unknown-variable", path, text, word, f"there is no variable `{word.text}`", hint)
 
-    def at_word(self, code: str, path: NodePath, text: str, word: Word, message: str, hint: str) -> None:
+    def at_word(self, code: str, path: NodePath, text: str, word: RuleWord, message: str, hint: str) -> None:
         """Report something of one word of a rule."""
         report_word(self.report, code, path, text, word.offset, len(word.text), message, hint)

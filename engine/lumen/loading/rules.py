@@ -18,7 +18,7 @@ MAX_DEPTH = 50
 _TOKEN = re.compile(r"[(),]|[^\s(),]+")
 
 
-class Word(NamedTuple):
+class RuleWord(NamedTuple):
     """A word of the rule and the offset at which it begins."""
 
     text: str
@@ -33,8 +33,8 @@ class Word(NamedTuple):
 class Mention(NamedTuple):
     """The words of one proposition: `term` is None after `any`, which needs none."""
 
-    variable: Word
-    term: Word | None
+    variable: RuleWord
+    term: RuleWord | None
     concluded: bool
 
 
@@ -50,7 +50,7 @@ class RuleText(NamedTuple):
 class RuleSyntaxError(Exception):
     """The text is not a rule; `word` is where it stops being one."""
 
-    def __init__(self, message: str, word: Word, hint: str = "") -> None:
+    def __init__(self, message: str, word: RuleWord, hint: str = "") -> None:
         super().__init__(message)
         self.message, self.word, self.hint = message, word, hint
 
@@ -62,17 +62,17 @@ def parse_rule(text: str) -> RuleText:
 
 class _Parser:
     def __init__(self, text: str) -> None:
-        self.words = [Word(match[0], match.start()) for match in _TOKEN.finditer(text)]
-        self.end = Word("", len(text.rstrip()))
+        self.words = [RuleWord(match[0], match.start()) for match in _TOKEN.finditer(text)]
+        self.end = RuleWord("", len(text.rstrip()))
         self.next = 0
         self.depth = 0
         self.mentions: list[Mention] = []
 
     @property
-    def word(self) -> Word:
+    def word(self) -> RuleWord:
         return self.words[self.next] if self.next < len(self.words) else self.end
 
-    def take(self) -> Word:
+    def take(self) -> RuleWord:
         word = self.word
         self.next += 1
         return word
@@ -149,7 +149,7 @@ class _Parser:
         self.mentions.append(Mention(variable, term, concluded))
         return Proposition(variable.text, term.text if term else "", tuple(hedges))
 
-    def name(self, wanted: str) -> Word:
+    def name(self, wanted: str) -> RuleWord:
         if not self.word.text or self.word.text in "()," or self.word.key in KEYWORDS:
             raise self.error(wanted)
         return self.take()

@@ -12,7 +12,7 @@ from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
 from lumen.loading.quick import Quick, quick
-from lumen.loading.source import Document, Report
+from lumen.loading.source import Document, DocumentReport
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator
@@ -26,7 +26,7 @@ _ASTRAY = ("unknown-key", "one-verb")
 """What is said of keys that belong below the one above them."""
 
 
-def check_schema(document: Document, kind: str, report: Report) -> Any:
+def check_schema(document: Document, kind: str, report: DocumentReport) -> Any:
     """The document's data without what its schema refuses; each error is reported at its node.
 
     A broken node is taken out with its key, or as an item of its list; one that lacks a required key is taken out
@@ -109,7 +109,7 @@ def _complaints(validator: "Draft202012Validator", data: Any) -> Iterator[Compla
         yield from complaints(error, validator.schema)
 
 
-def _judge(found: list[Complaint], report: Report, said: set[NodePath]) -> set[NodePath]:
+def _judge(found: list[Complaint], report: DocumentReport, said: set[NodePath]) -> set[NodePath]:
     """The nodes that have to go. What follows from a node that went before, and what was said, is not said again."""
     suggested = {(c.path[:-1], c.suggestion) for c in found if c.suggestion}
     doomed = {c.doomed for c in found if c.doomed is not None}
@@ -142,7 +142,7 @@ def _judge(found: list[Complaint], report: Report, said: set[NodePath]) -> set[N
     return doomed
 
 
-def _emptied(found: list[Complaint], report: Report) -> dict[NodePath, NodePath]:
+def _emptied(found: list[Complaint], report: DocumentReport) -> dict[NodePath, NodePath]:
     """The nodes in which a key is empty and keys after it are unknown, each with that key: those belong below it."""
     empty = {c.about[:-1]: c.path for c in found if c.code == "wrong-type" and c.path and _at(report, c.path) is None}
     found_below: dict[NodePath, NodePath] = {}
@@ -154,19 +154,19 @@ def _emptied(found: list[Complaint], report: Report) -> dict[NodePath, NodePath]
     return found_below
 
 
-def _outdented(found: list[Complaint], report: Report) -> set[NodePath]:
+def _outdented(found: list[Complaint], report: DocumentReport) -> set[NodePath]:
     """The nodes that mean nothing where they stand, and that the node before them lacks."""
     wrong = {path[:n] for c in found if not c.missing for path in (c.about, c.path) for n in range(1, len(path) + 1)}
     missed = ((c, (*c.about[:-1], c.missing)) for c in found if c.missing and c.about)
     return {beside for c, beside in missed if beside in wrong and _stands_after(report, beside, c.about)}
 
 
-def _stands_after(report: Report, path: NodePath, other: NodePath) -> bool:
+def _stands_after(report: DocumentReport, path: NodePath, other: NodePath) -> bool:
     spans = report.document.spans
     return path in spans and other in spans and spans[path].value > spans[other].value
 
 
-def _cause(complaint: Complaint, report: Report) -> str:
+def _cause(complaint: Complaint, report: DocumentReport) -> str:
     """What several keys of one node have in common that mean nothing there, or are missing: they are one mistake."""
     if complaint.suggestion or complaint.code not in ("unknown-key", "missing-key"):
         return ""
@@ -175,7 +175,7 @@ def _cause(complaint: Complaint, report: Report) -> str:
     return f"{report.document.file} keys of {complaint.about}"
 
 
-def _at(report: Report, path: NodePath) -> Any:
+def _at(report: DocumentReport, path: NodePath) -> Any:
     node = report.document.data
     for step in path:
         node = node[step]

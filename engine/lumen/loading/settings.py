@@ -9,7 +9,7 @@ from lumen.language.modules import ModuleSettings
 from lumen.language.projects import PATIENCE, Stage
 from lumen.language.routes import Route
 from lumen.loading.routes import build_routes, duration
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import LENGTHS
 
 
@@ -31,7 +31,7 @@ class Settings:
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
 
 
-def build_settings(data: Any, report: Report) -> Settings:
+def build_settings(data: Any, report: DocumentReport) -> Settings:
     """The settings in the data of lumen.yaml, which has the shape of lumen.schema.json but may lack any key."""
     if not isinstance(data, Mapping):
         return Settings()
@@ -56,12 +56,12 @@ def _module(row: Mapping[str, Any]) -> ModuleSettings:
     return ModuleSettings(row.get("here", False), {key: value for key, value in row.items() if key != "here"})
 
 
-def _patience(data: Mapping[str, Any], report: Report) -> float:
+def _patience(data: Mapping[str, Any], report: DocumentReport) -> float:
     length = duration(data.get("reload", {}), "patience", report, ("reload",))
     return PATIENCE if length is None else length
 
 
-def _stage(data: Mapping[str, Any], report: Report) -> Stage | None:
+def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:
     if "stage" not in data:
         return None
     unit = LENGTHS[data.get("units", {}).get("length", "m")]

@@ -2,8 +2,8 @@
 
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import Kind
-from lumen.loading.outline import Entry, Outline
-from lumen.loading.source import Report
+from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.loading.source import DocumentReport
 
 _COMMON = {"id", "description", "type"}
 _HISTORY = {*_COMMON, "history", "target"}
@@ -22,7 +22,7 @@ _ALLOWED = {
 _ARTICLES = {"atomic": "an atomic"}
 
 
-def check_shapes(outline: Outline, report: Report) -> None:
+def check_shapes(outline: BehaviorOutline, report: DocumentReport) -> None:
     """Reports keys that mean nothing in a state of that type, and states that lack what their type needs."""
     for entry in outline.entries.values():
         _check_keys(entry, report)
@@ -31,7 +31,7 @@ def check_shapes(outline: Outline, report: Report) -> None:
         _check_done(entry, report)
 
 
-def _check_keys(entry: Entry, report: Report) -> None:
+def _check_keys(entry: OutlinedState, report: DocumentReport) -> None:
     allowed = _ALLOWED[entry.kind]
     for key in entry.data:
         if key in allowed:
@@ -44,7 +44,7 @@ def _check_keys(entry: Entry, report: Report) -> None:
         report("misplaced-key", (*entry.where, key), message, hint=hint, key=True)
 
 
-def _check_children(entry: Entry, report: Report) -> None:
+def _check_children(entry: OutlinedState, report: DocumentReport) -> None:
     if entry.kind not in (Kind.COMPOUND, Kind.PARALLEL):
         return
     if all(child.kind is Kind.HISTORY for child in entry.children.values()):
@@ -52,14 +52,14 @@ def _check_children(entry: Entry, report: Report) -> None:
         report("no-states", entry.where, f"{entry.title} has no states to be in", hint=hint, key=True)
 
 
-def _check_parent(entry: Entry, report: Report) -> None:
+def _check_parent(entry: OutlinedState, report: DocumentReport) -> None:
     parent = entry.parent
     if entry.kind is Kind.FINAL and parent and parent.kind is Kind.PARALLEL:
         hint = "a parallel state is done when each of its regions has reached a final state of its own"
         report("final-in-parallel", entry.where, f"`{entry.path}` is final in a parallel state", hint=hint, key=True)
 
 
-def _check_done(entry: Entry, report: Report) -> None:
+def _check_done(entry: OutlinedState, report: DocumentReport) -> None:
     if report.broken((*entry.where, "do")):
         return
     if entry.kind is Kind.ATOMIC and "onDone" in entry.data and "do" not in entry.data:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeVar
 import yaml
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related, Severity
-from lumen.loading.recollection import again
+from lumen.loading.recollection import memoize
 
 T = TypeVar("T")
 
@@ -54,7 +54,7 @@ class _Loader(yaml.CSafeLoader):
 _Loader.yaml_implicit_resolvers = {}
 
 
-class Span(NamedTuple):
+class NodeSpan(NamedTuple):
     """Where a node stands: its key (None in a list and at the root) and its value."""
 
     key: Place | None
@@ -70,7 +70,7 @@ class Document:
 
     file: str
     data: Any
-    spans: Mapping[NodePath, Span] = field(default_factory=dict, repr=False, compare=False)
+    spans: Mapping[NodePath, NodeSpan] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
     dropped: frozenset[str] = field(default=frozenset(), repr=False, compare=False)
 
@@ -90,7 +90,7 @@ class Document:
         return Place(self.file)
 
 
-class Report:
+class DocumentReport:
     """Collects the diagnostics of one document; whoever finds something calls it with the path of the node.
 
     `pruned` are the paths of nodes that were taken out because they are broken, and `lost` the names that stood in
@@ -130,22 +130,22 @@ class Report:
             others = tuple(Related(self.document.place(where, key=True), what) for where, what in related)
             self.diagnostics.append(Diagnostic(code, message, place, hint, severity, others, cause, root))
 
-    def copy(self) -> "Report":
+    def copy(self) -> "DocumentReport":
         """Another report that says the same, and to which more can be said."""
-        other = Report(self.document)
+        other = DocumentReport(self.document)
         other.take(self)
         return other
 
-    def take(self, other: "Report") -> None:
+    def take(self, other: "DocumentReport") -> None:
         """Say what the other says, and nothing else."""
         self.document = other.document
         self.diagnostics = [*other.diagnostics]
         self.pruned, self.lost, self.missed = {*other.pruned}, {*other.lost}, {*other.missed}
 
-    def again(self, slot: Hashable, given: Any, make: Callable[[], T]) -> T:
+    def memoize(self, slot: Hashable, given: Any, make: Callable[[], T]) -> T:
         """What `make` made and said here when last given the same of the same file, else what it makes and says now."""
         before = (self.document.text, [*self.diagnostics], {*self.pruned}, {*self.lost}, {*self.missed})
-        made, after = again(slot, (before, given), lambda: (make(), self.copy()))
+        made, after = memoize(slot, (before, given), lambda: (make(), self.copy()))
         self.take(after)
         return made
 
@@ -164,7 +164,7 @@ def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
 
     It depends on nothing else, so that a file that did not change is not read again.
     """
-    document, found = again(("parse", file), content, lambda: _read(file, content))
+    document, found = memoize(("parse", file), content, lambda: _read(file, content))
     return document, [*found]
 
 
@@ -215,13 +215,13 @@ class _Reader:
 
     def __init__(self, file: str) -> None:
         self.file = file
-        self.spans: dict[NodePath, Span] = {}
+        self.spans: dict[NodePath, NodeSpan] = {}
         self.diagnostics: list[Diagnostic] = []
         self.full = False
         self.dropped: set[str] = set()
 
     def read(self, node: yaml.Node, path: NodePath, key: yaml.Node | None, depth: int) -> Any:
-        self.spans[path] = Span(self.place(key) if key else None, self.place(node))
+        self.spans[path] = NodeSpan(self.place(key) if key else None, self.place(node))
         if depth > MAX_DEPTH or len(self.spans) > MAX_NODES:
             self.overflow(node, depth)
             return None
@@ -250,7 +250,7 @@ class _Reader:
                 hint = "put quotes around a text that begins with `{`"
                 self.say("complex-key", key, "a key has to be a single word or text", hint)
             elif key.value in data:
-                self.again(key, path)
+                self.duplicate(key, path)
                 if data[key.value] is None:  # the line was doubled, and the second one goes on
                     data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
                 else:
@@ -266,7 +266,7 @@ class _Reader:
         message = f"a comma ends the number {before.value}, and `{key.value}` would be a key"
         self.diagnostics.append(Diagnostic("decimal-comma", message, place, f"write a point: {number}"))
 
-    def again(self, key: yaml.Node, path: NodePath) -> None:
+    def duplicate(self, key: yaml.Node, path: NodePath) -> None:
         """Report a key that stands a second time; those of one map are one finding."""
         first = self.spans[(*path, key.value)].key
         hint = f"the first one stands in line {first.line}" if first else ""

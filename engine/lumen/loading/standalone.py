@@ -12,7 +12,7 @@ from lumen.loading.linking import link
 from lumen.loading.memory import check_memory
 from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Document, Report, parse
+from lumen.loading.source import Document, DocumentReport, parse
 
 M = TypeVar("M", bound=Machine)
 Read = Callable[[str], tuple[Document | None, list[Diagnostic]]]
@@ -49,7 +49,7 @@ class _Family(Generic[M]):
     def __init__(self, read: Read, names: Collection[str], into: type[M]) -> None:
         self.read, self.names, self.into = read, names, into
         self.machines: dict[str, M] = {}
-        self.reports: dict[str, Report] = {}
+        self.reports: dict[str, DocumentReport] = {}
         self.loose: list[Diagnostic] = []
 
     def head(self, name: str) -> M:
@@ -69,7 +69,7 @@ class _Family(Generic[M]):
         """Build one of them; what it invokes."""
         document, diagnostics = self.read(name)
         self.loose += diagnostics
-        report = self.reports[name] = Report(document or Document(name, None))
+        report = self.reports[name] = DocumentReport(document or Document(name, None))
         if document is None:
             return []
         machine = build_machine(check_schema(document, "behavior", report), report, name=name, into=self.into)

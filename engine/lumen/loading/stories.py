@@ -20,7 +20,7 @@ from lumen.language.stories import (
     Visitor,
 )
 from lumen.loading.routes import duration
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import seconds
 
 WITHIN = 30.0
@@ -29,7 +29,7 @@ WITHIN = 30.0
 S = TypeVar("S", bound=Story)
 
 
-def build_story(data: Any, report: Report, *, name: str, into: type[S] = Story) -> S | None:  # type: ignore[assignment]
+def build_story(data: Any, report: DocumentReport, *, name: str, into: type[S] = Story) -> S | None:  # type: ignore[assignment]
     """The story in the data of `behaviors/stories/NAME.yaml`, None where it has no steps."""
     if not isinstance(data, Mapping) or not data.get("steps"):
         return None
@@ -47,7 +47,7 @@ def build_story(data: Any, report: Report, *, name: str, into: type[S] = Story) 
     )
 
 
-def _performance(how: str, report: Report, where: NodePath) -> str | float:
+def _performance(how: str, report: DocumentReport, where: NodePath) -> str | float:
     """`fails`, `hangs`, or a duration [s]."""
     if how in ("fails", "hangs"):
         return how
@@ -58,7 +58,7 @@ def _performance(how: str, report: Report, where: NodePath) -> str | float:
     return length
 
 
-def _deed(row: Mapping[str, Any], report: Report, where: NodePath) -> Deed | None:
+def _deed(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> Deed | None:
     [(verb, body)] = row.items()
     match verb:
         case "visitor":
@@ -79,7 +79,7 @@ def _deed(row: Mapping[str, Any], report: Report, where: NodePath) -> Deed | Non
     return None
 
 
-def _visitor(body: Any, report: Report, where: NodePath) -> Deed | None:
+def _visitor(body: Any, report: DocumentReport, where: NodePath) -> Deed | None:
     if isinstance(body, str):
         return Arrive(Visitor()) if body == "arrives" else Leave()
     for key, value in body.items():
@@ -89,7 +89,7 @@ def _visitor(body: Any, report: Report, where: NodePath) -> Deed | None:
     return Arrive(Visitor(**{key: float(value) for key, value in body.items()}))
 
 
-def _expect(body: Mapping[str, Any], report: Report, where: NodePath) -> Expect:
+def _expect(body: Mapping[str, Any], report: DocumentReport, where: NodePath) -> Expect:
     states, published = body.get("state", ()), body.get("published")
     message = published if isinstance(published, Mapping) else {"route": published}
     within = duration(body, "within", report, where)

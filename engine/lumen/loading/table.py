@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.loading.source import Document, Report, Span
+from lumen.loading.source import Document, DocumentReport, NodeSpan
 
 
-def spread(report: Report) -> Any:
+def spread(report: DocumentReport) -> Any:
     """The data with each cell of the table moved to the variable it belongs to; its place stays where it was written.
 
     A cell of no variable, and one of a term that the variable has already, is reported.
@@ -27,7 +27,7 @@ def spread(report: Report) -> Any:
 class _Table:
     """Copies of the data and its places, into which cells are moved."""
 
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: DocumentReport) -> None:
         data = report.document.data
         self.report = report
         self.sides = {
@@ -35,7 +35,7 @@ class _Table:
             for side in ("inputs", "outputs")
         }
         self.data = {**data, **self.sides}
-        self.places: dict[NodePath, Span] = dict(report.document.spans)
+        self.places: dict[NodePath, NodeSpan] = dict(report.document.spans)
 
     def cell(self, kind: str, term: str, name: str, parameters: Any) -> None:
         path: NodePath = ("terms", kind, term, name)
@@ -66,7 +66,7 @@ class _Table:
             self.places[(*to, kind, *inner[len(path) :])] = self.report.document.spans[inner]
 
 
-def termless(data: Mapping[str, Any], report: Report) -> None:
+def termless(data: Mapping[str, Any], report: DocumentReport) -> None:
     """Report outputs without a term."""
     for name, spec in data["outputs"].items():
         path: NodePath = ("outputs", name)

@@ -8,7 +8,7 @@ from lumen.language.controllers import TERMS, Term
 from lumen.language.diagnostics import NodePath
 from lumen.loading.formulas import check_formula
 from lumen.loading.rules import KEYWORDS
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 
 _POSITIVE: Mapping[str, tuple[int, ...]] = {
     "gaussian": (1,), "gaussian-product": (1, 3), "bell": (1,), "spike": (1,), "cosine": (1,),
@@ -19,7 +19,7 @@ _INFINITE = ("triangle", "trapezoid", "binary", "rectangle")
 
 
 def build_terms(
-    data: Mapping[str, Any], report: Report, path: NodePath, inputs: int, names: Sequence[str] = ()
+    data: Mapping[str, Any], report: DocumentReport, path: NodePath, inputs: int, names: Sequence[str] = ()
 ) -> dict[str, Term]:
     """The usable ones of these terms, by name; what is wrong with the others is reported at its number.
 
@@ -30,7 +30,7 @@ def build_terms(
     return {term.name: term for term in terms if term}
 
 
-def plain_name(name: str, report: Report, path: NodePath) -> None:
+def plain_name(name: str, report: DocumentReport, path: NodePath) -> None:
     """Report a name that a rule could not tell from its own words."""
     if name.lower() in KEYWORDS:
         report("reserved-name", path, f"`{name}` is a word of the rules", hint="choose another name", key=True)
@@ -40,7 +40,13 @@ class _Term:
     """One term under construction."""
 
     def __init__(
-        self, name: str, shape: Mapping[str, Any], report: Report, path: NodePath, inputs: int, names: Sequence[str]
+        self,
+        name: str,
+        shape: Mapping[str, Any],
+        report: DocumentReport,
+        path: NodePath,
+        inputs: int,
+        names: Sequence[str],
     ) -> None:
         self.name, self.shape, self.report, self.path = name, shape, report, path
         self.inputs, self.names = inputs, names

@@ -9,24 +9,28 @@ from lumen.language.machines import Kind, Transition
 from lumen.loading.actions import Actions
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import invoked
-from lumen.loading.outline import Entry, Outline
-from lumen.loading.source import Report
+from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.loading.source import DocumentReport
 
-Row = tuple[NodePath, Any]
+PlacedValue = tuple[NodePath, Any]
 
 
-class Transitions:
+class TransitionReader:
     """Reads the transitions of one document's states."""
 
-    def __init__(self, report: Report, outline: Outline, actions: Actions, expressions: Expressions) -> None:
+    def __init__(
+        self, report: DocumentReport, outline: BehaviorOutline, actions: Actions, expressions: Expressions
+    ) -> None:
         self.report, self.outline = report, outline
         self.actions, self.expressions = actions, expressions
 
-    def of(self, entry: Entry) -> tuple[Transition, ...]:
+    def of(self, entry: OutlinedState) -> tuple[Transition, ...]:
         """The candidates of a state, in the order of the file; broken ones are left out."""
         return tuple(found for key, body in entry.data.items() for found in self._under(entry, key, body))
 
-    def targets(self, entry: Entry, body: Any, where: NodePath, written: Any = None) -> list[Entry] | None:
+    def targets(
+        self, entry: OutlinedState, body: Any, where: NodePath, written: Any = None
+    ) -> list[OutlinedState] | None:
         """The states that a target or a list of them names; None (and reported) where one is wrong.
 
         `written` is how the file has them, where that differs.
@@ -39,7 +43,7 @@ class Transitions:
             return None
         return states
 
-    def _under(self, entry: Entry, key: str, body: Any) -> Iterator[Transition]:
+    def _under(self, entry: OutlinedState, key: str, body: Any) -> Iterator[Transition]:
         where = (*entry.where, key)
         match key:
             case "on":
@@ -60,7 +64,7 @@ class Transitions:
             case "onError":
                 yield from self._candidates(entry, body, where, event=f"error.do.{entry.name}", exact=True)
 
-    def _after(self, entry: Entry, body: Mapping[str, Any], where: NodePath) -> Iterator[Transition]:
+    def _after(self, entry: OutlinedState, body: Mapping[str, Any], where: NodePath) -> Iterator[Transition]:
         for text, rows in body.items():
             delay = self.actions.duration(text, (*where, text), key=True)
             if delay is not None:
@@ -69,7 +73,7 @@ class Transitions:
 
     def _candidates(
         self,
-        entry: Entry,
+        entry: OutlinedState,
         body: Any,
         where: NodePath,
         *,
@@ -83,7 +87,7 @@ class Transitions:
                     entry.path, event, found.targets, found.guard, found.actions, found.reenter, delay, exact, place
                 )
 
-    def _one(self, entry: Entry, row: Any, where: NodePath, event: str) -> Transition | None:
+    def _one(self, entry: OutlinedState, row: Any, where: NodePath, event: str) -> Transition | None:
         if isinstance(row, str):
             row, place = {"target": row}, where
         else:
@@ -101,7 +105,7 @@ class Transitions:
         paths = tuple(target.path for target in targets)
         return Transition(entry.path, event, paths, guard, actions, row.get("reenter", False))
 
-    def _together(self, states: list[Entry], where: NodePath) -> bool:
+    def _together(self, states: list[OutlinedState], where: NodePath) -> bool:
         for one, other in combinations(states, 2):
             if not _fit(one, other):
                 message = f"`{one.path}` and `{other.path}` can't be active together"
@@ -111,7 +115,7 @@ class Transitions:
         return True
 
 
-def _fit(one: Entry, other: Entry) -> bool:
+def _fit(one: OutlinedState, other: OutlinedState) -> bool:
     """Whether two states can be targets together; a history speaks for all that is in its parent."""
     for history, state in ((one, other), (other, one)):
         home = history.parent
@@ -120,7 +124,7 @@ def _fit(one: Entry, other: Entry) -> bool:
     return one.lies_in(other) or other.lies_in(one) or _meeting(one, other).kind is Kind.PARALLEL
 
 
-def _meeting(one: Entry, other: Entry) -> Entry:
+def _meeting(one: OutlinedState, other: OutlinedState) -> OutlinedState:
     """The nearest state that holds both."""
     while not one.lies_in(other):
         assert other.parent is not None  # every state lies in the root
@@ -128,5 +132,5 @@ def _meeting(one: Entry, other: Entry) -> Entry:
     return other
 
 
-def _rows(body: Any, where: NodePath) -> list[Row]:
+def _rows(body: Any, where: NodePath) -> list[PlacedValue]:
     return [((*where, i), row) for i, row in enumerate(body)] if isinstance(body, list | tuple) else [(where, body)]

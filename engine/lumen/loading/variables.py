@@ -8,11 +8,11 @@ from typing import Any
 from lumen.interpreters.inference.weighted import INVERSES
 from lumen.language.controllers import VALUES, WEIGHTED, Variable
 from lumen.language.diagnostics import NodePath
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.loading.terms import build_terms, plain_name
 
 
-def build_variables(data: Mapping[str, Any], report: Report, side: str) -> dict[str, Variable]:
+def build_variables(data: Mapping[str, Any], report: DocumentReport, side: str) -> dict[str, Variable]:
     """The usable `inputs` or `outputs` (`side`) of a controller's data, by name."""
     reader = _Variables(data, report, side)
     found = (reader.variable(name, spec) for name, spec in data[side].items())
@@ -22,7 +22,7 @@ def build_variables(data: Mapping[str, Any], report: Report, side: str) -> dict[
 class _Variables:
     """Reads one side of a controller."""
 
-    def __init__(self, data: Mapping[str, Any], report: Report, side: str) -> None:
+    def __init__(self, data: Mapping[str, Any], report: DocumentReport, side: str) -> None:
         self.data, self.report, self.side = data, report, side
         self.operators = data.get("operators") or {}
 

@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.source import Document, Report
+from lumen.loading.source import Document, DocumentReport
 
 
 def report_word(
-    report: Report, code: str, path: NodePath, text: str, offset: int, length: int, message: str, hint: str
+    report: DocumentReport, code: str, path: NodePath, text: str, offset: int, length: int, message: str, hint: str
 ) -> None:
     """Report something of `text[offset : offset + length]`, where `text` is the scalar at `path`."""
     before = len(report.diagnostics)

@@ -5,7 +5,7 @@ from functools import cached_property
 from pathlib import Path
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.draft import Draft
+from lumen.loading.draft import ProjectDraft
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.project import draft
 from lumen.loading.source import Document, parse
@@ -28,7 +28,7 @@ class Analysis:
         return tuple(check_files(self.root, self.files)[1])
 
     @cached_property
-    def draft(self) -> Draft:
+    def draft(self) -> ProjectDraft:
         """What could be built."""
         return draft(self.files)
 

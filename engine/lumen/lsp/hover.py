@@ -4,7 +4,7 @@ from math import degrees
 from pathlib import PurePosixPath
 
 from lumen.language.diagnostics import Diagnostic, NodePath
-from lumen.loading.draft import Draft
+from lumen.loading.draft import ProjectDraft
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import kind_of
 from lumen.lsp.schemas import description_at
@@ -77,7 +77,7 @@ def _facts(analysis: Analysis, word: Word) -> str:
     return ""
 
 
-def _state(draft: Draft, word: Word) -> str:
+def _state(draft: ProjectDraft, word: Word) -> str:
     machine = draft.behaviors.get(word.scope)
     state = machine.states.get(word.name) if machine else None
     if state is None:
@@ -87,7 +87,7 @@ def _state(draft: Draft, word: Word) -> str:
     return f"{state.kind} state at `{state.path}`{alias}{inner}"
 
 
-def _joint(draft: Draft, name: str) -> str:
+def _joint(draft: ProjectDraft, name: str) -> str:
     joint = draft.body.joints.get(name) if draft.body else None
     if joint is None or draft.body is None:
         return ""

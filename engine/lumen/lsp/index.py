@@ -7,8 +7,8 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.messages import ENDING
-from lumen.loading.outline import Entry, Outline
-from lumen.loading.source import Document, Report
+from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.loading.source import Document, DocumentReport
 from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
 from lumen.lsp.locating import Lines, Part, in_expression, in_template
 from lumen.lsp.words import FOLDERS, SCOPED, Kind, Word, covers
@@ -124,7 +124,7 @@ class _Reader:
         place, done = self.document.place(path), 0
         steps = dotted.split(".")
         for i in range(1, len(steps) + 1):
-            entry: Entry | None = find(".".join(steps[:i]))
+            entry: OutlinedState | None = find(".".join(steps[:i]))
             if entry is None or not entry.path:
                 continue
             text = ".".join(steps[done:i])
@@ -133,7 +133,7 @@ class _Reader:
             if here := self.lines.part(place, value, at, len(text)):
                 yield self.word(Kind.STATE, entry.path, text, here)
 
-    def _named_state(self, name: str) -> Entry | None:
+    def _named_state(self, name: str) -> OutlinedState | None:
         if self.outline is None:
             return None
         return self.outline.entries.get(name) or self.outline.aliases.get(name)
@@ -161,12 +161,12 @@ def _state_at(path: NodePath) -> str:
     return ".".join(steps)
 
 
-def _outline(file: str, document: Document) -> Outline | None:
+def _outline(file: str, document: Document) -> BehaviorOutline | None:
     """The states of a behaviour that may be broken anywhere, None where they can't be told."""
     if kind_of(file) != "behavior":
         return None
     try:
-        return Outline(_states(document.data), stem(file), Report(document))
+        return BehaviorOutline(_states(document.data), stem(file), DocumentReport(document))
     except (AttributeError, TypeError, ValueError, RecursionError):
         return None
 

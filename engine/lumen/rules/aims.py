@@ -1,11 +1,11 @@
 """Controllers that are bound: whether a joint is turned the right way, as far as it can, and not too eagerly."""
 
-from lumen.language.controllers import Controller, OutputBinding, Proposition, Variable
+from lumen.language.controllers import ControllerDefinition, OutputBinding, Proposition, Variable
 from lumen.language.diagnostics import NodePath
 from lumen.language.robots import Body
 from lumen.language.scales import ranks
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find, first
 
 GREATEST_GAIN = 2.0
@@ -16,7 +16,7 @@ COUNTS = {"Yaw": "left", "Pitch": "down"}
 """Where a joint of that kind turns as its angle grows: NAO's, as everywhere with x ahead, y left and z up."""
 
 
-def check(controller: Controller, report: Report, draft: Draft) -> None:
+def check(controller: ControllerDefinition, report: DocumentReport, draft: ProjectDraft) -> None:
     """Report gains that overshoot, signs that turn away, and outputs beyond what a joint can do."""
     for binding in controller.output_bindings:
         variable = controller.outputs[binding.variable]
@@ -28,7 +28,7 @@ def check(controller: Controller, report: Report, draft: Draft) -> None:
             _limits(controller, variable, binding, report, draft.body)
 
 
-def _sense(controller: Controller, output: Variable, report: Report) -> None:
+def _sense(controller: ControllerDefinition, output: Variable, report: DocumentReport) -> None:
     """Report an output whose rules, by the names of their terms, lead away from what its input points at."""
     for name, variable in controller.inputs.items():
         if not (trend := _trend(controller, variable, output)) or not output.direction:
@@ -46,7 +46,7 @@ def _sense(controller: Controller, output: Variable, report: Report) -> None:
                  related=[((*variable.where, "direction"), "the input's")])  # fmt: skip
 
 
-def _trend(controller: Controller, variable: Variable, output: Variable) -> int:
+def _trend(controller: ControllerDefinition, variable: Variable, output: Variable) -> int:
     """Whether rules from one to the other go up (1) or down (-1) with the names of the terms; 0 where none tells."""
     asked, said = ranks(tuple(variable.terms)), ranks(tuple(output.terms))
     pairs = [
@@ -64,7 +64,7 @@ def _trend(controller: Controller, variable: Variable, output: Variable) -> int:
     return int(slope > 0) - int(slope < 0)
 
 
-def _sign(variable: Variable, binding: OutputBinding, path: NodePath, report: Report) -> None:
+def _sign(variable: Variable, binding: OutputBinding, path: NodePath, report: DocumentReport) -> None:
     counts = next((way for kind, way in COUNTS.items() if binding.joint.endswith(kind)), "")
     wanted = {counts: 1, OPPOSITE.get(counts, ""): -1}.get(variable.direction, 0) if variable.direction else 0
     if wanted * binding.gain < 0:
@@ -74,7 +74,13 @@ def _sign(variable: Variable, binding: OutputBinding, path: NodePath, report: Re
         find(report, "wrong-sign", path, message, hint, related=others)
 
 
-def _gain(controller: Controller, binding: OutputBinding, path: NodePath, report: Report, draft: Draft) -> None:
+def _gain(
+    controller: ControllerDefinition,
+    binding: OutputBinding,
+    path: NodePath,
+    report: DocumentReport,
+    draft: ProjectDraft,
+) -> None:
     if abs(binding.gain) <= GREATEST_GAIN:
         return
     routes = draft.settings.routes if draft.settings else {}
@@ -84,7 +90,9 @@ def _gain(controller: Controller, binding: OutputBinding, path: NodePath, report
     find(report, "high-gain", path, message, f"write at most {GREATEST_GAIN:g}; 1.5 is quick and does not overshoot")
 
 
-def _limits(controller: Controller, variable: Variable, binding: OutputBinding, report: Report, body: Body) -> None:
+def _limits(
+    controller: ControllerDefinition, variable: Variable, binding: OutputBinding, report: DocumentReport, body: Body
+) -> None:
     joint = body.joints[binding.joint]
     low = joint.minimum if binding.minimum is None else binding.minimum
     high = joint.maximum if binding.maximum is None else binding.maximum

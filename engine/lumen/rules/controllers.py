@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.controllers import Controller, InputBinding, OutputBinding
+from lumen.language.controllers import ControllerDefinition, InputBinding, OutputBinding
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
-from lumen.loading.draft import Draft
-from lumen.loading.recollection import again
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.recollection import memoize
+from lumen.loading.source import DocumentReport
 from lumen.rules import aims, rulebooks, shapes, surfaces
 from lumen.rules.finding import find
 from lumen.rules.references import known_route
@@ -17,7 +17,7 @@ SLACK = 2e-3
 """How far a limit may lie outside the joint's own [rad]: people round."""
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report bindings to routes, fields and joints that are not there, and limits that the joint does not have."""
     for name, controller in draft.controllers.items():
         report = draft.report("fuzzy", name)
@@ -30,15 +30,15 @@ def check(draft: Draft) -> None:
             _sense(controller, report, draft, name)
 
 
-def _sense(controller: Controller, report: Report, draft: Draft, name: str) -> None:
+def _sense(controller: ControllerDefinition, report: DocumentReport, draft: ProjectDraft, name: str) -> None:
     rulebooks.check(controller, report)
     shapes.check(controller, report)
     aims.check(controller, report, draft)
     given = draft.files[f"fuzzy/{name}.yaml"]
-    surfaces.check(controller, report, again(("surface", name), given, lambda: surfaces.look(controller)))
+    surfaces.check(controller, report, memoize(("surface", name), given, lambda: surfaces.look(controller)))
 
 
-def _input(draft: Draft, report: Report, binding: InputBinding) -> None:
+def _input(draft: ProjectDraft, report: DocumentReport, binding: InputBinding) -> None:
     path = ("bind", "inputs", binding.variable)
     if not known_route(draft, report, path, binding.route) or draft.settings is None:
         return
@@ -55,7 +55,7 @@ def _input(draft: Draft, report: Report, binding: InputBinding) -> None:
         schema = fields[step]
 
 
-def _joints(controller: Controller, report: Report, body: Body, lost: set[str]) -> None:
+def _joints(controller: ControllerDefinition, report: DocumentReport, body: Body, lost: set[str]) -> None:
     for binding in controller.output_bindings:
         path: NodePath = ("bind", "outputs", binding.variable)
         if _known(report, (*path, "joint"), binding.joint, body, lost):
@@ -65,14 +65,18 @@ def _joints(controller: Controller, report: Report, body: Body, lost: set[str]) 
             _known(report, ("track", what, joint), joint, body, lost, key=True)
 
 
-def _known(report: Report, path: NodePath, joint: str, body: Body, lost: set[str], *, key: bool = False) -> bool:
+def _known(
+    report: DocumentReport, path: NodePath, joint: str, body: Body, lost: set[str], *, key: bool = False
+) -> bool:
     if joint not in body.joints and joint not in lost:
         hint = did_you_mean(joint, body.joints, f"{body.name} has")
         find(report, "unknown-joint", path, f"there is no joint `{joint}`", hint, key=key, cause=f"joint {joint}")
     return joint in body.joints
 
 
-def _limits(controller: Controller, report: Report, path: NodePath, binding: OutputBinding, body: Body) -> None:
+def _limits(
+    controller: ControllerDefinition, report: DocumentReport, path: NodePath, binding: OutputBinding, body: Body
+) -> None:
     joint = body.joints[binding.joint]
     for i, limit in enumerate((binding.minimum, binding.maximum)):
         if limit is not None and not joint.minimum - SLACK <= limit <= joint.maximum + SLACK:

@@ -4,12 +4,12 @@ from pathlib import Path
 
 from lumen.language.machines import Machine
 from lumen.language.motions import Motion
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report keys that are read and have no effect, and sounds that are not there."""
     for name, machine in draft.behaviors.items():
         _reload(machine, draft.report("behaviors", name))
@@ -18,7 +18,7 @@ def check(draft: Draft) -> None:
             _sounds(motion, draft.report("motions", name), draft.root)
 
 
-def _reload(machine: Machine, report: Report) -> None:
+def _reload(machine: Machine, report: DocumentReport) -> None:
     for state in machine.states.values():
         if state.on_reload and not state.children:
             message = "`onReload` has no effect in a state without states: nothing within it can be gone"
@@ -26,7 +26,7 @@ def _reload(machine: Machine, report: Report) -> None:
             find(report, "no-effect", (*state.where, "onReload"), message, hint, key=True)
 
 
-def _sounds(motion: Motion, report: Report, root: Path) -> None:
+def _sounds(motion: Motion, report: DocumentReport, root: Path) -> None:
     """Sound files that are not in the project's folder."""
     for cue in motion.cues:
         if cue.kind == "sound" and cue.where[-1:] == ("sound",) and not _there(root, str(cue.value)):

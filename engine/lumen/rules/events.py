@@ -7,8 +7,8 @@ from lumen.language.actions import Raise, Send
 from lumen.language.diagnostics import NodePath, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import Kind, Machine, Transition
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.endings import ending_fault
 from lumen.rules.finding import find, first
 from lumen.rules.walk import sites
@@ -22,7 +22,7 @@ FAMILIES = (
 _REASON = {"type": "object", "properties": {"reason": {"type": "string"}}, "required": ["reason"]}
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report events that are waited for and never raised, or raised and never waited for."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -43,7 +43,7 @@ def descriptors(machine: Machine) -> Iterator[str]:
         yield from (t.event for t in state.transitions if t.event and not t.exact)
 
 
-def declared(draft: Draft, machine: Machine) -> dict[str, Any]:
+def declared(draft: ProjectDraft, machine: Machine) -> dict[str, Any]:
     """The events that the world can raise in this machine, each with the JSON Schema of its data, None for any."""
     found: dict[str, Any] = {}
     routes = draft.settings.routes.values() if draft.settings else ()
@@ -92,7 +92,7 @@ def raised(data: Any) -> Iterator[str]:
                     yield name
 
 
-def _waited(draft: Draft, machine: Machine, report: Report) -> None:
+def _waited(draft: ProjectDraft, machine: Machine, report: DocumentReport) -> None:
     if draft.settings is None or draft.main is None:
         return
     known = {*declared(draft, machine), *raised(report.document.data), *draft.main.lost, *report.lost}
@@ -134,7 +134,7 @@ def _descriptor(where: NodePath, event: str) -> NodePath:
     return where if where[-1] == event else where[:-1]
 
 
-def _raised(machine: Machine, report: Report) -> None:
+def _raised(machine: Machine, report: DocumentReport) -> None:
     waited = set(descriptors(machine))
     for site in sites(machine):
         match site.step.action:

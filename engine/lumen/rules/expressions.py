@@ -9,9 +9,9 @@ from lumen.interpreters.expressions import Finding, check_expression, check_temp
 from lumen.language.actions import Template
 from lumen.language.diagnostics import Diagnostic, Related
 from lumen.language.machines import Machine, Transition
-from lumen.loading.draft import Draft
+from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import cause_of, place_within
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.walk import Spot, spots
@@ -19,7 +19,7 @@ from lumen.rules.walk import Spot, spots
 BOOLEAN: Mapping[str, Any] = {"type": "boolean"}
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report everything that is wrong with the expressions of every behaviour."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -27,7 +27,7 @@ def check(draft: Draft) -> None:
 
 
 class _Expressions:
-    def __init__(self, draft: Draft, name: str, machine: Machine, report: Report) -> None:
+    def __init__(self, draft: ProjectDraft, name: str, machine: Machine, report: DocumentReport) -> None:
         self.machine, self.report = machine, report
         self.known = draft.settings is not None
         self.events = declared(draft, machine)

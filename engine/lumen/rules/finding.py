@@ -4,13 +4,13 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 
 
 def find(
-    report: Report,
+    report: DocumentReport,
     code: str,
     path: NodePath,
     message: str,
@@ -26,12 +26,12 @@ def find(
     report(code, path, message, hint=hint, key=key, severity=severity, related=related, cause=cause, root=root)
 
 
-def first(report: Report, *paths: NodePath) -> NodePath:
+def first(report: DocumentReport, *paths: NodePath) -> NodePath:
     """The first of these paths that stands in the document: a value may be written short or at length."""
     return next((path for path in paths if path in report.document.spans), paths[-1])
 
 
-def value_at(report: Report, path: NodePath) -> Any:
+def value_at(report: DocumentReport, path: NodePath) -> Any:
     """The plain data at that path, None where there is nothing."""
     node = report.document.data
     for step in path:
@@ -55,11 +55,11 @@ _FOLDERS: Mapping[str, tuple[str, str]] = {
 class References:
     """Looks names of files up; a folder in which nothing is, is reported once."""
 
-    def __init__(self, draft: Draft) -> None:
+    def __init__(self, draft: ProjectDraft) -> None:
         self._names = draft.names
         self._missing = draft.missing
 
-    def look_up(self, report: Report, path: NodePath, kind: str, name: str, *, key: bool = False) -> bool:
+    def look_up(self, report: DocumentReport, path: NodePath, kind: str, name: str, *, key: bool = False) -> bool:
         """Whether there is a file of that kind and name; reported at `path` where there is none."""
         folder, what = _FOLDERS[kind]
         names = self._names.get(folder, frozenset())

@@ -8,8 +8,8 @@ from lumen.interpreters.expressions.tree import Call, Literal, Logic, Node
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Machine, State, Transition
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.events import hears
 from lumen.rules.finding import find
 from lumen.rules.logic import always, implies, never, tree
@@ -26,7 +26,7 @@ class Heard(NamedTuple):
     name: str
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report guards whose answer is known, and candidates that come too late."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -38,13 +38,13 @@ def check(draft: Draft) -> None:
                 _late(machine, state, report)
 
 
-def _told(report: Report, where: NodePath) -> bool:
+def _told(report: DocumentReport, where: NodePath) -> bool:
     """Whether something else was already said of the text at that path."""
     place = report.document.place(where)
     return any(d.place.line == place.line and d.place.column >= place.column for d in report.diagnostics)
 
 
-def _constant(guard: Expression, report: Report) -> None:
+def _constant(guard: Expression, report: DocumentReport) -> None:
     condition = tree(guard.source)
     if never(condition):
         message = "this is never true" if _simple(condition) else "this is never true: its parts contradict each other"
@@ -57,7 +57,7 @@ def _simple(node: Node) -> bool:
     return not isinstance(node, Logic)
 
 
-def _late(machine: Machine, state: State, report: Report) -> None:
+def _late(machine: Machine, state: State, report: DocumentReport) -> None:
     """Candidates that are never taken, or not for all that they name, because an earlier one is."""
     earlier: list[Transition] = []
     for transition in state.transitions[:MOST]:
@@ -73,7 +73,7 @@ def covers(earlier: Transition, later: Transition) -> bool:
     return hears(earlier.event, later.event.removesuffix(".*")) and (later.event != "*" or earlier.event == "*")
 
 
-def _takes_all(earlier: Transition, later: Transition, machine: Machine, report: Report) -> bool:
+def _takes_all(earlier: Transition, later: Transition, machine: Machine, report: DocumentReport) -> bool:
     """Whether the earlier one leaves nothing for the later one; said, as is where it leaves less than was meant."""
     related = [(earlier.where, "the earlier one stands here")]
     if earlier.guard is None:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from xml.parsers import expat
 
 from lumen.language.diagnostics import Diagnostic, Place, nearest
-from lumen.loading.draft import Draft
+from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import Unreadable
 from lumen.rules.codes import CODES
 
@@ -25,7 +25,7 @@ class Element(NamedTuple):
     column: int
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report models that are no MJCF, files that they need and that are not there, and joints that they lack."""
     settings = draft.settings
     if settings is None:
@@ -37,7 +37,7 @@ def check(draft: Draft) -> None:
         _joints(draft, draft.body.mjcf, robot)
 
 
-def _read(draft: Draft, name: str) -> list[Element]:
+def _read(draft: ProjectDraft, name: str) -> list[Element]:
     """The elements of a model, none where it can't be read; what is wrong with it is reported."""
     file = f"models/{name}"
     content = draft.files.get(file)
@@ -69,7 +69,7 @@ def _read(draft: Draft, name: str) -> list[Element]:
     return elements
 
 
-def _assets(draft: Draft, file: str, elements: list[Element]) -> None:
+def _assets(draft: ProjectDraft, file: str, elements: list[Element]) -> None:
     """Files that a model names; where the project lies in no folder, nobody knows whether they are there."""
     folders: dict[str, str] = {}
     for element in elements:
@@ -98,7 +98,7 @@ def _there(path: Path) -> bool:
         return False
 
 
-def _joints(draft: Draft, name: str, elements: list[Element]) -> None:
+def _joints(draft: ProjectDraft, name: str, elements: list[Element]) -> None:
     """Joints that the description of the body has, and its model has not."""
     assert draft.body is not None
     assert draft.settings is not None
@@ -114,6 +114,6 @@ def _joints(draft: Draft, name: str, elements: list[Element]) -> None:
             report("broken-model", ("joints", joint), message, hint=hint, key=True, cause=f"joints of {name}")
 
 
-def _say(draft: Draft, file: str, line: int, column: int, length: int, message: str, hint: str) -> None:
+def _say(draft: ProjectDraft, file: str, line: int, column: int, length: int, message: str, hint: str) -> None:
     place = Place(file, line, column, line, column + length)
     draft.loose.append(Diagnostic("broken-model", message, place, hint, CODES["broken-model"].severity))

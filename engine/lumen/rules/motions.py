@@ -10,9 +10,9 @@ from lumen.interpreters.trajectory import Trajectory
 from lumen.language.diagnostics import NodePath
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
-from lumen.loading.draft import Draft
-from lumen.loading.recollection import again
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.recollection import memoize
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES
 from lumen.rules.finding import find, value_at
 
@@ -20,7 +20,7 @@ PASSAGES = "models/passages"
 """The motions from posture to posture."""
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report where a joint would be too fast, or beyond its limits between two keys or beside another joint."""
     if draft.body is None:
         return
@@ -31,7 +31,7 @@ def check(draft: Draft) -> None:
         if report.diagnostics:
             continue
         unit = value_at(report, ("units", "angle")) or "rad"
-        fast, far = again(("excess", folder, motion.name), (motion, body), partial(_excesses, motion, body))
+        fast, far = memoize(("excess", folder, motion.name), (motion, body), partial(_excesses, motion, body))
         for excesses in _by_key(fast):
             _too_fast(report, excesses, unit, draft.body)
         for excess in far:
@@ -57,7 +57,7 @@ def _keyframe(where: NodePath) -> NodePath:
     return where[: max((n for n, step in enumerate(where) if step == "keyframes"), default=len(where)) + 2]
 
 
-def _too_fast(report: Report, excesses: Sequence[Excess], unit: str, body: Body) -> None:
+def _too_fast(report: DocumentReport, excesses: Sequence[Excess], unit: str, body: Body) -> None:
     excess, *others = excesses
     value, limit = _shown(excess, unit, body)
     what = "" if excess.joint in body.hands else f" {unit}/s"
@@ -78,7 +78,7 @@ def _too_fast(report: Report, excesses: Sequence[Excess], unit: str, body: Body)
     )
 
 
-def _too_far(report: Report, excess: Excess, unit: str, body: Body) -> None:
+def _too_far(report: DocumentReport, excess: Excess, unit: str, body: Body) -> None:
     value, limit = _shown(excess, unit, body)
     message = f"`{excess.joint}` would come to {value:g} {unit} here, and {limit:g} is as far as it can go"
     coupled = [c.on for c in body.coupled if c.joint == excess.joint]

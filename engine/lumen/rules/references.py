@@ -4,14 +4,14 @@ from lumen.language.actions import PublishBody
 from lumen.language.commands import Play, Posture, Track
 from lumen.language.diagnostics import Diagnostic, NodePath, Related, did_you_mean
 from lumen.language.routes import Direction
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 from lumen.rules.finding import References, find, first
 from lumen.rules.walk import Site, sites
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report every name in lumen.yaml and in the behaviours' actions that stands for nothing."""
     references = References(draft)
     _main(draft, references)
@@ -21,7 +21,7 @@ def check(draft: Draft) -> None:
             _action(draft, report, references, site)
 
 
-def known_route(draft: Draft, report: Report, path: NodePath, route: str) -> bool:
+def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, route: str) -> bool:
     """Whether lumen.yaml has that route; reported at `path` where it does not, and was readable."""
     if draft.settings is None or draft.main is None:
         return False
@@ -35,7 +35,7 @@ def known_route(draft: Draft, report: Report, path: NodePath, route: str) -> boo
     return False
 
 
-def _main(draft: Draft, references: References) -> None:
+def _main(draft: ProjectDraft, references: References) -> None:
     settings, report = draft.settings, draft.main
     if settings is None or report is None:
         return
@@ -50,7 +50,7 @@ def _main(draft: Draft, references: References) -> None:
         _model_file(draft, report, ("hall",), settings.hall)
 
 
-def _published(draft: Draft, report: Report, path: NodePath, name: str) -> None:
+def _published(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> None:
     assert draft.settings is not None
     assert draft.main is not None
     route = draft.settings.routes[name]
@@ -63,7 +63,7 @@ def _published(draft: Draft, report: Report, path: NodePath, name: str) -> None:
         report.diagnostics.append(Diagnostic("wrong-direction", message, place, hint, severity, (declared,)))
 
 
-def _model_file(draft: Draft, report: Report, path: NodePath, name: str) -> None:
+def _model_file(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> None:
     there = [
         file.removeprefix("models/") for file in draft.files if file.startswith("models/") and file.endswith(".xml")
     ]
@@ -71,7 +71,7 @@ def _model_file(draft: Draft, report: Report, path: NodePath, name: str) -> None
         find(report, "missing-file", path, f"there is no file models/{name}", did_you_mean(name, there, "models/ has"))
 
 
-def _action(draft: Draft, report: Report, references: References, site: Site) -> None:
+def _action(draft: ProjectDraft, report: DocumentReport, references: References, site: Site) -> None:
     where = site.step.where
     match site.step.action:
         case Play(name):

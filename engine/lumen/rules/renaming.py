@@ -1,18 +1,18 @@
 """What `renamed` says of the past: nothing that is still there can have got another name."""
 
 from lumen.language.machines import Machine
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report renamings of what still has its old name; two states may swap theirs."""
     for name, machine in draft.behaviors.items():
         _check(machine, draft.report("behaviors", name))
 
 
-def _check(machine: Machine, report: Report) -> None:
+def _check(machine: Machine, report: DocumentReport) -> None:
     known = {path: path for path in machine.states} | {f"context.{key}": f"context.{key}" for key in machine.context}
     known |= {state.alias: path for path, state in machine.states.items() if path and state.alias}
     taken = set(machine.renamed.values())

@@ -18,8 +18,8 @@ from lumen.language.routes import (
     Direction,
     Route,
 )
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.events import descriptors, hears
 from lumen.rules.finding import References, find
 from lumen.rules.walk import sites
@@ -31,7 +31,7 @@ MAX_BYTES = 255
 _WORD = re.compile(r"[^\s.*#{}]+|\{robot\}")
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report what is wrong with each row of the route table."""
     settings, report = draft.settings, draft.main
     if settings is None or report is None:
@@ -57,7 +57,7 @@ def check(draft: Draft) -> None:
                 find(report, "duplicate-route", (*route.where, "key"), message, "delete one of them", related=related)
 
 
-def _password(bus: str, report: Report) -> None:
+def _password(bus: str, report: DocumentReport) -> None:
     """A project is copied, mailed and published; what opens the broker's door is not."""
     try:
         secret = urlsplit(bus).username is not None
@@ -69,7 +69,7 @@ def _password(bus: str, report: Report) -> None:
         find(report, "password-in-file", ("bus",), message, hint)
 
 
-def _carried(report: Report, route: Route) -> None:
+def _carried(report: DocumentReport, route: Route) -> None:
     """What the options of a route promise must go together."""
     where = route.where
     if route.carried in (Carried.COMMAND, Carried.STOP) and (route.ttl or 0.0) > STALE:
@@ -84,7 +84,7 @@ def _carried(report: Report, route: Route) -> None:
                 )
 
 
-def _pictures(report: Report, route: Route) -> None:
+def _pictures(report: DocumentReport, route: Route) -> None:
     """Only a camera has a size, and it takes so many images a second."""
     if route.size and route.name != IMAGE:
         message = f"`{route.name}` has no size: only the images on the route `{IMAGE}` have"
@@ -94,7 +94,7 @@ def _pictures(report: Report, route: Route) -> None:
         find(report, "beyond-camera", (*route.where, "every"), message, f"{1000 * FASTEST:g}ms is the shortest")
 
 
-def _missing(draft: Draft, routes: Mapping[str, Route], report: Report) -> None:
+def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentReport) -> None:
     """Routes that a behaviour counts on without naming them."""
     if has_errors(draft.diagnostics):
         return
@@ -108,7 +108,7 @@ def _missing(draft: Draft, routes: Mapping[str, Route], report: Report) -> None:
                 find(report, "missing-route", ("routes",), message, hint, key=True, cause=cause)
 
 
-def _key(report: Report, route: Route) -> bool:
+def _key(report: DocumentReport, route: Route) -> bool:
     """Whether the routing key could be a message's."""
     message, hint = _fault(route.key)
     if message:
@@ -134,7 +134,7 @@ def _fault(key: str) -> tuple[str, str]:
     return "", ""
 
 
-def _ways(draft: Draft, report: Report, route: Route) -> None:
+def _ways(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
     """A route goes one way; a command that comes late is worse than one that does not come."""
     if route.direction is Direction.OUT and route.event:
         message = f"nobody tells Lumen of `{route.event}`: messages on this route go out"
@@ -144,7 +144,7 @@ def _ways(draft: Draft, report: Report, route: Route) -> None:
         find(report, "no-ttl", route.where, message, "say how long it is good for, such as `ttl: 2s`", key=True)
 
 
-def _event(draft: Draft, report: Report, route: Route) -> None:
+def _event(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
     """A route that comes in and becomes an event should be waited for by somebody."""
     if route.direction is Direction.OUT or not draft.behaviors or has_errors(draft.diagnostics):
         return

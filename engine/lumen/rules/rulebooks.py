@@ -6,15 +6,15 @@ from itertools import product
 from lumen.interpreters.inference.survey import propositions
 from lumen.language.controllers import (
     Antecedent,
-    Block,
     Conjunction,
-    Controller,
+    ControllerDefinition,
     Disjunction,
     Negation,
     Proposition,
     Rule,
+    RuleBlock,
 )
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
 SHOWN = 3
@@ -22,7 +22,7 @@ MOST = 10_000
 """Pairs of rules that are compared, and cells of a table that are looked for."""
 
 
-def check(controller: Controller, report: Report) -> None:
+def check(controller: ControllerDefinition, report: DocumentReport) -> None:
     """Report idle, duplicate, contradicting, subsumed and missing rules, and terms that no rule mentions."""
     for block in controller.blocks:
         _idle(block, report)
@@ -31,14 +31,14 @@ def check(controller: Controller, report: Report) -> None:
     _unused(controller, report)
 
 
-def _idle(block: Block, report: Report) -> None:
+def _idle(block: RuleBlock, report: DocumentReport) -> None:
     for rule in block.rules:
         if rule.weight == 0:
             message, hint = "with the weight 0 this rule never counts", "write a weight up to 1, or delete the rule"
             find(report, "idle-rule", rule.where, message, hint)
 
 
-def _pairs(block: Block, controller: Controller, report: Report) -> None:
+def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentReport) -> None:
     known: dict[object, Rule] = {}
     conjunctions: dict[Proposition, list[tuple[frozenset[Proposition], Rule]]] = {}
     for rule in block.rules:
@@ -96,7 +96,7 @@ def _clash(first: Rule, second: Rule) -> tuple[Proposition, Proposition] | None:
     return None
 
 
-def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: Report) -> None:
+def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: DocumentReport) -> None:
     """A rule that asks more than another and concludes the same never fires more than that one."""
     for asked, rule in found:
         wider = next((r for parts, r in found if parts < asked and r.weight >= rule.weight), None)
@@ -106,7 +106,7 @@ def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: Report) 
             find(report, "subsumed-rule", rule.where, message, hint, related=[(wider.where, "that one")])
 
 
-def _missing(block: Block, controller: Controller, report: Report) -> None:
+def _missing(block: RuleBlock, controller: ControllerDefinition, report: DocumentReport) -> None:
     """Where more than half of a table of terms has rules, the cells without one."""
     tables: dict[tuple[str, tuple[str, ...]], list[tuple[Rule, Mapping[str, str]]]] = {}
     for rule in block.rules:
@@ -132,7 +132,7 @@ def _cell(rule: Rule) -> Mapping[str, str]:
     return cell if len(cell) == len(parts) else {}
 
 
-def _others(block: Block, output: str, found: list[tuple[Rule, Mapping[str, str]]]) -> bool:
+def _others(block: RuleBlock, output: str, found: list[tuple[Rule, Mapping[str, str]]]) -> bool:
     """Whether rules of another form conclude that output as well: they may fill the gaps."""
     cells = {id(rule) for rule, _ in found}
     return any(
@@ -141,14 +141,14 @@ def _others(block: Block, output: str, found: list[tuple[Rule, Mapping[str, str]
     )
 
 
-def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Rule, report: Report) -> None:
+def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Rule, report: DocumentReport) -> None:
     shown = [" and ".join(f"{n} is {t}" for n, t in zip(names, gap, strict=True)) for gap in gaps[:SHOWN]]
     more = f", and in {len(gaps) - SHOWN} more cases" if len(gaps) > SHOWN else ""
     message = f"no rule says what `{output}` is where {'; or '.join(shown)}{more}"
     find(report, "missing-rule", last.where, message, f"write below it: if {shown[0]} then {output} is …")
 
 
-def _unused(controller: Controller, report: Report) -> None:
+def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
     asked = {(p.variable, p.term) for rule in controller.rules for p in propositions(rule.antecedent)}
     asked |= {(p.variable, p.term) for rule in controller.rules for p in rule.consequents}
     for side, variables in (("asks for", controller.inputs), ("concludes", controller.outputs)):

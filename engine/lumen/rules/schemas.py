@@ -1,10 +1,10 @@
 """JSON Schemas inside behaviours: those of context keys and of events; and the first values of the context."""
 
-from lumen.loading.draft import Draft
+from lumen.loading.draft import ProjectDraft
 from lumen.loading.memory import check_memory
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report what is wrong under `context:`, `types:` and `events:`."""
     for name, machine in draft.behaviors.items():
         unsound = check_memory(machine, draft.report("behaviors", name))

@@ -7,9 +7,9 @@ from math import isfinite
 from lumen.interpreters.inference.arithmetic import NUMBERS
 from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.survey import grid
-from lumen.language.controllers import VALUES, WEIGHTED, Controller, Term, Variable
+from lumen.language.controllers import VALUES, WEIGHTED, ControllerDefinition, Term, Variable
 from lumen.language.scales import ranks
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
 EPSILON = 0.01
@@ -20,7 +20,7 @@ POINTS = 129
 Row = tuple[Term, list[float]]
 
 
-def check(controller: Controller, report: Report) -> None:
+def check(controller: ControllerDefinition, report: DocumentReport) -> None:
     """Report terms out of the order of their names or of reach, and gaps between them."""
     for variable in (*controller.inputs.values(), *controller.outputs.values()):
         weighted = variable.name in controller.outputs and variable.defuzzifier in WEIGHTED
@@ -39,7 +39,7 @@ def _memberships(term: Term, xs: list[float]) -> list[float]:
     return [float(shape(x)) for x in xs]
 
 
-def _order(variable: Variable, rows: list[Row], xs: list[float], report: Report) -> None:
+def _order(variable: Variable, rows: list[Row], xs: list[float], report: DocumentReport) -> None:
     """Report each term that stands on the wrong side of the one before it by name."""
     places = {term.name: _top(degrees, xs) for term, degrees in rows}
     places |= {term.name: term.parameters[0] for term in variable.terms.values() if term.kind == VALUES[0]}
@@ -63,7 +63,7 @@ def _top(degrees: list[float], xs: list[float]) -> float:
     return sum(tops) / len(tops)
 
 
-def _reached(variable: Variable, row: Row, report: Report) -> bool:
+def _reached(variable: Variable, row: Row, report: DocumentReport) -> bool:
     term, degrees = row
     inside = [x for x in term.parameters if variable.minimum <= x <= variable.maximum]
     if max(degrees) > 0.0 or max(_memberships(term, inside), default=0.0) > 0.0:
@@ -74,7 +74,7 @@ def _reached(variable: Variable, row: Row, report: Report) -> bool:
     return False
 
 
-def _gaps(variable: Variable, rows: list[Row], xs: list[float], report: Report) -> None:
+def _gaps(variable: Variable, rows: list[Row], xs: list[float], report: DocumentReport) -> None:
     """Report where no term of an input is true, though terms lie around it or end before its range does."""
     whole = [max(degrees) for degrees in zip(*(degrees for _, degrees in rows), strict=True)]
     for first, last in _runs([degree < EPSILON for degree in whole]):

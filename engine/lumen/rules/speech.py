@@ -8,8 +8,8 @@ from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related, did_you_mean, nearest
 from lumen.language.machines import Answer, Machine
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import sites
@@ -21,7 +21,7 @@ MOST = 200
 """Rows of an answers table that are compared with one another."""
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report what is said in too few languages, or in one that lumen.yaml does not name."""
     if draft.settings is None or draft.main is None or not draft.settings.languages:
         return
@@ -48,7 +48,7 @@ def check(draft: Draft) -> None:
             speech.known(report, ("language",), story.language)
 
 
-def _silent(draft: Draft, languages: tuple[str, ...]) -> dict[str, tuple[str, list[Related]]]:
+def _silent(draft: ProjectDraft, languages: tuple[str, ...]) -> dict[str, tuple[str, list[Related]]]:
     """The languages in which no text is, where others have some; each with the one meant instead, and a place of it."""
     found: dict[str, Place] = {}
     count = 0
@@ -79,7 +79,7 @@ def _spoken(machine: Machine) -> Iterator[NodePath]:
         yield from (("answers", table, i, "value") for i, row in enumerate(rows) if isinstance(row.value, Mapping))
 
 
-def _silence(report: Report, path: NodePath, message: str, hint: str, related: list[Related]) -> Diagnostic:
+def _silence(report: DocumentReport, path: NodePath, message: str, hint: str, related: list[Related]) -> Diagnostic:
     severity = CODES["missing-language"].severity
     return Diagnostic("missing-language", message, report.document.place(path), hint, severity, tuple(related))
 
@@ -88,7 +88,7 @@ class _Speech:
     def __init__(self, languages: tuple[str, ...], lost: Iterable[str]) -> None:
         self.languages, self.lost = languages, set(lost)
 
-    def behavior(self, machine: Machine, report: Report) -> None:
+    def behavior(self, machine: Machine, report: DocumentReport) -> None:
         for site in sites(machine):
             match site.step.action:
                 case SayText(texts):
@@ -104,7 +104,7 @@ class _Speech:
                 if isinstance(row.value, Mapping) and set(row.value) & set(self.languages):
                     self.texts(report, ("answers", table, i, "value"), row.value)
 
-    def texts(self, report: Report, path: NodePath, texts: Mapping[str, Any]) -> None:
+    def texts(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> None:
         """What is said in several languages should be said in all."""
         self.each(report, path, texts)
         said = {*texts, *_written(report, path)}
@@ -116,19 +116,19 @@ class _Speech:
             message = f"this is not said in {_listed(missing)}"
             find(report, "missing-language", path, message, f"write `{missing[0]}:` and the text beside it", key=True)
 
-    def each(self, report: Report, path: NodePath, languages: Iterable[str]) -> None:
+    def each(self, report: DocumentReport, path: NodePath, languages: Iterable[str]) -> None:
         for language in languages:
             if language:
                 self.known(report, (*path, language), language, key=True)
 
-    def known(self, report: Report, path: NodePath, language: str, *, key: bool = False) -> None:
+    def known(self, report: DocumentReport, path: NodePath, language: str, *, key: bool = False) -> None:
         if language not in self.languages and language not in self.lost:
             hint = did_you_mean(language, self.languages, "it speaks")
             message = f"the project does not speak `{language}`"
             find(report, "unknown-language", path, message, hint, key=key, cause=f"language {language}")
 
 
-def _written(report: Report, path: NodePath) -> set[str]:
+def _written(report: DocumentReport, path: NodePath) -> set[str]:
     """The languages of a text as the file has them, those of broken texts too."""
     node = value_at(report, path)
     gone = {str(lost[-1]) for lost in report.pruned if lost[:-1] == path}
@@ -139,7 +139,7 @@ def _listed(names: list[str]) -> str:
     return ", ".join(f"`{name}`" for name in names)
 
 
-def _late(report: Report, table: str, rows: Sequence[Answer]) -> None:
+def _late(report: DocumentReport, table: str, rows: Sequence[Answer]) -> None:
     """Rows of an answers table in each of whose phrases one of a row above is heard: the first row wins."""
     for i, row in enumerate(rows[:MOST]):
         phrases = [phrase for texts in row.phrases.values() for phrase in texts]

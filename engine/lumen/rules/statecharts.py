@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from lumen.language.actions import Assign, Step
 from lumen.language.diagnostics import COMPARED, nearest
 from lumen.language.machines import Kind, Machine, State, Transition
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 from lumen.rules.logic import never, tree
 from lumen.rules.walk import nested
@@ -23,7 +23,7 @@ _LEADS = frozenset(("on", "always", "after", "onDone", "onError", "onReload", "t
 Onward = Mapping[str, Sequence[tuple[Transition, str]]]
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report what can never happen, and what would happen for ever."""
     torn = {d.place.file for d in draft.loose}
     for name, machine in draft.behaviors.items():
@@ -59,7 +59,7 @@ def _next(state: State) -> Iterator[str]:
         yield from transition.targets
 
 
-def _unreachable(machine: Machine, report: Report) -> None:
+def _unreachable(machine: Machine, report: DocumentReport) -> None:
     """States that nothing leads to, unless something broken may have meant them."""
     meant = {text.rpartition(".")[2].lstrip("#") for text in report.lost | report.missed}
     missed = meant & report.missed if len(report.missed) <= COMPARED else set()
@@ -75,7 +75,7 @@ def _unreachable(machine: Machine, report: Report) -> None:
             find(report, "unreachable-state", state.where, f"no transition leads to `{path}`", hint, key=True)
 
 
-def _endless(machine: Machine, report: Report) -> None:
+def _endless(machine: Machine, report: DocumentReport) -> None:
     """States that lead back to themselves by `always` alone, nothing asked on the way."""
     onward = {path: found for path in machine.states if (found := _at_once(machine, path))}
     said: set[str] = set()
@@ -102,7 +102,7 @@ def _at_once(machine: Machine, path: str) -> tuple[Transition, str] | None:
     return (always, target.path) if target.kind is Kind.ATOMIC else None
 
 
-def _loops(machine: Machine, report: Report) -> None:
+def _loops(machine: Machine, report: DocumentReport) -> None:
     """States that lead back to themselves by guarded `always`, where nothing on the way changes what is asked."""
     onward: dict[str, list[tuple[Transition, str]]] = {}
     for state in machine.states.values():

@@ -9,15 +9,15 @@ from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect, Happen, Send, Story, Touch
-from lumen.loading.draft import Draft
+from lumen.loading.draft import ProjectDraft
 from lumen.loading.schema import faults
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 from lumen.rules.events import declared, descriptors, hears, raised
 from lumen.rules.finding import References, find, first
 from lumen.rules.references import known_route
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report states, context keys, motions, routes, sensors and events that a story names and that are not there."""
     references = References(draft)
     for name, story in draft.stories.items():
@@ -25,7 +25,7 @@ def check(draft: Draft) -> None:
 
 
 class _Script:
-    def __init__(self, draft: Draft, references: References, report: Report, story: Story) -> None:
+    def __init__(self, draft: ProjectDraft, references: References, report: DocumentReport, story: Story) -> None:
         self.draft, self.references, self.report, self.story = draft, references, report, story
         main = draft.settings.behavior if draft.settings else ""
         self.behavior = story.behavior or main

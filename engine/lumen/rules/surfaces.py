@@ -5,9 +5,9 @@ from itertools import product
 from math import isnan
 from typing import NamedTuple
 
-from lumen.interpreters.inference.survey import Slice, Step, Survey, asked, grid
-from lumen.language.controllers import INTEGRAL, WEIGHTED, Controller, Variable
-from lumen.loading.source import Report
+from lumen.interpreters.inference.survey import Slice, SurfaceJump, Survey, asked, grid
+from lumen.language.controllers import INTEGRAL, WEIGHTED, ControllerDefinition, Variable
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
 STEP, TURN, REST = 0.1, 0.02, 0.02
@@ -27,14 +27,14 @@ class Look(NamedTuple):
     """All that was seen of a controller's surface."""
 
     slices: list[Slice]
-    steps: list[tuple[Slice, Step]]
+    steps: list[tuple[Slice, SurfaceJump]]
     rest: dict[str, float]
     reach: dict[str, tuple[float, float]]
     silent: dict[str, dict[str, float]]
     off: dict[str, float]
 
 
-def look(controller: Controller) -> Look:
+def look(controller: ControllerDefinition) -> Look:
     """The surface of a controller."""
     survey = Survey(controller)
     slices = list(survey.slices())
@@ -52,7 +52,7 @@ def look(controller: Controller) -> Look:
     return Look(slices, steps, survey.at({}), reach, silent, _off(controller, slices))
 
 
-def _corners(controller: Controller) -> Iterator[dict[str, float]]:
+def _corners(controller: ControllerDefinition) -> Iterator[dict[str, float]]:
     """Combinations of the inputs, where several move together."""
     names = [n for n, v in controller.inputs.items() if abs(v.minimum) < 1e300 and abs(v.maximum) < 1e300]
     points, most = CORNERS
@@ -73,7 +73,7 @@ def _all(
     yield from ((point, outputs[name]) for point, outputs in corners)
 
 
-def _off(controller: Controller, slices: list[Slice]) -> dict[str, float]:
+def _off(controller: ControllerDefinition, slices: list[Slice]) -> dict[str, float]:
     """How far an output with a stated accuracy lies from what four times the resolution gives."""
     exact = {n: v for n, v in controller.outputs.items() if v.accuracy is not None and v.defuzzifier in INTEGRAL}
     if not exact:
@@ -89,14 +89,14 @@ def _off(controller: Controller, slices: list[Slice]) -> dict[str, float]:
     return found
 
 
-def _finer(controller: Controller) -> Controller:
+def _finer(controller: ControllerDefinition) -> ControllerDefinition:
     from dataclasses import replace
 
     outputs = {n: replace(v, resolution=FINER * v.resolution) for n, v in controller.outputs.items()}
     return replace(controller, outputs=outputs)
 
 
-def check(controller: Controller, report: Report, seen: Look) -> None:
+def check(controller: ControllerDefinition, report: DocumentReport, seen: Look) -> None:
     """Report what the surface has that it should not: silence, steps, turns, a value at rest, an unused range."""
     for variable in controller.outputs.values():
         _silence(controller, variable, report, seen)
@@ -114,7 +114,7 @@ def check(controller: Controller, report: Report, seen: Look) -> None:
             _rests(controller, found, report, seen)
 
 
-def _silence(controller: Controller, variable: Variable, report: Report, seen: Look) -> None:
+def _silence(controller: ControllerDefinition, variable: Variable, report: DocumentReport, seen: Look) -> None:
     point = seen.silent.get(variable.name)
     if point is not None and variable.default is None:
         where = ", ".join(f"{name} = {x:.4g}" for name, x in point.items() if name in asked(controller, variable.name))
@@ -123,7 +123,7 @@ def _silence(controller: Controller, variable: Variable, report: Report, seen: L
         find(report, "no-default", variable.where, message, "write `default: 0`, or cover it by rules", key=True)
 
 
-def _reached(controller: Controller, variable: Variable, report: Report, seen: Look) -> None:
+def _reached(controller: ControllerDefinition, variable: Variable, report: DocumentReport, seen: Look) -> None:
     concluded = {c.term for rule in controller.rules for c in rule.consequents if c.variable == variable.name}
     low, high = seen.reach[variable.name]
     width = variable.maximum - variable.minimum
@@ -137,7 +137,7 @@ def _reached(controller: Controller, variable: Variable, report: Report, seen: L
         find(report, "attainable-range", where, message, "move its terms outwards, or narrow the range")
 
 
-def _coarse(variable: Variable, report: Report, seen: Look) -> None:
+def _coarse(variable: Variable, report: DocumentReport, seen: Look) -> None:
     off = seen.off.get(variable.name, 0.0)
     if variable.accuracy is not None and off > variable.accuracy:
         message = (
@@ -148,7 +148,7 @@ def _coarse(variable: Variable, report: Report, seen: Look) -> None:
         find(report, "coarse-resolution", (*variable.where, "accuracy"), message, hint)
 
 
-def _turns(controller: Controller, found: Slice, report: Report) -> None:
+def _turns(controller: ControllerDefinition, found: Slice, report: DocumentReport) -> None:
     """Over an input with a neutral point an output may only rise or only fall."""
     output = controller.outputs[found.output]
     least = TURN * (output.maximum - output.minimum)
@@ -186,7 +186,7 @@ def _height(point: tuple[float, float]) -> float:
     return point[1]
 
 
-def _rests(controller: Controller, found: Slice, report: Report, seen: Look) -> None:
+def _rests(controller: ControllerDefinition, found: Slice, report: DocumentReport, seen: Look) -> None:
     output, variable = controller.outputs[found.output], controller.inputs[found.input]
     value = seen.rest[output.name]
     if abs(value) > REST * (output.maximum - output.minimum) and output.minimum <= 0.0 <= output.maximum:

@@ -8,15 +8,15 @@ from lumen.language.actions import If, Parallel, SayText, Step, Wait
 from lumen.language.commands import Play, Posture, Walk
 from lumen.language.machines import Machine, State
 from lumen.language.motions import Motion
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
 SAY, CHARACTER, POSTURE, SPEED = 0.4, 0.06, 2.0, 0.1
 """What the recording robot takes: for a text [s], for each of its characters [s], for a posture [s], walking [m/s]."""
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report an `after` that always comes before the `do` beside it is done."""
     for name, machine in draft.behaviors.items():
         for state in machine.states.values():
@@ -24,7 +24,7 @@ def check(draft: Draft) -> None:
                 _cut(machine, state, draft.report("behaviors", name), draft.motions)
 
 
-def _cut(machine: Machine, state: State, report: Report, motions: Mapping[str, Motion]) -> None:
+def _cut(machine: Machine, state: State, report: DocumentReport, motions: Mapping[str, Motion]) -> None:
     length = duration(state.do, motions)
     for transition in state.transitions:
         delay = transition.delay

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from lumen.language.actions import SayText
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Machine
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import sites
 
@@ -22,7 +22,7 @@ _HALF = re.compile(r"(?<!\{)\$?\{\s*((?:context|event|state)\.[\w.]+)\s*\}(?!\})
 _BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report values that are texts, numbers or texts with quotes where something else was probably meant."""
     for report in draft.reports.values():
         for pattern, look in ((_TRUTH, _truth), (_ZERO, _number), (_GROUP, _number), (_CURLY, _quotes)):
@@ -38,7 +38,7 @@ def _lines(text: str, pattern: re.Pattern[str]) -> set[int]:
     return {text.count("\n", 0, found.start()) + 1 for found in pattern.finditer(text)}
 
 
-def _plain(report: Report, wanted: set[int]) -> Iterator[tuple[NodePath, str, object]]:
+def _plain(report: DocumentReport, wanted: set[int]) -> Iterator[tuple[NodePath, str, object]]:
     """Every value that stands in one of these lines without quotes: its path, as it is written, and as it is read."""
     lines = report.document.text.split("\n")
     for path, span in report.document.spans.items():
@@ -49,14 +49,14 @@ def _plain(report: Report, wanted: set[int]) -> Iterator[tuple[NodePath, str, ob
                 yield path, source, value_at(report, path)
 
 
-def _truth(report: Report, path: NodePath, source: str, value: object) -> None:
+def _truth(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
     """Only where data stands: among phrases, `no` is a word."""
     if isinstance(value, str) and (meant := _TRUTHS.get(value.lower())) and any(key in _DATA for key in path[:-1]):
         hint = f'write `{meant}`, or put it in quotes where the text is meant: "{value}"'
         find(report, "looks-like-truth", path, f"this is the text `{value}`, not `{meant}`", hint)
 
 
-def _number(report: Report, path: NodePath, source: str, value: object) -> None:
+def _number(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
     if isinstance(value, int) and not isinstance(value, bool) and _ZEROS.fullmatch(source):
         hint = f'write `{value}`, `0o{source.lstrip("+-0")}` for the octal number, or quotes for a text: "{source}"'
         find(report, "looks-like-number", path, f"`{source}` is the number {value}: its zeros do not count", hint)
@@ -65,14 +65,14 @@ def _number(report: Report, path: NodePath, source: str, value: object) -> None:
         find(report, "looks-like-number", path, f"`{source}` is a text, not a number", hint)
 
 
-def _quotes(report: Report, path: NodePath, source: str, value: object) -> None:
+def _quotes(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
     closing = _PAIRS.get(source[:1], "")
     if isinstance(value, str) and len(source) > 1 and source[-1] in closing and not _CURLY.search(source[1:-1]):
         hint = f'write straight quotes: "{source[1:-1]}"'
         find(report, "curly-quotes", path, "these quotes are part of the text: YAML knows only straight ones", hint)
 
 
-def _holes(machine: Machine, report: Report) -> None:
+def _holes(machine: Machine, report: DocumentReport) -> None:
     """Texts that are said with the name of a value in place of the value."""
     for site in sites(machine):
         if isinstance(site.step.action, SayText):

@@ -9,8 +9,8 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Machine
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, LENGTHS
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import sites
@@ -25,7 +25,7 @@ _PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for digits in 
 """Parts of a half turn as people write them in radians."""
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report angles in radians among degrees, turns of many rounds, walks that leave the stage by far or run."""
     for name in draft.motions:
         _radians(draft.report("motions", name))
@@ -34,7 +34,7 @@ def check(draft: Draft) -> None:
         _actions(machine, draft.report("behaviors", name), draft.body, stage)
 
 
-def _radians(report: Report) -> None:
+def _radians(report: DocumentReport) -> None:
     """In a file that counts in degrees: 1.57 is hardly one and a half of them."""
     if value_at(report, ("units", "angle")) != "deg":
         return
@@ -67,7 +67,7 @@ def _angles(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
             waiting.extend((value, (*here, i)) for i, value in enumerate(item))
 
 
-def _actions(machine: Machine, report: Report, body: Body | None, stage: Stage | None) -> None:
+def _actions(machine: Machine, report: DocumentReport, body: Body | None, stage: Stage | None) -> None:
     units = value_at(report, ("units",)) or {}
     angle, length = units.get("angle", "rad"), units.get("length", "m")
     for site in sites(machine):
@@ -85,7 +85,7 @@ def _actions(machine: Machine, report: Report, body: Body | None, stage: Stage |
                     _walk(report, (*where, "walk", key), value, length, room)
 
 
-def _look(report: Report, path: NodePath, joint: str, value: float, unit: str, body: Body | None) -> None:
+def _look(report: DocumentReport, path: NodePath, joint: str, value: float, unit: str, body: Body | None) -> None:
     limits = body.joints.get(joint) if body else None
     if limits is None or limits.minimum - 0.02 <= value <= limits.maximum + 0.02:
         return
@@ -97,13 +97,13 @@ def _look(report: Report, path: NodePath, joint: str, value: float, unit: str, b
     find(report, "wrong-unit", path, f"the head can't turn to {shown:g} {unit}", hint)
 
 
-def _turned(report: Report, path: NodePath, theta: float, unit: str) -> None:
+def _turned(report: DocumentReport, path: NodePath, theta: float, unit: str) -> None:
     message = f"{theta / ANGLES[unit]:g} {unit} is {abs(theta) / (2 * pi):.1f} times around"
     hint = "write `units: {angle: deg}` at the top: this file counts in radians" if unit == "rad" else "turn once"
     find(report, "wrong-unit", path, message, hint)
 
 
-def _move(report: Report, path: NodePath, move: Move, angle: str, length: str) -> None:
+def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length: str) -> None:
     from lumen.interpreters.gait import Pace, fastest  # takes 0.1 s, with numpy: only where somebody walks on
 
     most = fastest(Pace())
@@ -123,7 +123,7 @@ def _move(report: Report, path: NodePath, move: Move, angle: str, length: str) -
             )
 
 
-def _walk(report: Report, path: NodePath, value: float, unit: str, room: tuple[float, float] | None) -> None:
+def _walk(report: DocumentReport, path: NodePath, value: float, unit: str, room: tuple[float, float] | None) -> None:
     most = room[1] - room[0] if room else FAR
     if abs(value) <= most + 1e-6:
         return

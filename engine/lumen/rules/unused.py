@@ -8,8 +8,8 @@ from lumen.language.commands import Play, Track
 from lumen.language.diagnostics import NodePath, Severity, has_errors, nearest
 from lumen.language.machines import Machine
 from lumen.language.stories import Expect
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.codes import FAMILIES as CODES_OF
 from lumen.rules.events import descriptors, hears
 from lumen.rules.finding import find
@@ -22,7 +22,7 @@ _EXPRESSIONS = {*CODES_OF["expressions"], "unknown-context-key", "unknown-field"
 _NAME = re.compile(r"['\"]([^'\"]+)['\"]")
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report what nothing uses, where nothing is broken that could: in a file, and in the whole project."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -34,7 +34,7 @@ def check(draft: Draft) -> None:
         _files(draft)
 
 
-def _inside(draft: Draft, name: str, machine: Machine, report: Report) -> None:
+def _inside(draft: ProjectDraft, name: str, machine: Machine, report: DocumentReport) -> None:
     said = "\n".join(_texts({k: v for k, v in report.document.data.items() if k not in _DECLARED}))
     everywhere = f"{said}\n" + "\n".join(_texts(report.document.data.get("answers", {})))
     if not _WHOLE.search(everywhere):
@@ -53,7 +53,7 @@ def _inside(draft: Draft, name: str, machine: Machine, report: Report) -> None:
             find(report, "unused-event", ("events", event), message, hint, key=True, root=_states_of(report))
 
 
-def _context(machine: Machine, report: Report, read: set[str]) -> None:
+def _context(machine: Machine, report: DocumentReport, read: set[str]) -> None:
     written = {key for site in sites(machine) for key in getattr(site.step.action, "values", ())}
     for key in machine.context:
         if key not in read:
@@ -63,12 +63,12 @@ def _context(machine: Machine, report: Report, read: set[str]) -> None:
             find(report, "unused-context-key", ("context", key), message, hint, key=True, root=root)
 
 
-def _states_of(report: Report) -> str:
+def _states_of(report: DocumentReport) -> str:
     """What is wrong where much is unused, or is missed by stories: part of the chart is gone."""
     return f"the states of {report.document.file}"
 
 
-def _expected(draft: Draft, name: str) -> set[str]:
+def _expected(draft: ProjectDraft, name: str) -> set[str]:
     """The context keys that stories look at."""
     main = draft.settings.behavior if draft.settings else ""
     stories = [story for story in draft.stories.values() if (story.behavior or main) == name]
@@ -81,7 +81,7 @@ def _expected(draft: Draft, name: str) -> set[str]:
     }
 
 
-def _files(draft: Draft) -> None:
+def _files(draft: ProjectDraft) -> None:
     """Files that nothing names."""
     assert draft.settings is not None
     actions = [site.step.action for machine in draft.behaviors.values() for site in sites(machine)]
@@ -118,7 +118,7 @@ def _played(data: Any) -> set[str]:
     return found
 
 
-def _alike_files(draft: Draft) -> None:
+def _alike_files(draft: ProjectDraft) -> None:
     for file, other in _alike(draft.files):
         message = f"{file} and {other} differ by case only, and some computers take them for one file"
         draft.say("same-but-case", file, message, "rename one of them", Severity.WARNING)
@@ -126,14 +126,14 @@ def _alike_files(draft: Draft) -> None:
         _say_alike(draft.main, ("routes",), draft.settings.routes)
 
 
-def _alike_inside(machine: Machine, report: Report) -> None:
+def _alike_inside(machine: Machine, report: DocumentReport) -> None:
     for part in ("context", "phrases", "answers", "events"):
         _say_alike(report, (part,), getattr(machine, part))
     for state in machine.states.values():
         _say_alike(report, (*state.where, "states"), [path.rpartition(".")[2] for path in state.children])
 
 
-def _say_alike(report: Report, path: NodePath, names: Iterable[str]) -> None:
+def _say_alike(report: DocumentReport, path: NodePath, names: Iterable[str]) -> None:
     for name, other in _alike(names):
         message = f"`{name}` and `{other}` differ by case only"
         related = [((*path, other), "the other one stands here")]

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from lumen.language.actions import Raise, Send
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Kind, Machine, State, Transition
-from lumen.loading.draft import Draft
-from lumen.loading.source import Report
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 from lumen.rules.statecharts import reachable
 from lumen.rules.walk import nested
@@ -18,7 +18,7 @@ Node = tuple[str, str]
 _RESTLESS = ("endless-always", "always-loop")
 
 
-def check(draft: Draft) -> None:
+def check(draft: ProjectDraft) -> None:
     """Report what keeps the robot in a state for ever, in files where no transition is missing for another reason."""
     events = {r.event for r in draft.settings.routes.values() if r.event} if draft.settings else set[str]()
     for name, machine in draft.behaviors.items():
@@ -28,7 +28,7 @@ def check(draft: Draft) -> None:
             _ended(machine, report)
 
 
-def _ended(machine: Machine, report: Report) -> None:
+def _ended(machine: Machine, report: DocumentReport) -> None:
     """Histories that are gone to from where their parent's end leads: they remember that end, and end at once."""
     for path, state in machine.states.items():
         parent = machine.states[state.parent] if state.parent is not None else None
@@ -112,7 +112,7 @@ def spread(begin: Iterable[Node], moves: dict[Node, list[Node]]) -> set[Node]:
 class _Ways:
     """Looks at one machine: `tracks` are its outermost rows of states, each of which is in one of them at a time."""
 
-    def __init__(self, machine: Machine, report: Report, events: set[str]) -> None:
+    def __init__(self, machine: Machine, report: DocumentReport, events: set[str]) -> None:
         self.machine, self.report, self.events = machine, report, events
         self.graph = _Graph(machine)
         self.exits: dict[str, list[Transition]] = {}

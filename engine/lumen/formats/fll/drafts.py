@@ -10,7 +10,7 @@ from lumen.formats.fll.rules import rule_text
 from lumen.formats.fll.words import plain
 from lumen.language.controllers import TERMS
 from lumen.language.diagnostics import Place
-from lumen.loading.rules import KEYWORDS, Mention, RuleSyntaxError, Word, parse_rule
+from lumen.loading.rules import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
 
 _UNFIT = re.compile(r"[^A-Za-z0-9_\-]+")
 _ENDLESS = ("triangle", "trapezoid", "binary", "rectangle")
@@ -19,7 +19,7 @@ MOST_NUMBERS = 1_000
 """Parameters of a term: more points than that are no shape that a person drew."""
 
 Named = dict[str, str]
-Spot = Callable[[Word], Place]
+Spot = Callable[[RuleWord], Place]
 """Where a word of a rule's text stands in the file."""
 
 
@@ -97,7 +97,7 @@ class Draft:
             return ""
         return rule_text(said.antecedent, said.consequents, said.weight, self.names, self.terms)
 
-    def _unknown(self, mention: Mention) -> Word | None:
+    def _unknown(self, mention: Mention) -> RuleWord | None:
         """The word of a proposition that names nothing here."""
         variable, term = mention.variable, mention.term
         name = self.names.get(variable.text)

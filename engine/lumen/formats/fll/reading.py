@@ -13,7 +13,7 @@ from lumen.formats.fll.lines import Line, Lines, Part
 from lumen.formats.fll.words import ACTIVATED, METHODS, NORMS, SHAPES, plain
 from lumen.language.controllers import ACTIVATIONS, S_NORMS, T_NORMS, WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.loading.rules import Word
+from lumen.loading.rules import RuleWord
 
 _SIDES = {"InputVariable": "inputs", "OutputVariable": "outputs"}
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
@@ -198,7 +198,7 @@ class _Reader(Lines):
         return {key: value for key, value in settings.items() if value != _PLAIN_SETTINGS.get(key)}
 
     def rule(self, line: Line) -> str:
-        def spot(word: Word) -> Place:
+        def spot(word: RuleWord) -> Place:
             return self.place(line, min(word.offset, len(line.value)), max(len(word.text), 1))
 
         return self.draft.rule(line.value, self.place(line), spot)

@@ -11,9 +11,9 @@ from lumen.language.controllers import (
     VALUES,
     WEIGHTED,
     Activation,
-    Block,
-    Controller,
+    ControllerDefinition,
     Rule,
+    RuleBlock,
     Term,
     Variable,
 )
@@ -22,7 +22,7 @@ from lumen.language.diagnostics import Diagnostic
 _UNFIT = re.compile(r"[^A-Za-z0-9_]+")
 
 
-def write_fll(controller: Controller, place: Placing) -> tuple[str, list[Diagnostic]]:
+def write_fll(controller: ControllerDefinition, place: Placing) -> tuple[str, list[Diagnostic]]:
     """The engine's text, and what FuzzyLite can't say of the controller."""
     writer = _Writer(controller, Report(place))
     text = "\n".join(writer.lines()) + "\n"
@@ -32,7 +32,7 @@ def write_fll(controller: Controller, place: Placing) -> tuple[str, list[Diagnos
 class _Writer:
     """Writes one controller, under names that FuzzyLite can read."""
 
-    def __init__(self, controller: Controller, report: Report) -> None:
+    def __init__(self, controller: ControllerDefinition, report: Report) -> None:
         self.controller, self.report = controller, report
         variables = {**controller.inputs, **controller.outputs}
         self.names = _fresh(variables)
@@ -99,7 +99,7 @@ class _Writer:
                 parameters.append(written(term.height))
         return " ".join([foreign(SHAPES, term.kind), *parameters])
 
-    def block(self, block: Block) -> Iterator[str]:
+    def block(self, block: RuleBlock) -> Iterator[str]:
         operators = block.operators
         yield f"RuleBlock: {_UNFIT.sub('_', block.name)}".rstrip()
         yield "  enabled: true"

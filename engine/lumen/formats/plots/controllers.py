@@ -9,7 +9,7 @@ from lumen.formats.plots.sheet import Axis, Line, Mark, Panel, Sheet, Surface
 from lumen.interpreters.inference.arithmetic import NUMBERS
 from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.survey import Survey, asked, resting
-from lumen.language.controllers import VALUES, WEIGHTED, Controller, Variable
+from lumen.language.controllers import VALUES, WEIGHTED, ControllerDefinition, Variable
 
 POINTS, ACROSS = 321, 41
 """Of a curve, and of each side of a surface."""
@@ -17,7 +17,7 @@ POINTS, ACROSS = 321, 41
 RESOLUTION = 1000
 
 
-def controller_sheet(controller: Controller) -> Sheet:
+def controller_sheet(controller: ControllerDefinition) -> Sheet:
     """Memberships; then for each output a curve, a surface over two inputs, or a slice for each of several."""
     survey = Survey(controller, RESOLUTION)
     panels = [memberships(variable) for variable in variables(controller)]
@@ -28,7 +28,7 @@ def controller_sheet(controller: Controller) -> Sheet:
     return Sheet(f"Controller {controller.name}", (*panels, *answers), min(count, 3 if count <= 9 else 4), note)
 
 
-def curves_sheet(title: str, controllers: Mapping[str, Controller]) -> Sheet:
+def curves_sheet(title: str, controllers: Mapping[str, ControllerDefinition]) -> Sheet:
     """What several versions of a controller answer, curve upon curve; the first says which inputs and outputs."""
     first = next(iter(controllers.values()))
     panels = []
@@ -44,7 +44,7 @@ def curves_sheet(title: str, controllers: Mapping[str, Controller]) -> Sheet:
     return Sheet(title, tuple(panels), len(panels))
 
 
-def variables(controller: Controller) -> Iterator[Variable]:
+def variables(controller: ControllerDefinition) -> Iterator[Variable]:
     """All of them, inputs first."""
     yield from controller.inputs.values()
     yield from controller.outputs.values()

@@ -3,13 +3,13 @@
 from lumen.formats.plots.controllers import axis, memberships
 from lumen.formats.plots.sheet import Axis, Bars, Line, Mark, Panel, Sheet
 from lumen.interpreters.inference.explanation import Concluded, Explanation
-from lumen.language.controllers import Controller, Variable
+from lumen.language.controllers import ControllerDefinition, Variable
 
 LONGEST = 60
 """Characters of a rule beside its bar."""
 
 
-def explained_sheet(controller: Controller, said: Explanation) -> Sheet:
+def explained_sheet(controller: ControllerDefinition, said: Explanation) -> Sheet:
     """Memberships with the inputs marked; the rules; each output's set with its value, or where nothing fired, that."""
     panels = [
         memberships(variable, (Mark(said.inputs[name], f"{said.inputs[name]:g}", strong=True),))

@@ -13,7 +13,7 @@ from lumen.language.machines import Machine
 from lumen.loading.behaviors import build_machine
 from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Report
+from lumen.loading.source import DocumentReport
 
 Action = dict[str, Any]
 
@@ -91,7 +91,7 @@ class Parts:
         document, found = plain_document("machine", data)
         if document is None:
             return False
-        report = Report(document)
+        report = DocumentReport(document)
         build_machine(check_schema(document, "behavior", report), report, name="machine", into=Machine)
         return not has_errors([*found, *(d for d in report.diagnostics if d.code != "unknown-state")])
 

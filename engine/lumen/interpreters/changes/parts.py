@@ -6,12 +6,12 @@ from typing import Any
 
 from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.words import code, names, seconds
-from lumen.language.controllers import Controller
+from lumen.language.controllers import ControllerDefinition
 from lumen.language.motions import Motion
 from lumen.language.routes import Route
 
 
-def controller_changes(old: Controller, new: Controller) -> Iterator[Change]:
+def controller_changes(old: ControllerDefinition, new: ControllerDefinition) -> Iterator[Change]:
     """Rules, variables and terms one by one, everything else by its name."""
     for sentence in _controller(old, new):
         yield Change("controller", new.name, sentence, Risk.MOTION, f"fuzzy/{new.name}.yaml")
@@ -51,7 +51,7 @@ _ROUTE: Mapping[str, Callable[[Any], str]] = {
 }
 
 
-def _controller(old: Controller, new: Controller) -> Iterator[str]:
+def _controller(old: ControllerDefinition, new: ControllerDefinition) -> Iterator[str]:
     title = f"`{new.name}`"
     for i, (before, after) in enumerate(zip(old.rules, new.rules, strict=False), 1):
         if replace(before, text="") != replace(after, text=""):
@@ -68,7 +68,7 @@ def _controller(old: Controller, new: Controller) -> Iterator[str]:
         yield f"{title} tracks otherwise: {names(fields)}"
 
 
-def _variables(old: Controller, new: Controller, title: str) -> Iterator[str]:
+def _variables(old: ControllerDefinition, new: ControllerDefinition, title: str) -> Iterator[str]:
     before, after = {**old.inputs, **old.outputs}, {**new.inputs, **new.outputs}
     for name in dict.fromkeys((*before, *after)):
         if name not in before or name not in after:

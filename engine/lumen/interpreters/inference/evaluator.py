@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from lumen.errors import LumenError, UsageError
 from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
 from lumen.interpreters.inference.defuzzifiers import defuzzifier
-from lumen.interpreters.inference.program import Program
-from lumen.language.controllers import Controller, Variable
+from lumen.interpreters.inference.program import InferenceProgram
+from lumen.language.controllers import ControllerDefinition, Variable
 from lumen.language.diagnostics import did_you_mean
 
 if TYPE_CHECKING:
@@ -24,9 +24,9 @@ _CHUNK = 1 << 13  # rows of a batch that are worked on together: they stay in th
 class Evaluator:
     """A compiled controller. Pure: it keeps nothing between evaluations but what it has precomputed."""
 
-    def __init__(self, controller: Controller) -> None:
+    def __init__(self, controller: ControllerDefinition) -> None:
         self.controller = controller
-        self.program = Program(controller, NUMBERS)
+        self.program = InferenceProgram(controller, NUMBERS)
         self._names = tuple(controller.inputs)
         names, count = (*controller.inputs, *controller.outputs), len(controller.inputs)
         self._outputs = [
@@ -67,8 +67,8 @@ class Evaluator:
         return {name: np.concatenate([part[name] for part in parts or empty]) for name in self.controller.outputs}
 
     @cached_property
-    def _array_program(self) -> Program:
-        return Program(self.controller, arrays())
+    def _array_program(self) -> InferenceProgram:
+        return InferenceProgram(self.controller, arrays())
 
     def _slots(self, name: str) -> list[int]:
         return [conclusion.slot for conclusion in self.program.conclusions[name]]

@@ -17,7 +17,7 @@ from lumen.interpreters.inference.arithmetic import NUMBERS, Arithmetic, Number
 Formula = Callable[[Number, Sequence[Number]], Number]
 """The value at x, the named variables being as they are."""
 
-Part = Callable[[Number, Sequence[Number]], Any]
+FormulaPart = Callable[[Number, Sequence[Number]], Any]
 
 FUNCTIONS: Mapping[str, int] = {
     **dict.fromkeys(("abs", "sqrt", "exp", "log", "log10", "log1p", "floor", "ceil", "round", "sin", "cos", "tan"), 1),
@@ -39,7 +39,7 @@ def formula(m: Arithmetic, text: str, names: Sequence[str]) -> Formula:
     return _on_numbers(part) if m is NUMBERS else _on_arrays(part)
 
 
-def _on_numbers(part: Part) -> Formula:
+def _on_numbers(part: FormulaPart) -> Formula:
     def value(x: float, values: Sequence[float]) -> float:
         try:
             found = float(part(x, values))
@@ -57,7 +57,7 @@ def _finite() -> Callable[[Any], Any]:
     return lambda value: np.where(np.isfinite(value), value, np.nan)
 
 
-def _on_arrays(part: Part) -> Formula:
+def _on_arrays(part: FormulaPart) -> Formula:
     import numpy as np
 
     def value(x: Any, values: Sequence[Any]) -> Any:
@@ -74,7 +74,7 @@ class _Compiler:
         self._m, self._names = m, {name: i for i, name in enumerate(names)}
         self._lazy = m is NUMBERS
 
-    def part(self, node: Node) -> Part:
+    def part(self, node: Node) -> FormulaPart:
         match node:
             case Literal(value):
                 number = float(value)  # type: ignore[arg-type]
@@ -97,13 +97,13 @@ class _Compiler:
                 return self._apply(self._function(name), *arguments)
         raise AssertionError(f"not a part of a formula: {node}")
 
-    def _name(self, name: str) -> Part:
+    def _name(self, name: str) -> FormulaPart:
         if name in self._names:
             i = self._names[name]
             return lambda x, values: values[i]
         return (lambda x, values: x) if name == "x" else (lambda x, values: math.pi)
 
-    def _apply(self, work: Callable[..., Any], *nodes: Node) -> Part:
+    def _apply(self, work: Callable[..., Any], *nodes: Node) -> FormulaPart:
         parts = [self.part(node) for node in nodes]
         if self._lazy:
             return lambda x, values: work(*[part(x, values) for part in parts])
@@ -122,7 +122,7 @@ class _Compiler:
         known = reduce(and_, [a == a for a in compared])
         return self._m.where(known, self._m.where(holds, 1.0, 0.0), math.nan)
 
-    def _logic(self, sign: str, parts: list[Part]) -> Part:
+    def _logic(self, sign: str, parts: list[FormulaPart]) -> FormulaPart:
         if self._lazy:
             join = all if sign == "&&" else any
             return lambda x, values: float(join(part(x, values) != 0.0 for part in parts))
@@ -140,7 +140,7 @@ class _Compiler:
 
         return value
 
-    def _choice(self, condition: Part, then: Part, otherwise: Part) -> Part:
+    def _choice(self, condition: FormulaPart, then: FormulaPart, otherwise: FormulaPart) -> FormulaPart:
         if self._lazy:
             return lambda x, values: then(x, values) if condition(x, values) != 0.0 else otherwise(x, values)
 

@@ -16,14 +16,14 @@ from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.norms import norm
 from lumen.language.controllers import (
     Antecedent,
-    Block,
     Conjunction,
-    Controller,
+    ControllerDefinition,
     Disjunction,
     Negation,
     Operators,
     Proposition,
     Rule,
+    RuleBlock,
 )
 
 Tape = list[Any]
@@ -38,13 +38,13 @@ class Conclusion(NamedTuple):
     implication: str
 
 
-class Program:
+class InferenceProgram:
     """The operations of a controller under one arithmetic.
 
     `rules` has the slot of each rule's degree, in the order written; `conclusions` those of each output.
     """
 
-    def __init__(self, controller: Controller, m: Arithmetic) -> None:
+    def __init__(self, controller: ControllerDefinition, m: Arithmetic) -> None:
         self._controller, self._m = controller, m
         self._operations: list[Operation] = []
         self._known: dict[Any, int] = {}
@@ -68,7 +68,7 @@ class Program:
             self._known[key] = slot
         return slot
 
-    def _block(self, block: Block) -> list[int]:
+    def _block(self, block: RuleBlock) -> list[int]:
         """The slots of the rules' degrees. Only where all rules take part may one read what another concludes."""
         operators = block.operators
         if operators.activation.method in ("general", "threshold"):

@@ -14,7 +14,7 @@ from lumen.interpreters.inference.evaluator import Evaluator
 from lumen.language.controllers import (
     Antecedent,
     Conjunction,
-    Controller,
+    ControllerDefinition,
     Disjunction,
     Negation,
     Proposition,
@@ -36,7 +36,7 @@ class Slice(NamedTuple):
     ys: tuple[float, ...]
 
 
-class Step(NamedTuple):
+class SurfaceJump(NamedTuple):
     """Between two values of an input that nearly are one, an output jumps from `low` to `high`."""
 
     x: float
@@ -47,7 +47,7 @@ class Step(NamedTuple):
 class Survey:
     """A controller to be asked point by point; `rest` is where its inputs are while others move."""
 
-    def __init__(self, controller: Controller, resolution: int = RESOLUTION) -> None:
+    def __init__(self, controller: ControllerDefinition, resolution: int = RESOLUTION) -> None:
         self.controller = controller
         self._evaluator = Evaluator(silent(controller, resolution))
         self.rest = {name: resting(variable) for name, variable in controller.inputs.items()}
@@ -66,7 +66,7 @@ class Survey:
                 for output in outputs:
                     yield Slice(output, name, xs, tuple(point[output] for point in said))
 
-    def step(self, found: Slice, share: float) -> Step | None:
+    def step(self, found: Slice, share: float) -> SurfaceJump | None:
         """The greatest jump by more than that share of the output's range, however near one looks."""
         output = self.controller.outputs[found.output]
         least = share * (output.maximum - output.minimum)
@@ -79,10 +79,10 @@ class Survey:
             middle = (low + high) / 2
             y = self.at({found.input: middle})[found.output]
             low, high, a, b = (middle, high, y, b) if abs(y - a) < abs(b - y) else (low, middle, a, y)
-        return Step(low, a, b)
+        return SurfaceJump(low, a, b)
 
 
-def silent(controller: Controller, resolution: int) -> Controller:
+def silent(controller: ControllerDefinition, resolution: int) -> ControllerDefinition:
     """The controller without defaults, its sets sampled at no more than `resolution` points."""
     outputs = {
         name: replace(v, default=nan, lock_previous=False, resolution=min(v.resolution, resolution))
@@ -103,7 +103,7 @@ def resting(variable: Variable) -> float:
     return variable.neutral if variable.neutral is not None else middle if isfinite(middle) else 0.0
 
 
-def asked(controller: Controller, output: str) -> frozenset[str]:
+def asked(controller: ControllerDefinition, output: str) -> frozenset[str]:
     """The inputs that an output depends on, by way of other outputs too."""
     found: set[str] = set()
     waiting, known = [output], {output}
@@ -117,7 +117,7 @@ def asked(controller: Controller, output: str) -> frozenset[str]:
     return frozenset(found)
 
 
-def _asked(controller: Controller, output: str) -> Iterator[str]:
+def _asked(controller: ControllerDefinition, output: str) -> Iterator[str]:
     for rule in controller.rules:
         if any(consequent.variable == output for consequent in rule.consequents):
             yield from (proposition.variable for proposition in propositions(rule.antecedent))

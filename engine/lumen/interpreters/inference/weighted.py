@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-Value = Callable[[Number, Sequence[Number]], Number]
+TermValue = Callable[[Number, Sequence[Number]], Number]
 """What a term stands for at a degree, the controller's variables being as they are."""
 
 _TINY = 1e-300
@@ -63,7 +63,7 @@ NaN where there is none: above the height. Straight ones and `concave` go on.
 """
 
 
-def value(m: Arithmetic, term: Term, names: Sequence[str] = (), inputs: int = 0) -> Value:
+def value(m: Arithmetic, term: Term, names: Sequence[str] = (), inputs: int = 0) -> TermValue:
     """The value of a term of `constant`, `linear`, `function` or a monotonic kind (`INVERSES`).
 
     It is handed the degree and the variables called `names`, of which the first `inputs` are the controller's inputs.
@@ -101,7 +101,7 @@ class Weighted:
         self._terms, self._which, self._aggregation, self._average = terms, which, aggregation, average
         self._names, self._inputs = names, inputs
         self._on_numbers = [value(NUMBERS, term, names, inputs) for term in terms]
-        self._on_arrays: list[Value] = []
+        self._on_arrays: list[TermValue] = []
 
     def crisp(self, degrees: Sequence[float], values: Sequence[float]) -> float:
         """The output; NaN where no term has a weight, or a formula no value."""
@@ -112,7 +112,9 @@ class Weighted:
         self._on_arrays = self._on_arrays or [value(arrays(), term, self._names, self._inputs) for term in self._terms]
         return self._crisp(arrays(), self._on_arrays, degrees, values)  # type: ignore[no-any-return]
 
-    def _crisp(self, m: Arithmetic, terms: list[Value], degrees: Sequence[Number], values: Sequence[Number]) -> Number:
+    def _crisp(
+        self, m: Arithmetic, terms: list[TermValue], degrees: Sequence[Number], values: Sequence[Number]
+    ) -> Number:
         by_term = self._weights(m, degrees)
         whole = total(list(by_term.values()))
         some = whole > 0.0
