@@ -9,7 +9,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, BusError, Message, Refused, connect
-from lumen.buses.consuming import PATIENCE, PREFETCH
+from lumen.buses.consumer import PATIENCE, PREFETCH
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay

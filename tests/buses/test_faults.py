@@ -12,7 +12,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, Message, connect
-from lumen.buses.consuming import PATIENCE
+from lumen.buses.consumer import PATIENCE
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay

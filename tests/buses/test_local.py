@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from lumen.bus import BusError, connect
-from lumen.buses.local import Address, Door, LocalBus, door
+from lumen.buses.local import LocalAddress, LocalBusClient, LocalBusServer
+from lumen.buses.local import server as door
 from lumen.buses.local.frames import frame
 from lumen.buses.memory import MemoryBus
 from tests.waiting import Collector, until
@@ -23,7 +24,7 @@ class Opened:
 
     def __init__(self, folder: Path) -> None:
         self.bus = connect("memory://")
-        self.door = Door(self.bus, folder)
+        self.door = LocalBusServer(self.bus, folder)
 
     def raw(self) -> socket.socket:
         wire = self.door.address.connect()
@@ -56,8 +57,8 @@ def test_only_the_owner_can_open_it(opened: Opened) -> None:
 def test_who_does_not_know_the_key_stays_out(opened: Opened) -> None:
     address = opened.door.address
     with pytest.raises(BusError, match="is not the exhibition"):
-        LocalBus(Address(address.path, address.port, "another key"))
-    LocalBus(address).close()
+        LocalBusClient(LocalAddress(address.path, address.port, "another key"))
+    LocalBusClient(address).close()
 
 
 @pytest.mark.parametrize(
@@ -86,7 +87,7 @@ class LocalGuest:
         self.opened, self.seen = opened, Collector()
 
     def __enter__(self) -> "LocalGuest":
-        self.bus = LocalBus(self.opened.door.address)
+        self.bus = LocalBusClient(self.opened.door.address)
         self.bus.subscribe("lumen.alive", self.seen)
         return self
 
@@ -126,14 +127,14 @@ def test_more_than_so_many_do_not_fit_in(opened: Opened, monkeypatch: pytest.Mon
     monkeypatch.setattr(door, "GUESTS", 1)
     with LocalGuest(opened) as guest:
         with pytest.raises(BusError):
-            LocalBus(opened.door.address)
+            LocalBusClient(opened.door.address)
         guest.still_hears()
 
 
 def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(door, "BYTES", 1_000_000)
     with LocalGuest(opened) as guest:
-        slow = LocalBus(opened.door.address)
+        slow = LocalBusClient(opened.door.address)
         held = threading.Event()
         slow.subscribe("lumen.much", lambda _: held.wait(60.0))
         slow._wire.shutdown(socket.SHUT_RD)
@@ -150,7 +151,7 @@ def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monk
 def test_who_dies_is_forgotten(opened: Opened) -> None:
     assert isinstance(opened.bus, MemoryBus)
     before = len(opened.bus._hub.subscriptions)
-    guest = LocalBus(opened.door.address)
+    guest = LocalBusClient(opened.door.address)
     guest.subscribe("lumen.#", lambda _: None)
     guest._wire.shutdown(socket.SHUT_RDWR)
     until(lambda: isinstance(opened.bus, MemoryBus) and len(opened.bus._hub.subscriptions) == before)
@@ -158,14 +159,14 @@ def test_who_dies_is_forgotten(opened: Opened) -> None:
 
 
 def test_when_the_exhibition_ends_its_guests_are_told(opened: Opened) -> None:
-    guest = LocalBus(opened.door.address)
+    guest = LocalBusClient(opened.door.address)
     opened.door.close()
     assert guest.gone.wait(10.0)
     with pytest.raises(BusError, match="gone"):
         guest.publish("lumen.a", 1)
     guest.close()
     with pytest.raises(BusError, match="nobody opens"):
-        LocalBus(opened.door.address)
+        LocalBusClient(opened.door.address)
     assert not Path(opened.door.address.path).exists()
 
 
@@ -173,7 +174,7 @@ def test_a_project_deep_in_folders_has_a_door_too(tmp_path: Path) -> None:
     deep = tmp_path / ("a" * 100) / ("b" * 100)
     deep.mkdir(parents=True)
     one = Opened(deep)
-    LocalBus(one.door.address).close()
+    LocalBusClient(one.door.address).close()
     one.door.close()
     assert not Path(one.door.address.path).parent.exists()
 
@@ -181,4 +182,4 @@ def test_a_project_deep_in_folders_has_a_door_too(tmp_path: Path) -> None:
 @pytest.mark.parametrize("data", [{}, {"path": "", "port": "x", "key": ""}, {"path": "", "port": [], "key": ""}])
 def test_what_is_no_address_is_said(data: dict[str, object]) -> None:
     with pytest.raises(BusError, match="no address"):
-        Address.of(json.loads(json.dumps(data)))
+        LocalAddress.of(json.loads(json.dumps(data)))

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from lumen.bus import connect
-from lumen.buses.consuming import Consuming
+from lumen.buses.consumer import Consumer
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Say
 from lumen.runtime.loop import Observer
@@ -196,8 +196,8 @@ def test_the_same_on_a_broker_for_which_no_tick_waits(
 ) -> None:
     one = Live(copy, url=broker.url)
     waiting: list[threading.Thread] = []
-    usual = Consuming._await
-    monkeypatch.setattr(Consuming, "_await", lambda *given: (waiting.append(threading.current_thread()), usual(*given)))
+    usual = Consumer._await
+    monkeypatch.setattr(Consumer, "_await", lambda *given: (waiting.append(threading.current_thread()), usual(*given)))
     one.edit("routes:\n", "routes:\n  load: {key: lumen.load, direction: in, event: load}\n", "lumen.yaml")
     one.until_told("in force")
     assert waiting

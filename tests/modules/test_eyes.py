@@ -22,8 +22,8 @@ from lumen.errors import ModuleError
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.modules.eyes import Eyes
-from lumen.modules.eyes.finding import Finder
-from lumen.modules.eyes.known import Known
+from lumen.modules.eyes.detector import PersonDetector
+from lumen.modules.eyes.gallery import FaceGallery
 from lumen.ports import Sense
 from lumen.robots.simulation import SimulatedRobot
 from tests.modules.conftest import Stand, with_options
@@ -121,7 +121,7 @@ def test_sees_that_there_are_people(eyes: Make, drawn: Mapping[Any, Any]) -> Non
 
 
 def test_who_shows_their_face_is_a_person(photographed: Pixels) -> None:
-    grey, finder = cv2.cvtColor(photographed, cv2.COLOR_RGB2GRAY), Finder()
+    grey, finder = cv2.cvtColor(photographed, cv2.COLOR_RGB2GRAY), PersonDetector()
     assert finder.people(grey) == [], "from the chest up there is no whole person"
     [face] = finder.faces(grey)
     [person] = finder.people(grey, [face])
@@ -149,17 +149,17 @@ def test_learns_who_somebody_is_and_tells_them_from_others(
     assert here.told == ["knows Eileen by now"]
     assert look(10.0, np.roll(photographed, 9, axis=1)) == "Eileen"
     assert look(20.0, drawn[1.5, 0.0][0]) == "unknown"
-    assert Known(file, lambda: 0.0).names == ["Eileen"]
+    assert FaceGallery(file, lambda: 0.0).names == ["Eileen"]
     assert file.stat().st_mode & 0o077 == 0
     here.bus.publish("lumen.NAO.persistence.forgotten", {"name": "eileen"})
     assert look(30.0, photographed) == "unknown"
-    assert Known(file, lambda: 0.0).names == []
+    assert FaceGallery(file, lambda: 0.0).names == []
 
 
 def test_faces_that_were_learnt_long_ago_are_deleted(photographed: Pixels) -> None:
     grey = cv2.cvtColor(photographed, cv2.COLOR_RGB2GRAY)
-    (face, *_) = Finder().faces(grey)
-    known = Known(None, lambda: 100.0)
+    (face, *_) = PersonDetector().faces(grey)
+    known = FaceGallery(None, lambda: 100.0)
     known.enrol("Eileen", grey, face)
     assert known.who(grey, face) == "Eileen"
     assert known.expire(100.0) == 0
@@ -200,16 +200,16 @@ def test_a_name_that_is_none(eyes: Make, name: object) -> None:
 
 def test_a_model_that_does_not_load(tmp_path: Path) -> None:
     with pytest.raises(ModuleError, match=r"nowhere.xml is missing: pip install 'lumen-robot\[eyes\]'"):
-        Finder(tmp_path / "nowhere.xml")
+        PersonDetector(tmp_path / "nowhere.xml")
     (tmp_path / "broken.xml").write_text("<opencv_storage><cascade>")
     with pytest.raises(ModuleError, match=r"broken.xml can't be loaded"):
-        Finder(tmp_path / "broken.xml")
+        PersonDetector(tmp_path / "broken.xml")
 
 
 def test_faces_that_are_damaged(tmp_path: Path) -> None:
     (tmp_path / "faces.npz").write_bytes(b"no faces")
     with pytest.raises(ModuleError, match="holds no faces, or is damaged"):
-        Known(tmp_path / "faces.npz", lambda: 0.0)
+        FaceGallery(tmp_path / "faces.npz", lambda: 0.0)
 
 
 def test_a_video_file(stand: Make, project: Project, photographed: Pixels, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from lumen.bus import Bus
 from lumen.language.projects import Project
-from lumen.modules.memory import Entry, Memory, Store
+from lumen.modules.memory import JournalEntry, Memory, Store
 from tests.modules.conftest import Stand, with_options
 from tests.waiting import until
 
@@ -143,7 +143,7 @@ def test_keeps_nothing_longer_than_it_says(stand: Make, project: Project) -> Non
     here, date = stand(with_options(project, "memory", keep=2)), Calendar()
     store = Store(None)
     for age in (3, 1):
-        store.add([Entry(date.now - age * DAY, "NAO", "", "heard", f"{age} days ago")])
+        store.add([JournalEntry(date.now - age * DAY, "NAO", "", "heard", f"{age} days ago")])
         store.met(f"visitor {age}", date.now - age * DAY)
     assert store.expire(date.now - 2 * DAY) == 2
     assert [e["text"] for e in store.journal()] == ["1 days ago"]

@@ -11,7 +11,7 @@ from PIL import Image
 
 from lumen.errors import ModuleError
 from lumen.modules.eyes import Eyes
-from lumen.modules.eyes.finding import Box
+from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.window import Window
 from tests.modules.conftest import Stand, with_options
 from tests.modules.test_eyes import body, photographed

@@ -88,7 +88,7 @@ def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_betwe
 
 DYING = """
 import os, signal, sys
-from lumen.buses.consuming import Consuming
+from lumen.buses.consumer import Consumer
 from lumen.cli.main import main
 from lumen.robots.recording import RecordingRobot
 perform = RecordingRobot.start
@@ -96,7 +96,7 @@ def die(robot, id, command):
     perform(robot, id, command)
     os.kill(os.getpid(), signal.SIGKILL)
 RecordingRobot.start = die
-Consuming._acknowledge = lambda *_: None  # the broker never hears that it was handled
+Consumer._acknowledge = lambda *_: None  # the broker never hears that it was handled
 sys.exit(main(sys.argv[1:]))
 """
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from lumen.bus import BusError, Message, Refused, connect
-from lumen.buses.local import Door, LocalBus
+from lumen.buses.local import LocalBusClient, LocalBusServer
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus
 from tests.waiting import Collector
@@ -30,8 +30,8 @@ def another(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Connect]
         first.close()
     else:
         inside = connect("memory://")
-        door = Door(inside, tmp_path)
-        yield lambda: LocalBus(door.address)
+        door = LocalBusServer(inside, tmp_path)
+        yield lambda: LocalBusClient(door.address)
         door.close()
         inside.close()
 

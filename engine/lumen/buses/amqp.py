@@ -13,13 +13,13 @@ from collections.abc import Callable, Mapping
 from itertools import count
 from typing import Any
 
-from lumen.buses.addresses import Address
 from lumen.buses.bodies import JSON, MAX_BYTES, TEXT, check_key, encode
-from lumen.buses.consuming import Consuming
-from lumen.buses.dispatching import MARK, Dispatching
-from lumen.buses.links import Outage
-from lumen.buses.outbox import Parcel
-from lumen.buses.publishing import Publishing
+from lumen.buses.broker import BrokerAddress
+from lumen.buses.connection import OutageLog
+from lumen.buses.consumer import Consumer
+from lumen.buses.dispatcher import MARK, Dispatcher
+from lumen.buses.outbox import OutgoingMessage
+from lumen.buses.publisher import Publisher
 from lumen.buses.queues import DEAD, EXCHANGE, NEWEST, journal_of
 from lumen.buses.subscriptions import Delivery
 from lumen.errors import BusError
@@ -34,13 +34,13 @@ ANSWERED = 30.0
 _log = logging.getLogger(__name__)
 
 
-class Way:
+class Transport:
     """A connection for what goes, one for what comes, and a thread for the handlers."""
 
-    def __init__(self, address: Address, outage: Outage, name: str = "") -> None:
-        self.publishing = Publishing(address, f"{name}out", outage)
-        self.consuming = Consuming(address, f"{name}in", outage, lambda delivery: self.dispatching.receive(delivery))
-        self.dispatching = Dispatching(self.consuming.handled, self._refused)
+    def __init__(self, address: BrokerAddress, outage: OutageLog, name: str = "") -> None:
+        self.publishing = Publisher(address, f"{name}out", outage)
+        self.consuming = Consumer(address, f"{name}in", outage, lambda delivery: self.dispatching.receive(delivery))
+        self.dispatching = Dispatcher(self.consuming.handled, self._refused)
 
     def open(self) -> None:
         """Raises BusError, saying what to do, where the broker can't be used."""
@@ -58,7 +58,7 @@ class Way:
         text = isinstance(body, str) and not ours
         deadline = time.monotonic() + ANSWERED
         self.publishing.outbox.put(
-            Parcel(
+            OutgoingMessage(
                 EXCHANGE if ours else "",
                 reply_to,
                 body.encode(errors="replace") if text else encode(body),
@@ -86,7 +86,7 @@ class Way:
             headers = {"reason": reason[:1000], "key": delivery.key}
             body = delivery.body[:MAX_BYTES]
             self.publishing.outbox.put(
-                Parcel(DEAD, delivery.key, body, properties.content_type or JSON, headers=headers, keep=NEWEST)
+                OutgoingMessage(DEAD, delivery.key, body, properties.content_type or JSON, headers=headers, keep=NEWEST)
             )
         if properties.reply_to:
             self.answer(properties.reply_to, properties.correlation_id or "", f"message refused: {reason}")
@@ -103,7 +103,7 @@ class Way:
         marks = {f"{uuid.uuid4()} {queue}": queue for queue in queues}
         marked = self.dispatching.expect(set(marks))
         for mark, queue in marks.items():
-            outbox.put(Parcel("", queue, mark.encode(), TEXT, type=MARK))
+            outbox.put(OutgoingMessage("", queue, mark.encode(), TEXT, type=MARK))
         marked.wait(max(0.0, deadline - time.monotonic()))
         outbox.emptied(max(0.0, deadline - time.monotonic()))
 
@@ -117,14 +117,14 @@ class AmqpBus:
     """
 
     def __init__(self, url: str) -> None:
-        self._address = Address(url)
-        self._outage = Outage(self._address)
+        self._address = BrokerAddress(url)
+        self._outage = OutageLog(self._address)
         self._closed = False
         self._routes: Mapping[str, Route] = {}
         self._name, self._numbers = uuid.uuid4().hex[:12], count(1)
-        self._stop: Way | None = None
+        self._stop: Transport | None = None
         self._watching, self._opening = False, threading.Lock()
-        self._way = Way(self._address, self._outage)
+        self._way = Transport(self._address, self._outage)
         try:
             self._way.open()
         except BusError:
@@ -173,7 +173,7 @@ class AmqpBus:
             id = f"{self._name}-{next(self._numbers)}" if route.must_arrive else ""
         deadline = None if ttl is None else time.monotonic() + ttl
         self._way_of(route).publishing.outbox.put(
-            Parcel(EXCHANGE, key, data, JSON, reply_to, correlation_id, deadline, keep=keep, id=id)
+            OutgoingMessage(EXCHANGE, key, data, JSON, reply_to, correlation_id, deadline, keep=keep, id=id)
         )
 
     def reply(self, message: Message, body: Any) -> None:
@@ -199,13 +199,13 @@ class AmqpBus:
         """Stops get a way of their own as soon as there are any; nobody waits for it here."""
         with self._opening:
             if self._stop is None and any(route.carried is Carried.STOP for route in routes.values()):
-                self._stop = Way(self._address, self._outage, "stop-")
+                self._stop = Transport(self._address, self._outage, "stop-")
                 self._stop.begin()
 
-    def _ways(self) -> list[Way]:
+    def _ways(self) -> list[Transport]:
         return [self._way, *([self._stop] if self._stop else [])]
 
-    def _way_of(self, route: Route | None) -> Way:
+    def _way_of(self, route: Route | None) -> Transport:
         return self._stop if self._stop and route and route.carried is Carried.STOP else self._way
 
     def _end(self, deadline: float) -> None:

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 SHOWN = 80
 
-Check = Callable[[Any], str]
+BodyCheck = Callable[[Any], str]
 """What is wrong with a body; empty where nothing is."""
 
 
-def checks(project: Project) -> dict[str, Check]:
+def checks(project: Project) -> dict[str, BodyCheck]:
     """A check for every key of the project's routes that names a schema; schemas are compiled when first needed."""
     compiled = {name: SchemaCheck(schema) for name, schema in project.messages.items()}
     return {

@@ -14,7 +14,7 @@ MUST = 10_000
 """Messages that must arrive and wait: beyond it, who sends another is told."""
 
 
-class Parcel(NamedTuple):
+class OutgoingMessage(NamedTuple):
     """A message on its way out; after `deadline` [s, monotonic] nobody wants it any more.
 
     Of those with the same key at most `keep` wait, the newest (0: all). One with an `id` must arrive: it is sent until
@@ -50,14 +50,14 @@ class Outbox:
     def __init__(self, awaken: Callable[[], None] = lambda: None) -> None:
         self.dropped = self.late = 0
         self._awaken = awaken
-        self._must: deque[Parcel] = deque()
-        self._may: deque[Parcel | str] = deque()
-        self._newest: dict[str, deque[Parcel]] = {}
+        self._must: deque[OutgoingMessage] = deque()
+        self._may: deque[OutgoingMessage | str] = deque()
+        self._newest: dict[str, deque[OutgoingMessage]] = {}
         self._bytes = {True: 0, False: 0}
         self._changed = threading.Condition()
         self._asleep = False
 
-    def put(self, parcel: Parcel) -> None:
+    def put(self, parcel: OutgoingMessage) -> None:
         with self._changed:
             if parcel.id:
                 self._check_room(parcel)
@@ -75,13 +75,13 @@ class Outbox:
         if asleep:
             self._awaken()
 
-    def take(self, most: int, timeout: float) -> list[Parcel]:
+    def take(self, most: int, timeout: float) -> list[OutgoingMessage]:
         """The next parcels still wanted, at most so many; none if there is nothing within `timeout` [s]."""
         with self._changed:
             if timeout and not self:
                 self._changed.wait(timeout)
             now = time.monotonic()
-            taken: list[Parcel] = []
+            taken: list[OutgoingMessage] = []
             while self and len(taken) < most:
                 parcel = self._pop()
                 if parcel.deadline is None or parcel.deadline > now:
@@ -92,7 +92,7 @@ class Outbox:
                 self._changed.notify_all()
             return taken
 
-    def put_back(self, parcels: Iterable[Parcel]) -> None:
+    def put_back(self, parcels: Iterable[OutgoingMessage]) -> None:
         """These could not be sent: they are the next again. What newer ones have replaced meanwhile is forgotten."""
         with self._changed:
             for parcel in reversed(list(parcels)):
@@ -127,7 +127,7 @@ class Outbox:
     def __len__(self) -> int:
         return len(self._must) + len(self._may)
 
-    def _replace(self, parcel: Parcel) -> None:
+    def _replace(self, parcel: OutgoingMessage) -> None:
         """The newest of a key take the places of the oldest."""
         waiting = self._newest.setdefault(parcel.key, deque())
         waiting.append(parcel)
@@ -136,7 +136,7 @@ class Outbox:
             self._weigh(waiting.popleft(), -1)
             self._may.remove(parcel.key)
 
-    def _check_room(self, parcel: Parcel) -> None:
+    def _check_room(self, parcel: OutgoingMessage) -> None:
         if len(self._must) < MUST and self._bytes[True] + len(parcel.body) <= BYTES:
             return
         now = time.monotonic()
@@ -147,15 +147,15 @@ class Outbox:
         self._must = deque(p for p in self._must if p.deadline is None or p.deadline > now)
         self._bytes[True] = sum(len(p.body) for p in self._must)
 
-    def _weigh(self, parcel: Parcel, sign: int) -> None:
+    def _weigh(self, parcel: OutgoingMessage, sign: int) -> None:
         self._bytes[bool(parcel.id)] += sign * len(parcel.body)
 
-    def _pop(self) -> Parcel:
+    def _pop(self) -> OutgoingMessage:
         parcel = self._must.popleft() if self._must else self._next()
         self._weigh(parcel, -1)
         return parcel
 
-    def _next(self) -> Parcel:
+    def _next(self) -> OutgoingMessage:
         item = self._may.popleft()
         if not isinstance(item, str):
             return item

@@ -31,7 +31,7 @@ SETTLING = 1.0
 """How long a new quorum queue stays unbound [s]: RabbitMQ writes down half a second later which log is whose; killed
 before that, it loses what the queue held (docs/decisions)."""
 
-Call = Callable[..., Any]
+ChannelCall = Callable[..., Any]
 """Calls a method of a channel with these arguments and waits for the answer."""
 
 
@@ -48,7 +48,7 @@ class Queue:
     def quorum(self) -> bool:
         return self.arguments.get("x-queue-type") == "quorum"
 
-    def declare(self, call: Call, channel: Any) -> None:
+    def declare(self, call: ChannelCall, channel: Any) -> None:
         """Make one that has a name, and bind it to its key."""
         call(channel.queue_declare, self.name, durable=True, arguments=self.arguments)
         call(channel.queue_bind, self.name, EXCHANGE, self.key)
@@ -77,7 +77,7 @@ def journal_of(key: str) -> Queue:
     return Queue(key, _name(f"lumen.journal.{key}"), arguments=arguments)
 
 
-def declare_aside(call: Call, channel: Any) -> None:
+def declare_aside(call: ChannelCall, channel: Any) -> None:
     """Make the places for what nobody could use: bounded, the oldest gives way."""
     for name, lifetime in ((DEAD, 7 * 24 * HOUR), (NOWHERE, HOUR)):
         limits = {"x-max-length": NEWEST, "x-max-length-bytes": GIGABYTE // 10, "x-message-ttl": lifetime}

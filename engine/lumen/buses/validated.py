@@ -4,7 +4,7 @@ import logging
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from lumen.buses.checking import Check, checks
+from lumen.buses.checking import BodyCheck, checks
 from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.language.routes import Route
@@ -34,7 +34,7 @@ class ValidatedBus:
 
     def __init__(self, bus: Bus, project: Project, on_refused: OnRefused = log_refusal) -> None:
         self._bus, self._on_refused = bus, on_refused
-        self._checks: dict[str, Check] = {}
+        self._checks: dict[str, BodyCheck] = {}
         self.use(project)
 
     def use(self, project: Project) -> None:

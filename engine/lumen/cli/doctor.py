@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
 from lumen.bus import connect
-from lumen.buses.probing import Probe
+from lumen.buses.probe import BrokerProbe
 from lumen.buses.validated import by_key
 from lumen.cli.attendance import Attendance
 from lumen.cli.reach import reach
@@ -67,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _broker(url: str, project: Project | None) -> Iterator[Finding]:
-    with closing(Probe(url)) as probe:
+    with closing(BrokerProbe(url)) as probe:
         yield Finding("broker", "ok", f"{probe.product} {probe.version} at {probe.address}, as `{probe.address.user}`")
         if not url.startswith("amqps:") and not probe.address.place.startswith(("127.", "localhost", "[::1]")):
             yield Finding("broker", "warning", "everybody on the network can read along: use amqps://")
@@ -93,7 +93,7 @@ def _embedded(options: argparse.Namespace, url: str, project: Project | None) ->
             yield from _life(bus, project)
 
 
-def _permissions(probe: Probe, project: Project) -> Iterator[Finding]:
+def _permissions(probe: BrokerProbe, project: Project) -> Iterator[Finding]:
     refused = False
     for key, route in by_key(project).items():
         reading = route.direction is Direction.IN
@@ -135,7 +135,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
     yield Finding("clocks", "warning" if abs(skew) > SKEW else "ok", text)
 
 
-def _obeying(probe: Probe, attendance: Attendance, project: Project) -> Iterator[Finding]:
+def _obeying(probe: BrokerProbe, attendance: Attendance, project: Project) -> Iterator[Finding]:
     """Whether who takes the robot's commands is alive."""
     route = project.routes.get(COMMAND)
     if route is None or not probe.served(key_of(project, COMMAND), route).readers:
@@ -149,7 +149,7 @@ def _obeying(probe: Probe, attendance: Attendance, project: Project) -> Iterator
         yield Finding("robot", "warning", text)
 
 
-def _served(probe: Probe, project: Project) -> Iterator[Finding]:
+def _served(probe: BrokerProbe, project: Project) -> Iterator[Finding]:
     """Which routes that must arrive somebody takes; only a motion module may be missing."""
     taken: list[str] = []
     for key, route in by_key(project).items():

@@ -68,9 +68,9 @@ def _faces(name: str, file: Path) -> int:
     """Delete the pictures that the eyes keep under that name; how many. Raises ModuleError where that can't be done."""
     if not file.exists():
         return 0
-    from lumen.modules.eyes.known import Known  # OpenCV takes its time to import
+    from lumen.modules.eyes.gallery import FaceGallery  # OpenCV takes its time to import
 
-    return Known(file, time.time).forget(name)
+    return FaceGallery(file, time.time).forget(name)
 
 
 def _visitor(row: dict[str, object]) -> str:

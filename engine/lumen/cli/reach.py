@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from lumen.bus import connect
-from lumen.buses.local import Address, LocalBus
+from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.errors import BusError
 from lumen.loading.packaged import find_project
 from lumen.loading.project import draft, read_files
@@ -43,7 +43,7 @@ def reach(options: argparse.Namespace) -> Reached:
         if settings and not settings.bus.startswith("memory:"):
             return Reached(connect(settings.bus), _command(root, None), settings.bus)
         raise BusError(f"no exhibition of {root} runs on this machine: start it with `lumen run`, or say --bus URL")
-    return Reached(LocalBus(Address.of(found)), _command(root, found))
+    return Reached(LocalBusClient(LocalAddress.of(found)), _command(root, found))
 
 
 def _running(root: Path) -> dict[str, Any] | None:

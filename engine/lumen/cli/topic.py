@@ -80,9 +80,9 @@ def _check_words(options: argparse.Namespace) -> None:
 
 def _check_right(broker: str, key: str) -> None:
     """Raises BusError where the broker does not let this user send under that key."""
-    from lumen.buses.probing import Probe  # with pika: only where there is a broker
+    from lumen.buses.probe import BrokerProbe  # with pika: only where there is a broker
 
-    with closing(Probe(broker)) as probe:
+    with closing(BrokerProbe(broker)) as probe:
         if reason := probe.writing(key):
             raise BusError(f"the broker at {probe.address} refuses to let us send `{key}`: {reason}")
 

@@ -10,7 +10,7 @@ from typing import Any
 from lumen.errors import BusError, ModuleError
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
-from lumen.ports import Bus, Message
+from lumen.ports import Bus, Handler, Message
 
 KEYS: Mapping[str, str] = {
     "image": "avatar.{robot}.data.image",
@@ -45,7 +45,6 @@ WAITING = 1_000
 REASONS = 50
 """How many kinds of trouble are told of at most."""
 
-Handler = Callable[[Message], None]
 _log = logging.getLogger(__name__)
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from lumen.errors import ModuleError
 from lumen.language.modules import SOCIAL
 from lumen.language.projects import Project
-from lumen.modules.module import Handler, Module
-from lumen.ports import Bus, Message
+from lumen.modules.module import Module
+from lumen.ports import Bus, Handler, Message
 
 FILE = "posts.jsonl"
 BYTES = 10_000_000

@@ -12,9 +12,9 @@ from itertools import count
 from typing import Any
 
 from lumen.buses.bodies import check_key, encode
-from lumen.buses.local.addresses import PATIENCE, Address
+from lumen.buses.local.address import PATIENCE, LocalAddress
 from lumen.buses.local.frames import BadFrameError, frame, framed, nonce, proof, proves, unframed
-from lumen.buses.local.leaving import Leaving
+from lumen.buses.local.sendbuffer import SendBuffer
 from lumen.errors import BusError
 from lumen.language.routes import Route
 from lumen.ports import Handler, Message, Refused
@@ -27,17 +27,17 @@ GONE = "the exhibition is gone"
 _log = logging.getLogger(__name__)
 
 
-class LocalBus:
+class LocalBusClient:
     """The bus behind a door; raises BusError where nobody opens it.
 
     A thread sends, one receives, one runs the handlers. Where a handler is too slow the oldest messages are dropped.
     When the exhibition ends, `gone` is set and nothing can be published any more.
     """
 
-    def __init__(self, address: Address) -> None:
+    def __init__(self, address: LocalAddress) -> None:
         self.gone = threading.Event()
         self._wire, self._read = _enter(address)
-        self._leaving, self._closed = Leaving(), False
+        self._leaving, self._closed = SendBuffer(), False
         self._handlers: dict[int, Handler] = {}
         self._answers: dict[int, tuple[threading.Event, list[str]]] = {}
         self._numbers, self._marked = count(), threading.Event()
@@ -175,7 +175,7 @@ class LocalBus:
                 _log.exception("a subscriber failed on `%s`", message.key)
 
 
-def _enter(address: Address) -> tuple[socket.socket, bytearray]:
+def _enter(address: LocalAddress) -> tuple[socket.socket, bytearray]:
     """A connection on which both sides have proved that they know the key, and what else has come on it."""
     buffer = bytearray()
     try:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from lumen.buses.local import Door
+from lumen.buses.local import LocalBusServer
 from lumen.cli.reloading.bulletin import Bulletin
 from lumen.cli.reloading.comeback import comeback
 from lumen.cli.reloading.records import Records
@@ -43,7 +43,7 @@ class Premises:
             _log.warning("the exhibition can't be resumed nor reached from other terminals: %s", error)
         self.records = Records(self.home)
         self.news: list[Bulletin] = []
-        self._door: Door | None = None
+        self._door: LocalBusServer | None = None
         self._bus = ""
 
     def begin(self, project: Project, files: Mapping[str, bytes]) -> None:
@@ -71,7 +71,7 @@ class Premises:
         self._bus = url
         if self.home and url.startswith("memory:"):
             try:
-                self._door = Door(bus, self.home.folder)
+                self._door = LocalBusServer(bus, self.home.folder)
             except OSError as error:
                 _log.warning("the exhibition can't be reached from other terminals: %s", error)
                 return

@@ -8,9 +8,9 @@ from lumen.language.modules import EARS
 from lumen.language.projects import Project
 from lumen.modules.ears.expected import expected
 from lumen.modules.ears.recogniser import Recogniser
-from lumen.modules.module import Handler, Module
+from lumen.modules.module import Module
 from lumen.modules.sound import sound_of
-from lumen.ports import Bus, Message
+from lumen.ports import Bus, Handler, Message
 
 
 class Ears(Module):

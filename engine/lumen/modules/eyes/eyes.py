@@ -9,13 +9,13 @@ from typing import Any
 from lumen.errors import ModuleError
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
-from lumen.modules.eyes.finding import Box, Finder
-from lumen.modules.eyes.known import DAY, SAMPLES, Known
+from lumen.modules.eyes.detector import Box, PersonDetector
+from lumen.modules.eyes.gallery import DAY, SAMPLES, FaceGallery
 from lumen.modules.eyes.pictures import Frame, frame_of
-from lumen.modules.eyes.sources import ROBOT, Source
+from lumen.modules.eyes.video import ROBOT, VideoSource
 from lumen.modules.eyes.window import Window
-from lumen.modules.module import Handler, Module
-from lumen.ports import Bus, Message
+from lumen.modules.module import Module
+from lumen.ports import Bus, Handler, Message
 
 FILE = "faces.npz"
 EVERY = 0.1
@@ -51,9 +51,9 @@ class Eyes(Module):
     ) -> None:
         super().__init__(project, bus, tell)
         options = self.settings.options
-        self._clock, self._finder, self._known = clock, Finder(), Known(file, clock)
+        self._clock, self._finder, self._known = clock, PersonDetector(), FaceGallery(file, clock)
         camera = options.get("camera", ROBOT)
-        self._source = None if camera == ROBOT else Source(camera, Path(project.root))
+        self._source = None if camera == ROBOT else VideoSource(camera, Path(project.root))
         self._every, self._keep = float(options.get("every", EVERY)), float(options.get("keep", KEEP)) * DAY
         self._looked = self._sought = self._seen = self._named = float("-inf")
         self._learning, self._left = "", 0

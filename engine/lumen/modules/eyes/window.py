@@ -5,7 +5,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ModuleError
-from lumen.modules.eyes.finding import Box
+from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.opencv import opencv
 
 if TYPE_CHECKING:

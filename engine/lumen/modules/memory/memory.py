@@ -10,9 +10,9 @@ from typing import Any
 from lumen.errors import ModuleError
 from lumen.language.modules import MEMORY
 from lumen.language.projects import Project
-from lumen.modules.memory.store import DAY, Entry, Store
-from lumen.modules.module import Handler, Module
-from lumen.ports import Bus, Message
+from lumen.modules.memory.store import DAY, JournalEntry, Store
+from lumen.modules.module import Module
+from lumen.ports import Bus, Handler, Message
 
 FILE = "memory.db"
 KEEP = 30.0
@@ -45,7 +45,7 @@ class Memory(Module):
     ) -> None:
         super().__init__(project, bus, tell)
         self._store, self._clock = Store(file), clock
-        self._pending: deque[Entry] = deque(maxlen=PENDING)
+        self._pending: deque[JournalEntry] = deque(maxlen=PENDING)
         self._visitor, self._expired = "", 0.0
         self._sampled: dict[str, float] = {}
         self._met: deque[str] = deque(maxlen=PENDING)
@@ -98,7 +98,7 @@ class Memory(Module):
         """An entry; `text` names the field of the body that says it in a word."""
         rest = {k: v for k, v in body.items() if k != text} if data is None else data
         self._pending.append(
-            Entry(self._clock(), self.project.robot, self._visitor, kind, str(body.get(text, "")), rest)
+            JournalEntry(self._clock(), self.project.robot, self._visitor, kind, str(body.get(text, "")), rest)
         )
 
     def _state(self, message: Message) -> None:

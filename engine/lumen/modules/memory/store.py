@@ -31,7 +31,7 @@ CREATE TABLE IF NOT EXISTS visitors (
 """
 
 
-class Entry(NamedTuple):
+class JournalEntry(NamedTuple):
     """A row of the journal: when [s since 1970], what kind of thing, who the visitor was (empty: unknown), what."""
 
     time: float
@@ -55,7 +55,7 @@ class Store:
         self._connection: sqlite3.Connection | None = None
         self._unclean = False
 
-    def add(self, entries: Sequence[Entry]) -> None:
+    def add(self, entries: Sequence[JournalEntry]) -> None:
         """Write all of them, or (ModuleError) none."""
         rows = [
             (e.time, _date(e.time), e.robot, _sound(e.visitor), _sound(e.kind), _sound(e.text), _json(e.data))

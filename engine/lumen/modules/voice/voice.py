@@ -6,9 +6,9 @@ from datetime import UTC, datetime
 from lumen.errors import ModuleError
 from lumen.language.modules import VOICE
 from lumen.language.projects import Project
-from lumen.modules.module import Handler, Module
+from lumen.modules.module import Module
 from lumen.modules.voice.espeak import espeak
-from lumen.ports import Bus, Message
+from lumen.ports import Bus, Handler, Message
 
 
 class Voice(Module):

@@ -11,7 +11,7 @@ ROBOT = "robot"
 """What `camera` says where the eyes are the robot's."""
 
 
-class Source:
+class VideoSource:
     """Frames of the webcam of that number, or of a video file in `root`; `read` gives the next one, None at the end.
 
     Raises ModuleError where there is no such camera or file.

@@ -37,7 +37,7 @@ class Box(NamedTuple):
         return 0.0 <= place[0] - self.x <= self.width and 0.0 <= place[1] - self.y <= self.height
 
 
-class Finder:
+class PersonDetector:
     """Finds faces and people. Raises ModuleError where the models can't be loaded."""
 
     def __init__(self, cascade: Path | None = None) -> None:

@@ -11,7 +11,7 @@ KEYS = 10_000
 _log = logging.getLogger(__name__)
 
 
-class Pace:
+class RateLimiter:
     """A bucket for each key that fills with `RATE` tokens a second; a message takes one, or is not handed on."""
 
     def __init__(self) -> None:

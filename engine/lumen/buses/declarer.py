@@ -13,7 +13,7 @@ OTHERWISE = 406
 """The broker's code for a queue that exists and was made otherwise."""
 
 
-class Maker:
+class QueueDeclarer:
     """Makes and unmakes queues; remembers, also over an outage, which ones a crash could still lose."""
 
     def __init__(self) -> None:

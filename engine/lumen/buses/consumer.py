@@ -9,10 +9,10 @@ from typing import Any
 
 from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
 
-from lumen.buses.addresses import Address
 from lumen.buses.bodies import MAX_BYTES
-from lumen.buses.links import Link, Outage
-from lumen.buses.making import Maker
+from lumen.buses.broker import BrokerAddress
+from lumen.buses.connection import BrokerConnection, OutageLog
+from lumen.buses.declarer import QueueDeclarer
 from lumen.buses.queues import NOWHERE, queue_of
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import BusError
@@ -30,19 +30,21 @@ LEAVING = 2.0
 _log = logging.getLogger(__name__)
 
 
-class Consuming(Link):
+class Consumer(BrokerConnection):
     """Hands every delivery to `receive`, which must not block.
 
     The broker sends `PREFETCH` messages ahead of each subscription and keeps a bounded number more: that bounds the
     memory on both sides. `handled` acknowledges.
     """
 
-    def __init__(self, address: Address, name: str, outage: Outage, receive: Callable[[Delivery], None]) -> None:
+    def __init__(
+        self, address: BrokerAddress, name: str, outage: OutageLog, receive: Callable[[Delivery], None]
+    ) -> None:
         super().__init__(address, name, outage)
         self._receive = receive
         self._subscriptions: list[Subscription] = []
         self._prepared: dict[str, Subscription] = {}
-        self._maker = Maker()
+        self._maker = QueueDeclarer()
         self._changing = threading.Lock()
         self._hurried = False
         self._epoch = 0

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import pika
 from pika.exceptions import AMQPError, ChannelClosedByBroker
 
-from lumen.buses.addresses import Address
-from lumen.buses.flow import Flow
+from lumen.buses.broker import BrokerAddress
+from lumen.buses.polled import PolledConnection
 from lumen.buses.queues import EXCHANGE, queue_of
 from lumen.errors import BusError
 from lumen.language.routes import Route
@@ -17,21 +17,21 @@ NOBODY = "lumen doctor"
 REFUSED = 403
 
 
-class Served(NamedTuple):
+class QueueStatus(NamedTuple):
     """How many messages wait in a route's queue, and how many read it; both None where there is no such queue."""
 
     waiting: int | None = None
     readers: int | None = None
 
 
-class Probe:
+class BrokerProbe:
     """A connection that asks; raises BusError, saying what to do, where the broker can't be used."""
 
     def __init__(self, url: str) -> None:
-        self.address = Address(url)
+        self.address = BrokerAddress(url)
         try:
             self._connection = pika.BlockingConnection(self.address.parameters)
-            flow = Flow(self.address.parameters)
+            flow = PolledConnection(self.address.parameters)
         except (AMQPError, OSError) as error:
             raise self.address.explain(error) from error
         self.product, self.version = (_text(flow.server.get(name)) for name in ("product", "version"))
@@ -65,14 +65,14 @@ class Probe:
             return str(error.reply_text) if error.reply_code == REFUSED else ""
         raise BusError(f"the broker at {self.address} took a message that claims to be from `{NOBODY}`")
 
-    def served(self, key: str, route: Route) -> Served:
+    def served(self, key: str, route: Route) -> QueueStatus:
         """How the queue of a route that must arrive is doing."""
         try:
             with self._channel() as channel:
                 found = channel.queue_declare(queue_of(key, route).name, passive=True).method
         except ChannelClosedByBroker:
-            return Served()
-        return Served(found.message_count, found.consumer_count)
+            return QueueStatus()
+        return QueueStatus(found.message_count, found.consumer_count)
 
     def close(self) -> None:
         self._connection.close()

@@ -25,7 +25,7 @@ OLDEST = (3, 10)
 logging.getLogger("pika").setLevel(logging.CRITICAL)  # it logs a traceback for every failure that we report ourselves
 
 
-class Address:
+class BrokerAddress:
     """A broker's URL, taken apart; `str` shows it without the password."""
 
     def __init__(self, url: str) -> None:

@@ -6,7 +6,7 @@ from collections import deque
 BYTES = 64 * 1024 * 1024
 
 
-class Leaving:
+class SendBuffer:
     """Any thread puts, one thread takes."""
 
     def __init__(self) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import pika
 from pika.exceptions import AMQPChannelError, AMQPError, ChannelClosedByBroker
 
-from lumen.buses.addresses import Address
+from lumen.buses.broker import BrokerAddress
 
 FIRST_DELAY = 0.2
 LONGEST_DELAY = 10.0
@@ -20,13 +20,13 @@ STEADY = 5.0
 _log = logging.getLogger(__name__)
 
 
-class Outage:
+class OutageLog:
     """One broker as all links of a bus see it: its going and its coming back are told once, whoever notices.
 
     The `repr` of every failure is logged, those after the first of an outage, and repeated ones, at level INFO.
     """
 
-    def __init__(self, address: Address) -> None:
+    def __init__(self, address: BrokerAddress) -> None:
         self._address = address
         self._away: set[str] = set()
         self._said: set[str] = set()
@@ -50,14 +50,14 @@ class Outage:
             _log.warning("the broker at %s is back", self._address)
 
 
-class Link:
+class BrokerConnection:
     """Opens, serves and reopens; a subclass says what there is to do (`begin`, `serve`, `finish`).
 
     All of pika happens on the link's own thread. A first failure is raised by `open`; later ones are logged, and the
     link tries again, waiting twice as long each time, up to 10 s, and at random between half and all of that.
     """
 
-    def __init__(self, address: Address, name: str, outage: Outage) -> None:
+    def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
         self.address, self.name, self._outage = address, name, outage
         self.connection: Any = None
         self.channel: Any = None

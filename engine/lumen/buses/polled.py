@@ -8,8 +8,8 @@ import pika
 from pika.adapters.select_connection import IOLoop
 from pika.exceptions import AMQPChannelError, AMQPConnectionError, AMQPError, ChannelClosedByBroker
 
-from lumen.buses.addresses import PATIENCE
-from lumen.buses.queues import Call
+from lumen.buses.broker import PATIENCE
+from lumen.buses.queues import ChannelCall
 
 TOGETHER = 8 * 1024
 """From how many bytes on frames leave at once; what is less leaves at the next turn."""
@@ -36,7 +36,7 @@ class _Gathering(pika.SelectConnection):  # type: ignore[misc]  # pika says noth
             self.flush()
 
 
-class Flow:
+class PolledConnection:
     """An open connection and its channel. Raises what pika raises, where it can't be opened or is lost.
 
     Unlike `BlockingConnection` it waits neither for each message to leave nor for each confirm to come.
@@ -67,7 +67,7 @@ class Flow:
         self.until(lambda: opened)
         return self.channel
 
-    def attempt(self, work: Callable[[Call, Any], None]) -> str:
+    def attempt(self, work: Callable[[ChannelCall, Any], None]) -> str:
         """Do something on a channel of its own, which closes where the broker refuses; empty, or why it does."""
         opened: list[Any] = []
         closed: list[BaseException] = []

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ModuleError
-from lumen.modules.eyes.finding import Box
+from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.opencv import opencv
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ MOST = 500
 DAY = 86_400.0
 
 
-class Known:
+class FaceGallery:
     """The faces that have names, in `file` or, without one, in this process only. What its owner alone may read.
 
     It holds pictures of people: `forget` deletes those of a name, `expire` those that were made before a time.

@@ -19,7 +19,7 @@ PATIENCE = 5.0
 
 
 @dataclass(frozen=True)
-class Address:
+class LocalAddress:
     """`path` of a socket, or where there are none a `port` on loopback; `key` is what both sides have to know."""
 
     path: str = ""
@@ -27,10 +27,10 @@ class Address:
     key: str = ""
 
     @staticmethod
-    def of(data: Mapping[str, Any]) -> "Address":
+    def of(data: Mapping[str, Any]) -> "LocalAddress":
         """The address in what a file says; raises BusError where it holds none."""
         try:
-            return Address(str(data["path"]), int(data["port"]), str(data["key"]))
+            return LocalAddress(str(data["path"]), int(data["port"]), str(data["key"]))
         except (KeyError, TypeError, ValueError) as error:
             raise BusError(f"this is no address: {error!r}") from None
 
@@ -55,12 +55,12 @@ class Address:
                     os.rmdir(Path(self.path).parent)
 
 
-def listen(folder: Path) -> tuple[socket.socket, Address]:
+def listen(folder: Path) -> tuple[socket.socket, LocalAddress]:
     """A socket that listens in that folder, and its address; raises OSError where there can be none."""
     key = secrets.token_hex(32)
     if not hasattr(socket, "AF_UNIX"):
         listener = socket.create_server(("127.0.0.1", 0))
-        return listener, Address(port=listener.getsockname()[1], key=key)
+        return listener, LocalAddress(port=listener.getsockname()[1], key=key)
     if len(os.fsencode(folder / NAME)) > LONGEST:
         folder = Path(tempfile.mkdtemp(prefix="lumen-door-"))
     path = folder / NAME
@@ -74,4 +74,4 @@ def listen(folder: Path) -> tuple[socket.socket, Address]:
     except OSError:
         listener.close()
         raise
-    return listener, Address(path=str(path), key=key)
+    return listener, LocalAddress(path=str(path), key=key)

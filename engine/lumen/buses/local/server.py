@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.buses.bodies import encode
-from lumen.buses.local import addresses
+from lumen.buses.local import address as addresses
 from lumen.buses.local.frames import BadFrameError, frame, framed, nonce, proof, proves, unframed
 from lumen.errors import BusError
 from lumen.ports import Bus, Message
@@ -33,7 +33,7 @@ MARK = "lumen.door.mark"
 _log = logging.getLogger(__name__)
 
 
-class Guest:
+class ClientConnection:
     """A process that has come in: what it subscribed to, and what waits for it."""
 
     def __init__(self, wire: socket.socket) -> None:
@@ -66,7 +66,7 @@ class Guest:
                 self.sent = 0
 
 
-class Door:
+class LocalBusServer:
     """Listens in `folder` until closed, and lets everybody who knows the key onto the bus.
 
     `address` is where. Raises OSError where nothing can listen there.
@@ -82,7 +82,7 @@ class Door:
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._listener, selectors.EVENT_READ)
         self._selector.register(self._woken, selectors.EVENT_READ)
-        self._guests: dict[socket.socket, Guest] = {}
+        self._guests: dict[socket.socket, ClientConnection] = {}
         self._marks: dict[str, Callable[[], None]] = {}
         self._undo = bus.subscribe(MARK, self._marked)
         self._ending = False
@@ -123,11 +123,11 @@ class Door:
                 wire.close()
                 return
             wire.setblocking(False)
-            guest = self._guests[wire] = Guest(wire)
+            guest = self._guests[wire] = ClientConnection(wire)
             self._selector.register(wire, selectors.EVENT_READ)
             guest.send(frame("prove", guest.asked))
 
-    def _hear(self, guest: Guest) -> None:
+    def _hear(self, guest: ClientConnection) -> None:
         try:
             data = guest.wire.recv(CHUNK)
             guest.read += data
@@ -143,7 +143,7 @@ class Door:
             _log.warning("a process that spoke no sense to the exhibition was shown out: %s", error)
             self._leave(guest)
 
-    def _take(self, guest: Guest, words: list[Any]) -> None:
+    def _take(self, guest: ClientConnection, words: list[Any]) -> None:
         """Do what a guest asks; a ValueError or TypeError says that it makes no sense."""
         match words:
             case ["proof", given, asked] if not guest.known and proves(given, self.address.key, "guest", guest.asked):
@@ -166,7 +166,7 @@ class Door:
             case _:
                 raise ValueError(f"nobody understands `{str(words[0])[:40]}`")
 
-    def _subscribe(self, guest: Guest, number: int, pattern: str) -> None:
+    def _subscribe(self, guest: ClientConnection, number: int, pattern: str) -> None:
         if number in guest.undo or len(guest.undo) >= PATTERNS:
             raise ValueError("too many subscriptions, or one twice")
 
@@ -183,7 +183,7 @@ class Door:
             guest.send(frame("subscribed", number, str(error)))
 
     def _publish(
-        self, guest: Guest, key: str, body: Any, reply_to: str, correlation_id: str, ttl: float | None
+        self, guest: ClientConnection, key: str, body: Any, reply_to: str, correlation_id: str, ttl: float | None
     ) -> None:
         try:
             self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl)
@@ -200,7 +200,7 @@ class Door:
         with suppress(OSError):
             self._wake.send(b"!")
 
-    def _serve(self, guest: Guest) -> None:
+    def _serve(self, guest: ClientConnection) -> None:
         """Send on what has arrived for a guest; forget one that is dead, or that never said who it is."""
         try:
             while guest.arrived:
@@ -222,7 +222,7 @@ class Door:
         events = selectors.EVENT_READ | (selectors.EVENT_WRITE if guest.leaving else 0)
         self._selector.modify(guest.wire, events)
 
-    def _leave(self, guest: Guest) -> None:
+    def _leave(self, guest: ClientConnection) -> None:
         if self._guests.pop(guest.wire, None) is None:
             return
         for undo in guest.undo.values():

@@ -6,11 +6,11 @@ from typing import Any
 
 import pika
 
-from lumen.buses.addresses import Address
-from lumen.buses.flow import Flow
-from lumen.buses.links import Link, Outage
-from lumen.buses.outbox import Outbox, Parcel
-from lumen.buses.queues import ASIDE, NOWHERE, Call, Queue, declare_aside
+from lumen.buses.broker import BrokerAddress
+from lumen.buses.connection import BrokerConnection, OutageLog
+from lumen.buses.outbox import Outbox, OutgoingMessage
+from lumen.buses.polled import PolledConnection
+from lumen.buses.queues import ASIDE, NOWHERE, ChannelCall, Queue, declare_aside
 from lumen.language.diagnostics import did_you_mean
 
 WINDOW = 1_000
@@ -22,7 +22,7 @@ PERSISTENT = 2
 _log = logging.getLogger(__name__)
 
 
-class Publishing(Link):
+class Publisher(BrokerConnection):
     """Sends what is in the outbox; what is there when the broker is away waits for it to come back.
 
     At most `WINDOW` messages are under way without the broker's word that it has them. When the connection is lost,
@@ -30,19 +30,19 @@ class Publishing(Link):
     keys. `journals` are the queues that keep what goes out until a module comes for it.
     """
 
-    def __init__(self, address: Address, name: str, outage: Outage) -> None:
+    def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
         super().__init__(address, name, outage)
         self.outbox = Outbox(self._awaken)
         self.known: tuple[str, ...] = ()
         self.journals: Mapping[str, Queue] = {}
         self._declared: set[str] = set()
         self._refused: set[str] = set()
-        self._window: dict[int, Parcel] = {}
+        self._window: dict[int, OutgoingMessage] = {}
         self._bytes = self._number = self._dropped = self._late = 0
         self._told: set[str] = set()
 
-    def connect(self) -> Flow:
-        return Flow(self.address.parameters)
+    def connect(self) -> PolledConnection:
+        return PolledConnection(self.address.parameters)
 
     def open_channel(self) -> Any:
         return self.connection.open_channel()
@@ -77,7 +77,7 @@ class Publishing(Link):
     def finish(self) -> None:
         """There is nothing left to wait for."""
 
-    def disconnect(self, connection: Flow) -> None:
+    def disconnect(self, connection: PolledConnection) -> None:
         lost, self._window, self._bytes = self._window, {}, 0
         self.outbox.put_back([parcel for parcel in lost.values() if parcel.id])
         connection.close()
@@ -101,7 +101,7 @@ class Publishing(Link):
             return True
         return not busy and self.outbox.sleep() and not (self.ending.is_set() and not self._window)
 
-    def _send(self, parcel: Parcel) -> None:
+    def _send(self, parcel: OutgoingMessage) -> None:
         properties = pika.BasicProperties(
             content_type=parcel.content_type,
             content_encoding="utf-8",
@@ -137,7 +137,7 @@ class Publishing(Link):
         self.lament(key)
         if self.aside:
             headers = {"reason": f"nobody takes `{key}`"}
-            self.outbox.put(Parcel(NOWHERE, key, body, properties.content_type or "", headers=headers))
+            self.outbox.put(OutgoingMessage(NOWHERE, key, body, properties.content_type or "", headers=headers))
 
     def stray(self, key: str) -> None:
         """Somebody sent a message under this key, and nobody took it: that is worth a word where no route has it."""
@@ -153,7 +153,7 @@ class Publishing(Link):
         hint = f": {did_you_mean(key, others)}" if others else ""
         _log.warning("nobody takes what is sent on `%s`%s", key, hint if "mean" in hint else "")
 
-    def _make(self, name: str, work: Callable[[Call, Any], None]) -> None:
+    def _make(self, name: str, work: Callable[[ChannelCall, Any], None]) -> None:
         """Make something on the broker once; where it refuses, as it does to a module with few rights, all goes on."""
         if name in self._declared or name in self._refused:
             return

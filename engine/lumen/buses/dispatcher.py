@@ -8,8 +8,8 @@ import time
 from collections.abc import Callable
 
 from lumen.buses.bodies import JSON, decode
-from lumen.buses.pace import Pace
 from lumen.buses.queues import NOWHERE
+from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.ports import Message, Refused
 
@@ -19,7 +19,7 @@ REMEMBERED = 10_000
 _log = logging.getLogger(__name__)
 
 
-class Dispatching:
+class Dispatcher:
     """Decodes deliveries and hands them to their handlers in the order received.
 
     `handled` is told of each delivery that is over, `refused` of one that nobody could use, with the reason. Of
@@ -34,7 +34,7 @@ class Dispatching:
         self._marks: set[str] = set()
         self._marked = threading.Event()
         self._done: dict[tuple[int, str], None] = {}
-        self._pace = Pace()
+        self._pace = RateLimiter()
         self._thread = threading.Thread(target=self._run, name="lumen-bus-handlers", daemon=True)
         self._thread.start()
 
