@@ -1,8 +1,8 @@
 """An embedded bus, reached from other processes on the same machine.
 
-Who runs an exhibition runs a `LocalBusServer`; whoever wants to talk to it connects a `LocalBusClient`. Both speak JSON in
-frames over a socket that only the same user can open (a file of mode 0600, or loopback where there are no such
-sockets), after each has proved that it knows the key of the address. Nothing that comes in is ever executed.
+Whoever runs an exhibition lets a `LocalBusServer` listen; a `LocalBusClient` connects. They speak JSON in frames over
+a socket that only the same user can open (a file of mode 0600, or loopback where there are no such sockets), after each
+has proved that it knows the key of the address. Nothing that comes in is ever executed.
 """
 
 from lumen.buses.local.address import LocalAddress
