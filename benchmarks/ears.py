@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 import lumen
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.modules.ears.expected import expected
 from lumen.modules.ears.sphinx import Sphinx, resampled
 from lumen.modules.sound import Sound
@@ -72,7 +72,7 @@ def spoken(sentences: str, language: str, noise: float | None) -> list[Spoken]:
     return found
 
 
-def heard(machine: Machine, text: str) -> frozenset[str]:
+def heard(machine: MachineDefinition, text: str) -> frozenset[str]:
     """Which phrases and questions of a behaviour stand in a text, in any language."""
     rows = {f"{table} {i}": row.phrases for table, rows in machine.answers.items() for i, row in enumerate(rows)}
     found = {**machine.phrases, **rows}.items()
@@ -94,7 +94,9 @@ def wrong(text: str, found: str) -> int:
     return row[-1]
 
 
-def line(machine: Machine, recognise: Callable[[Sound], str], said: Sequence[Spoken], talk: Sequence[Spoken]) -> str:
+def line(
+    machine: MachineDefinition, recognise: Callable[[Sound], str], said: Sequence[Spoken], talk: Sequence[Spoken]
+) -> str:
     """How well they were understood, and what that took."""
     begin = time.process_time()
     found = [recognise(one.sound) for one in (*said, *talk)]

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from lumen.language.machines import Kind, Machine, State
+from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.motions import Key, Motion
 from lumen.language.projects import Project
 from lumen.language.robots import Body, Camera, Joint
@@ -52,7 +52,7 @@ def project(**changes: object) -> Project:
     command = Route("command", "avatar.{robot}.command", Direction.IN, "command")
     fields: dict[str, object] = {
         "root": "", "name": "test", "robot": "NAO", "body": BODY, "hall": "", "behavior": "tour",
-        "behaviors": {"tour": Machine("tour", {"": State("", Kind.ATOMIC)})},
+        "behaviors": {"tour": MachineDefinition("tour", {"": State("", StateKind.ATOMIC)})},
         "motions": {n: Motion(n, 1.0, {"HeadYaw": (Key(1.0, 0.1),)}) for n in ("goodbye", "dance", "sing", "photo")},
         "routes": {**out, "face": face, "command": command},
         "messages": messages(),

@@ -6,8 +6,19 @@ from typing import Any, Self
 
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import UsageError
-from lumen.interpreters.statechart import Snapshot, Step, Timing, due, elapse, freeze, initial, retimed, step, thaw
-from lumen.interpreters.statechart.parts import plain
+from lumen.interpreters.statechart import (
+    Snapshot,
+    Step,
+    TimerPolicy,
+    deserialize,
+    due,
+    elapse,
+    initial,
+    retimed,
+    serialize,
+    step,
+)
+from lumen.interpreters.statechart.json_cursor import plain
 from lumen.language import machines
 from lumen.language.events import Event
 from lumen.loading.standalone import machine_from_dict, machine_from_file
@@ -16,7 +27,7 @@ from lumen.ports import Clock
 __all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock", "due", "initial", "step"]
 
 
-class Machine(machines.Machine):
+class Machine(machines.MachineDefinition):
     """A statechart on its own, without a project around it."""
 
     @classmethod
@@ -48,7 +59,7 @@ class Interpreter:
 
     def __init__(
         self,
-        machine: machines.Machine,
+        machine: machines.MachineDefinition,
         clock: Clock | None = None,
         *,
         input: Mapping[str, Any] | None = None,
@@ -68,10 +79,10 @@ class Interpreter:
     @classmethod
     def restore(
         cls,
-        machine: machines.Machine,
+        machine: machines.MachineDefinition,
         snapshot: Mapping[str, Any],
         clock: Clock | None = None,
-        timers: Timing = "deadline",
+        timers: TimerPolicy = "deadline",
         *,
         observe: Callable[[Step], None] = lambda _: None,
     ) -> Self:
@@ -83,7 +94,7 @@ class Interpreter:
         """
         if timers not in ("deadline", "remaining", "restart"):
             raise UsageError(f"timers can't be `{timers}`: write `deadline`, `remaining` or `restart`")
-        thawed = thaw(machine, snapshot)
+        thawed = deserialize(machine, snapshot)
         it = cls(machine, VirtualClock(thawed.at) if clock is None else clock, observe=observe)
         it._snapshot = retimed(thawed, it.clock.now(), timers)
         it.wake()
@@ -136,7 +147,7 @@ class Interpreter:
         Raises SnapshotError where an event brought something into the context that JSON can't hold.
         """
         now = self._now
-        return freeze(self.machine, now._replace(at=max(now.at, self.clock.now())))
+        return serialize(self.machine, now._replace(at=max(now.at, self.clock.now())))
 
     @property
     def _now(self) -> Snapshot:

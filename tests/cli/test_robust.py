@@ -12,7 +12,7 @@ from lumen.cli.cast import Cast
 from lumen.cli.show import Show
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
-from lumen.interpreters.migration import Plan
+from lumen.interpreters.migration import MigrationPlan
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
@@ -47,7 +47,7 @@ def live(show: Show, seconds: float) -> None:
 
 def reload(show: Show, project: Project) -> None:
     plan = show.plan(project)
-    assert isinstance(plan, Plan)
+    assert isinstance(plan, MigrationPlan)
     show.apply(project, plan)
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from lumen.cli.reloading.jury import Here
 from lumen.errors import BusError, LumenError
-from lumen.interpreters.migration import Plan, Wait
+from lumen.interpreters.migration import MigrationDelay, MigrationPlan
 from lumen.language.events import Event
 from lumen.runtime import runtime
 from tests.live.shows import Live
@@ -101,8 +101,8 @@ def test_where_there_is_no_way_back_it_begins_anew(live: Live, monkeypatch: pyte
     live.speak("my name is Ada", "how_are_you")
     live.edit(SORRY, PARDON)
     live.until_told("in force")
-    monkeypatch.setattr(live.show, "plan", lambda *_, **__: Wait("no way", "how_are_you"))
+    monkeypatch.setattr(live.show, "plan", lambda *_, **__: MigrationDelay("no way", "how_are_you"))
     commands = live.show.exhibition.rescue(ZeroDivisionError("a fault"))
     assert commands
     assert "idle" in live.states
-    assert isinstance(live.show.exhibition.plan(live.show.exhibition.project), Plan)
+    assert isinstance(live.show.exhibition.plan(live.show.exhibition.project), MigrationPlan)

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from lumen.interpreters.migration import Plan
+from lumen.interpreters.migration import MigrationPlan
 from lumen.interpreters.statechart import Step
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -67,6 +67,6 @@ def _replayed(first: Project, epoch: float, trace: Any, live: Live, hashes: list
             runtime.tick(now, [Event(*event) for event in what])
         else:
             plan = runtime.plan(bundles[what], now)
-            assert isinstance(plan, Plan)
+            assert isinstance(plan, MigrationPlan)
             runtime.apply(bundles[what], plan.snapshot)
     return again

@@ -16,7 +16,7 @@ import lumen
 from lumen.cli.main import main
 from lumen.cli.reloading.comeback import LATELY
 from lumen.cli.reloading.premises import Premises
-from lumen.interpreters.statechart import freeze
+from lumen.interpreters.statechart import serialize
 from lumen.language.commands import Track
 from lumen.loading.files import read_files
 from lumen.runtime.home import DOOR, Home, home_of
@@ -127,7 +127,7 @@ def test_only_what_is_new_is_written(copy: Path) -> None:
     assert keeper.count == 1
     kept = keeper.kept()
     assert kept
-    assert kept.frozen == freeze(show.project.machine, show.runtime.snapshot)
+    assert kept.frozen == serialize(show.project.machine, show.runtime.snapshot)
     show.tracking.switch(Track("head"))
     one.show.close()
 

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from lumen.interpreters.migration import Plan, Refusal, Wait, migrate
-from lumen.interpreters.statechart import freeze, initial, step, thaw
+from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal, migrate
+from lumen.interpreters.statechart import deserialize, initial, serialize, step
 from lumen.language.commands import Cancel, Log, Say, Start
 from lumen.language.events import Event
 from lumen.statechart import Machine
@@ -35,10 +35,10 @@ ASKING = initial(OLD).snapshot
 RESTING = step(OLD, ASKING, Event("done.command.d1@quiz", None, 0.5)).snapshot
 
 
-def planned(new: Machine, **how: Any) -> Plan:
+def planned(new: Machine, **how: Any) -> MigrationPlan:
     verdict = migrate(OLD, new, ASKING, at=1.0, **how)
-    assert isinstance(verdict, Plan), verdict
-    assert thaw(new, freeze(new, verdict.snapshot)) == verdict.snapshot
+    assert isinstance(verdict, MigrationPlan), verdict
+    assert deserialize(new, serialize(new, verdict.snapshot)) == verdict.snapshot
     return verdict
 
 
@@ -66,13 +66,13 @@ def test_its_own_file_may_change_by_the_same_rules() -> None:
 def test_what_it_does_is_waited_for_where_it_changed_and_cancelled_with_now() -> None:
     ask = {**QUIZ["states"]["ask"], "do": {"play": "x"}}
     changed = tour({**QUIZ, "states": {**QUIZ["states"], "ask": ask}})
-    assert migrate(OLD, changed, ASKING) == Wait("what `ask` is doing has changed", "ask")
+    assert migrate(OLD, changed, ASKING) == MigrationDelay("what `ask` is doing has changed", "ask")
     assert planned(changed, now=True).leaving == (Cancel("d1@quiz"),)
 
 
 def test_a_state_of_it_that_is_gone_needs_an_on_reload_in_its_file() -> None:
     gone = {**QUIZ, "states": {"end": QUIZ["states"]["end"], "hint": {"on": {"more": "end"}}}}
-    assert isinstance(migrate(OLD, tour(gone), ASKING), Wait)
+    assert isinstance(migrate(OLD, tour(gone), ASKING), MigrationDelay)
     verdict = migrate(OLD, tour(gone), ASKING, now=True)
     assert isinstance(verdict, Refusal)
     assert verdict.behavior == "quiz"
@@ -85,7 +85,9 @@ def test_a_state_of_it_that_is_gone_needs_an_on_reload_in_its_file() -> None:
 
 def test_another_behaviour_in_its_place_begins_when_it_has_ended() -> None:
     other = tour(invoke={**INVOKE, "id": "quiz", "behavior": "other"})
-    assert migrate(OLD, other, ASKING) == Wait("`quiz` is not invoked any more, and is still doing something", "quiz")
+    assert migrate(OLD, other, ASKING) == MigrationDelay(
+        "`quiz` is not invoked any more, and is still doing something", "quiz"
+    )
     plan = planned(other, now=True)
     assert plan.leaving == (Log("asked"), Cancel("d1@quiz"))
     assert plan.entering == (Start("d2@quiz", Say("Well?")),)
@@ -94,5 +96,5 @@ def test_another_behaviour_in_its_place_begins_when_it_has_ended() -> None:
 def test_one_that_is_new_in_an_active_state_begins() -> None:
     none = tour(invoke=[])
     verdict = migrate(none, OLD, initial(none).snapshot)
-    assert isinstance(verdict, Plan)
+    assert isinstance(verdict, MigrationPlan)
     assert verdict.entering == (Start("d1@quiz", Say("Well?")),)

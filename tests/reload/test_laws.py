@@ -8,10 +8,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.migration import Plan, Refusal, Wait, migrate
-from lumen.interpreters.statechart import Snapshot, freeze, initial, step, thaw
+from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal, migrate
+from lumen.interpreters.statechart import Snapshot, deserialize, initial, serialize, step
 from lumen.language.commands import Log
-from lumen.language.machines import Kind
+from lumen.language.machines import StateKind
 from lumen.statechart import Machine
 from tests.reload.editing import Happenings, built, edits, happen, snapshots, states_of
 from tests.statechart.oracle.generating import Data, happenings, machine_data
@@ -25,16 +25,16 @@ PATIENT = settings(
 
 def assert_sound(machine: Machine, snapshot: Snapshot) -> None:
     """A legal configuration, with nothing waiting for a state that is not active; and it can be stored."""
-    assert thaw(machine, freeze(machine, snapshot)) == snapshot
+    assert deserialize(machine, serialize(machine, snapshot)) == snapshot
     for inner, stands in running(machine, snapshot):
         names = stands.configuration
         active = {path for path, state in inner.states.items() if not path or state.name in names}
         for path in active:
             state = inner.states[path]
-            children = [child for child in state.children if inner.states[child].kind is not Kind.HISTORY]
+            children = [child for child in state.children if inner.states[child].kind is not StateKind.HISTORY]
             within = [child for child in children if child in active]
             assert path == "" or state.parent in active
-            assert len(within) == {Kind.COMPOUND: 1, Kind.PARALLEL: len(children)}.get(state.kind, 0)
+            assert len(within) == {StateKind.COMPOUND: 1, StateKind.PARALLEL: len(children)}.get(state.kind, 0)
         assert stands.doing.keys() <= active
         assert {timer.state for timer in stands.timers if timer.kind != "send"} <= active
         assert {child.state for child in stands.invoked.values()} <= active
@@ -57,10 +57,10 @@ def legal(data: st.DataObject, old: Data, events: Happenings, later: Happenings)
                 case Refusal(reason, hint):
                     assert reason
                     assert hint
-                case Wait(_, what):
+                case MigrationDelay(_, what):
                     assert verdict is first
                     assert any(before.states[path].name == what for path in snapshot.doing)
-                case Plan():
+                case MigrationPlan():
                     assert_sound(after, verdict.snapshot)
                     with suppress(LumenError):
                         goes_on(after, verdict.snapshot, later)
@@ -82,7 +82,7 @@ def invoked_legal(before: Machine, after: Machine, events: list[str]) -> None:
     for taken in run(before, events):
         for now in (False, True):
             verdict = migrate(before, after, taken.snapshot, now=now)
-            if isinstance(verdict, Plan):
+            if isinstance(verdict, MigrationPlan):
                 assert_sound(after, verdict.snapshot)
 
 
@@ -91,7 +91,7 @@ def invoked_legal(before: Machine, after: Machine, events: list[str]) -> None:
 def test_the_same_content_does_nothing(data: Data, events: Happenings) -> None:
     before, after = Machine.from_dict(data), Machine.from_dict(deepcopy(data))
     for snapshot in snapshots(before, events):
-        assert migrate(before, after, snapshot, at=snapshot.at + 1.0) == Plan(snapshot)
+        assert migrate(before, after, snapshot, at=snapshot.at + 1.0) == MigrationPlan(snapshot)
 
 
 @settings(PATIENT, max_examples=15)
@@ -103,9 +103,9 @@ def test_what_differs_elsewhere_changes_nothing(data: Data, events: Happenings) 
     before, after = Machine.from_dict(data), Machine.from_dict(more)
     for snapshot in snapshots(before, events):
         there = migrate(before, after, snapshot)
-        if isinstance(there, Plan) and not there.entered:
-            assert there == Plan(snapshot._replace(context={**snapshot.context, "more": 1}))
-            assert migrate(after, before, there.snapshot, back=True) == Plan(snapshot)
+        if isinstance(there, MigrationPlan) and not there.entered:
+            assert there == MigrationPlan(snapshot._replace(context={**snapshot.context, "more": 1}))
+            assert migrate(after, before, there.snapshot, back=True) == MigrationPlan(snapshot)
 
 
 @settings(PATIENT, max_examples=30)
@@ -114,10 +114,10 @@ def test_there_and_back_restores_what_did_not_change(data: st.DataObject, old: D
     before, after = Machine.from_dict(old), built(data.draw(edits(old)))
     for snapshot in snapshots(before, events) if after else ():
         there = migrate(before, after, snapshot, at=snapshot.at)
-        if not isinstance(there, Plan) or there.exited or there.entered:
+        if not isinstance(there, MigrationPlan) or there.exited or there.entered:
             continue
         again = migrate(after, before, there.snapshot, at=snapshot.at, back=True)
-        if isinstance(again, Plan) and not again.exited and not again.entered:
+        if isinstance(again, MigrationPlan) and not again.exited and not again.entered:
             assert again.snapshot.configuration == snapshot.configuration
             assert again.snapshot.context == snapshot.context
             assert again.snapshot.generator == snapshot.generator
@@ -144,7 +144,7 @@ def test_what_is_left_runs_its_old_exit_actions_from_the_inside(
     names = {state.name: path for path, state in before.states.items()}
     for snapshot in snapshots(before, events) if after else ():
         verdict = migrate(before, after, snapshot)
-        if isinstance(verdict, Plan):
+        if isinstance(verdict, MigrationPlan):
             said = [c.text.removeprefix("old ") for c in verdict.leaving if isinstance(c, Log)]
             order = [path for path in reversed(before.states) if path in said]
             assert said == order
@@ -158,7 +158,7 @@ def test_deadlines_are_kept(data: st.DataObject, old: Data, events: Happenings) 
     before, after = Machine.from_dict(old), built(data.draw(edits(old)))
     for snapshot in snapshots(before, events) if after else ():
         verdict = migrate(before, after, snapshot, at=snapshot.at + 0.02)
-        if isinstance(verdict, Plan) and not verdict.exited and not verdict.entered:
+        if isinstance(verdict, MigrationPlan) and not verdict.exited and not verdict.entered:
             dues = {(t.kind, t.due, t.delay) for t in snapshot.timers}
             set_at = {round(t.due - t.delay, 9) for t in snapshot.timers} | {round(snapshot.at + 0.02, 9)}
             for timer in verdict.snapshot.timers:
@@ -171,9 +171,9 @@ def test_deadlines_are_kept(data: st.DataObject, old: Data, events: Happenings) 
 def test_a_plan_is_pure(data: st.DataObject, old: Data, events: Happenings) -> None:
     before, after = Machine.from_dict(old), built(data.draw(edits(old)))
     for snapshot in snapshots(before, events) if after else ():
-        stored = freeze(before, snapshot)
+        stored = serialize(before, snapshot)
         assert migrate(before, after, snapshot, now=True) == migrate(before, after, snapshot, now=True)
-        assert freeze(before, snapshot) == stored
+        assert serialize(before, snapshot) == stored
         assert initial(before) == initial(Machine.from_dict(old))
 
 

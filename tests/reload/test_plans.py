@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from lumen.interpreters.migration import Plan, Refusal, Verdict, Wait, migrate
-from lumen.interpreters.statechart import Snapshot, freeze, initial, step, thaw
+from lumen.interpreters.migration import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal, migrate
+from lumen.interpreters.statechart import Snapshot, deserialize, initial, serialize, step
 from lumen.language.commands import Cancel, Log, Play, Say, Start
 from lumen.language.events import Event
 from lumen.statechart import Machine
@@ -51,19 +51,19 @@ ASKING = at(TOUR, ("face", 1.0))
 DANCING = at(TOUR, ("face", 1.0), ("after.5s.talk.ask", 6.0))
 
 
-def reload(before: tuple[Machine, Snapshot], data: dict[str, Any], time: float = 8.0, **how: bool) -> Verdict:
+def reload(before: tuple[Machine, Snapshot], data: dict[str, Any], time: float = 8.0, **how: bool) -> MigrationVerdict:
     return migrate(*[before[0], Machine.from_dict(data)], before[1], at=time, **how)
 
 
-def planned(before: tuple[Machine, Snapshot], data: dict[str, Any], time: float = 8.0, **how: bool) -> Plan:
+def planned(before: tuple[Machine, Snapshot], data: dict[str, Any], time: float = 8.0, **how: bool) -> MigrationPlan:
     verdict = reload(before, data, time, **how)
-    assert isinstance(verdict, Plan), verdict
+    assert isinstance(verdict, MigrationPlan), verdict
     machine = Machine.from_dict(data)
-    assert thaw(machine, freeze(machine, verdict.snapshot)) == verdict.snapshot
+    assert deserialize(machine, serialize(machine, verdict.snapshot)) == verdict.snapshot
     return verdict
 
 
-def active(plan: Plan) -> set[str]:
+def active(plan: MigrationPlan) -> set[str]:
     return set(plan.snapshot.configuration)
 
 
@@ -111,11 +111,13 @@ def test_an_on_reload_further_out_counts_where_none_is_nearer() -> None:
 
 
 def test_what_a_state_does_is_waited_for_only_where_it_is_gone_or_changed() -> None:
-    assert isinstance(reload(DANCING, talk({"ask": ASK, "dance": {"do": [{"say": "LOOK"}, {"play": "x"}]}})), Plan)
-    assert isinstance(reload(DANCING, talk({"ask": ASK, "dance": {"do": [{"play": "x"}]}})), Wait)
+    assert isinstance(
+        reload(DANCING, talk({"ask": ASK, "dance": {"do": [{"say": "LOOK"}, {"play": "x"}]}})), MigrationPlan
+    )
+    assert isinstance(reload(DANCING, talk({"ask": ASK, "dance": {"do": [{"play": "x"}]}})), MigrationDelay)
     ask = {**ASK, "after": {"5s": "ask"}}
     gone = reload(DANCING, talk({"ask": ask}))
-    assert gone == Wait("`talk.dance` is gone, and is still doing something", "talk.dance")
+    assert gone == MigrationDelay("`talk.dance` is gone, and is still doing something", "talk.dance")
     assert isinstance(reload(DANCING, talk({"ask": ask}), now=True), Refusal)
     plan = planned(DANCING, talk({"ask": ask}, onReload=".ask"), now=True)
     assert plan.leaving == (Cancel("d1"),)
@@ -131,8 +133,12 @@ def test_a_changed_do_begins_anew_where_it_was_cancelled() -> None:
 def test_a_running_command_of_another_motion_is_waited_for() -> None:
     machine, snapshot = DANCING
     playing = machine, step(machine, snapshot, Event("done.command.d1", None, 7.0)).snapshot
-    assert isinstance(reload(playing, talk({"ask": ASK, "dance": {"do": [{"say": "x"}, {"play": "y"}]}})), Wait)
-    assert isinstance(reload(playing, talk({"ask": ASK, "dance": {"do": [*DANCE["do"], {"say": "more"}]}})), Plan)
+    assert isinstance(
+        reload(playing, talk({"ask": ASK, "dance": {"do": [{"say": "x"}, {"play": "y"}]}})), MigrationDelay
+    )
+    assert isinstance(
+        reload(playing, talk({"ask": ASK, "dance": {"do": [*DANCE["do"], {"say": "more"}]}})), MigrationPlan
+    )
 
 
 def test_a_state_that_now_has_states_begins_them() -> None:
@@ -181,7 +187,7 @@ def test_two_states_that_swap_their_names_swap_what_is_active_once() -> None:
     again = {**two, "context": {"k": 0}}
     assert active(planned((Machine.from_dict(two), swapped.snapshot), again)) == {"b"}
     back = migrate(Machine.from_dict(two), Machine.from_dict(one), swapped.snapshot, back=True)
-    assert isinstance(back, Plan)
+    assert isinstance(back, MigrationPlan)
     assert active(back) == {"a"}
 
 
@@ -221,7 +227,7 @@ def test_the_visitors_name_under_another_name() -> None:
     plan = planned(ASKING, data)
     assert plan.snapshot.context == {"guest": "Ada", "tries": 0}
     back = migrate(Machine.from_dict(data), ASKING[0], plan.snapshot, back=True)
-    assert isinstance(back, Plan)
+    assert isinstance(back, MigrationPlan)
     assert back.snapshot.context == {"visitor": "Ada", "tries": 0}
 
 

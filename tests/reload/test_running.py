@@ -9,7 +9,7 @@ from lumen.buses.memory import MemoryBus
 from lumen.cli.cast import Cast
 from lumen.cli.show import Show
 from lumen.clocks.simulated import SimulatedClock
-from lumen.interpreters.migration import Plan, Wait
+from lumen.interpreters.migration import MigrationDelay, MigrationPlan
 from lumen.interpreters.statechart import Step
 from lumen.language.events import Event
 from lumen.language.motions import Motion
@@ -52,9 +52,9 @@ def running(project: Project) -> tuple[BehaviorLoop, Seen]:
     return exhibition, seen
 
 
-def swap(exhibition: BehaviorLoop, project: Project, **how: bool) -> Plan:
+def swap(exhibition: BehaviorLoop, project: Project, **how: bool) -> MigrationPlan:
     plan = exhibition.plan(project, **how)
-    assert isinstance(plan, Plan)
+    assert isinstance(plan, MigrationPlan)
     exhibition.apply(project, plan)
     return plan
 
@@ -78,7 +78,7 @@ def test_the_head_goes_on_smoothly_under_another_controller() -> None:
             moved = dict.fromkeys(head, 0.0)
             changed = replace(project, controllers={**project.controllers, "head": wild})
             plan = show.plan(changed)
-            assert isinstance(plan, Plan)
+            assert isinstance(plan, MigrationPlan)
             show.apply(changed, plan)
         show.tick()
         for name, i in head.items():
@@ -112,7 +112,7 @@ def test_a_motion_that_plays_may_be_deleted_when_it_has_ended() -> None:
     exhibition, seen = running(project)
     calm = machine(states={"a": {"do": {"say": "no"}, "onDone": "b"}, "b": {}})
     without = replace(project, behaviors={"tour": calm}, motions={})
-    assert exhibition.plan(without) == Wait("what `a` is doing has changed", "a")
+    assert exhibition.plan(without) == MigrationDelay("what `a` is doing has changed", "a")
     while len(seen.answers) < 2:
         exhibition.tick()
     exhibition.tick()

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError, ProjectError
-from lumen.interpreters.statechart import Snapshot, Step, due, freeze, initial, step, thaw
+from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event
 from lumen.statechart import Interpreter, Machine
@@ -46,7 +46,7 @@ def run(machine: Machine, events: Happenings, snapshot: Snapshot | None = None, 
 
 def as_data(steps: list[Step], machine: Machine) -> list[Any]:
     """Steps of different Machine objects, to compare."""
-    return [(*s[:4], s.raised, freeze(machine, s.snapshot)) for s in steps]
+    return [(*s[:4], s.raised, serialize(machine, s.snapshot)) for s in steps]
 
 
 @settings(PATIENT, max_examples=40)
@@ -56,8 +56,8 @@ def test_what_was_on_the_disk_goes_on_as_if_it_had_not_been(data: Data, events: 
     steps = run(machine, events)
     if steps:
         moment = min(moment, len(steps) - 1)
-        saved = json.dumps(freeze(machine, steps[moment].snapshot))
-        later = run(again, events, thaw(again, json.loads(saved)), moment)
+        saved = json.dumps(serialize(machine, steps[moment].snapshot))
+        later = run(again, events, deserialize(again, json.loads(saved)), moment)
         assert as_data(later, again) == as_data(steps[moment + 1 :], machine)
         with suppress(LumenError):
             assert json.dumps(Interpreter.restore(again, json.loads(saved)).snapshot()) == settled(again, saved)
@@ -65,10 +65,10 @@ def test_what_was_on_the_disk_goes_on_as_if_it_had_not_been(data: Data, events: 
 
 def settled(machine: Machine, saved: str) -> str:
     """The snapshot after everything that is due at its own time."""
-    snapshot = thaw(machine, json.loads(saved))
+    snapshot = deserialize(machine, json.loads(saved))
     while (event := due(snapshot)) and event.at <= snapshot.at:
         snapshot = step(machine, snapshot, event).snapshot
-    return json.dumps(freeze(machine, snapshot))
+    return json.dumps(serialize(machine, snapshot))
 
 
 @settings(PATIENT, max_examples=40)

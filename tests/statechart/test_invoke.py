@@ -8,7 +8,7 @@ import pytest
 
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import ProjectError, SnapshotError, UsageError
-from lumen.interpreters.statechart import freeze, thaw
+from lumen.interpreters.statechart import deserialize, serialize
 from lumen.statechart import Event, Interpreter, Machine, due, initial, step
 
 QUIZ: dict[str, Any] = {
@@ -87,13 +87,13 @@ def test_timers_of_what_is_invoked_after_a_restore(timers: Any, ends: float) -> 
 
 
 def test_a_snapshot_with_another_machine_inside_is_refused() -> None:
-    frozen = freeze(tour(), initial(tour()).snapshot)
+    frozen = serialize(tour(), initial(tour()).snapshot)
     other = {**QUIZ, "states": {**QUIZ["states"], "more": None}}
     with pytest.raises(SnapshotError, match=r"`quiz`.*state `more` is new"):
-        thaw(tour(other), frozen)
+        deserialize(tour(other), frozen)
     for damage in ({"x": frozen["invoked"]["quiz"]}, {"quiz": {"state": "b"}}, {"quiz": 3}, None):
         with pytest.raises(SnapshotError):
-            thaw(tour(), {**frozen, "invoked": damage})
+            deserialize(tour(), {**frozen, "invoked": damage})
 
 
 def test_invoked_files_stand_beside_the_file(tmp_path: Path) -> None:

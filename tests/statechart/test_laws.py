@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.statechart import Snapshot, Step, due, freeze, initial, step, thaw
+from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
 from lumen.interpreters.statechart.doing import awaited
 from lumen.language.commands import Cancel, Start
 from lumen.language.events import Event
-from lumen.language.machines import Kind
+from lumen.language.machines import StateKind
 from lumen.statechart import Machine
 
 EVENTS = ["e", "f", "g.h"]
@@ -134,7 +134,7 @@ def run(machine: Machine, happenings: list[str], *, through_disk: bool = False) 
 
 def next_step(machine: Machine, snapshot: Snapshot, what: str, through_disk: bool) -> Step:
     if through_disk:
-        snapshot = thaw(machine, json.loads(json.dumps(freeze(machine, snapshot))))
+        snapshot = deserialize(machine, json.loads(json.dumps(serialize(machine, snapshot))))
     return step(machine, snapshot, happen(snapshot, what))
 
 
@@ -155,10 +155,10 @@ def test_every_configuration_is_legal(machine: Machine, happenings: list[str]) -
             active = [c for c in state.children if inner.states[c].name in names]
             if state.path and state.name not in names:
                 assert not active
-            elif state.kind is Kind.COMPOUND:
+            elif state.kind is StateKind.COMPOUND:
                 assert len(active) == 1
-            elif state.kind is Kind.PARALLEL:
-                assert active == [c for c in state.children if inner.states[c].kind is not Kind.HISTORY]
+            elif state.kind is StateKind.PARALLEL:
+                assert active == [c for c in state.children if inner.states[c].kind is not StateKind.HISTORY]
 
 
 @settings(max_examples=40, deadline=None)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from lumen.clocks.real import RealClock
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import LumenError, SnapshotError, UsageError
-from lumen.interpreters.statechart import freeze
+from lumen.interpreters.statechart import serialize
 from lumen.statechart import Event, Interpreter, Machine, initial, step
 
 QUIZ = {"states": {"ask": {"after": {"3s": "end"}}, "end": {"type": "final"}}}
@@ -98,7 +98,7 @@ def test_what_json_can_not_hold_is_refused_at_the_door(bad: Any) -> None:
         Interpreter(keeping, input={"x": bad}).start()
     kept = step(keeping, initial(keeping).snapshot, Event("go", bad)).snapshot
     with pytest.raises(SnapshotError, match=r"can't be written: `context\.x"):
-        freeze(keeping, kept)
+        serialize(keeping, kept)
 
 
 RICH: dict[str, Any] = {

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.interpreters.exploration.liveness import Liveness
-from lumen.interpreters.exploration.walking import Walk
+from lumen.interpreters.exploration.search import StateSpaceSearch
 from lumen.statechart import Machine
 
 NAMES = "pqrs"
@@ -40,8 +40,8 @@ def regions(draw: st.DrawFn) -> Any:
     return {"initial": "p", "states": states}
 
 
-def walked(machine: Machine) -> Walk:
-    walk = Walk(machine, EVENTS)
+def walked(machine: Machine) -> StateSpaceSearch:
+    walk = StateSpaceSearch(machine, EVENTS)
     for _ in walk.go(5000):
         pass
     assert not walk.waiting

@@ -6,7 +6,7 @@ import pytest
 
 from lumen.interpreters.expressions import Scope, compile_expression
 from lumen.language.actions import If, Parallel, SayText, Step
-from lumen.language.machines import Machine, State
+from lumen.language.machines import MachineDefinition, State
 from lumen.language.projects import Project
 from tests.tour.names import GUIDE, SAFETY
 
@@ -15,16 +15,16 @@ QUESTIONS = 18
 
 
 @pytest.fixture
-def tour(project: Project) -> Machine:
+def tour(project: Project) -> MachineDefinition:
     return project.behaviors["tour"]
 
 
-def lookup(tour: Machine, text: str, table: str, language: str) -> object:
+def lookup(tour: MachineDefinition, text: str, table: str, language: str) -> object:
     scope = Scope(event={"name": "heard", "data": {"result": text}}, language=language, answers=tour.answers)
     return compile_expression(f"lookup(event.data.result, '{table}')")(scope)
 
 
-def heard(tour: Machine, text: str, name: str) -> object:
+def heard(tour: MachineDefinition, text: str, name: str) -> object:
     scope = Scope(event={"name": "heard", "data": {"result": text}}, phrases=tour.phrases)
     return compile_expression(f"heard(event.data.result, '{name}')")(scope)
 
@@ -45,23 +45,23 @@ def actions(state: State) -> Iterator[object]:
     return (action for block in blocks for action in flattened(block))
 
 
-def test_the_guide_has_the_papers_fifteen_states(tour: Machine) -> None:
+def test_the_guide_has_the_papers_fifteen_states(tour: MachineDefinition) -> None:
     talking = {s.name for s in tour.states.values() if s.parent == "guide.talking"}
     assert len(GUIDE) == 15
     assert talking | {"idle"} == set(GUIDE)
 
 
-def test_safety_has_a_state_for_everything_that_can_happen(tour: Machine) -> None:
+def test_safety_has_a_state_for_everything_that_can_happen(tour: MachineDefinition) -> None:
     assert {s.name for s in tour.states.values() if s.parent == "safety"} == {"watching", *SAFETY}
 
 
-def test_every_phrase_table_has_both_languages(tour: Machine) -> None:
+def test_every_phrase_table_has_both_languages(tour: MachineDefinition) -> None:
     for name, phrases in tour.phrases.items():
         assert set(phrases) == LANGUAGES, name
         assert all(phrases.values()), name
 
 
-def test_every_answer_has_phrases_and_a_text_in_both_languages(tour: Machine) -> None:
+def test_every_answer_has_phrases_and_a_text_in_both_languages(tour: MachineDefinition) -> None:
     for table, rows in tour.answers.items():
         for row in rows:
             assert set(row.phrases) == set(row.value) == LANGUAGES, (table, row)
@@ -69,14 +69,14 @@ def test_every_answer_has_phrases_and_a_text_in_both_languages(tour: Machine) ->
             assert all(row.value.values()), (table, row)
 
 
-def test_every_sentence_is_there_in_both_languages(tour: Machine) -> None:
+def test_every_sentence_is_there_in_both_languages(tour: MachineDefinition) -> None:
     for state in tour.states.values():
         for action in actions(state):
             if isinstance(action, SayText) and "" not in action.texts:
                 assert set(action.texts) == LANGUAGES, (state.path, action)
 
 
-def test_only_looked_up_texts_stand_without_a_language(tour: Machine) -> None:
+def test_only_looked_up_texts_stand_without_a_language(tour: MachineDefinition) -> None:
     bare = {
         (state.name, template.text)
         for state in tour.states.values()
@@ -87,14 +87,14 @@ def test_only_looked_up_texts_stand_without_a_language(tour: Machine) -> None:
     assert bare == {("explain", "{{ context.reply }}"), ("answer", "{{ context.reply }}")}
 
 
-def test_it_explains_three_things_and_answers_eighteen_questions(tour: Machine) -> None:
+def test_it_explains_three_things_and_answers_eighteen_questions(tour: MachineDefinition) -> None:
     assert len(tour.answers["explanations"]) == 3
     assert len(tour.answers["faq"]) == QUESTIONS
 
 
 @pytest.mark.parametrize("language", sorted(LANGUAGES))
 @pytest.mark.parametrize("number", range(QUESTIONS))
-def test_every_phrase_of_a_question_leads_to_its_answer(tour: Machine, number: int, language: str) -> None:
+def test_every_phrase_of_a_question_leads_to_its_answer(tour: MachineDefinition, number: int, language: str) -> None:
     row = tour.answers["faq"][number]
     for phrase in row.phrases[language]:
         text = f"Lumen, {phrase.capitalize()}?"
@@ -114,11 +114,11 @@ def test_every_phrase_of_a_question_leads_to_its_answer(tour: Machine, number: i
         ("What a sad gambler", "photo"),
     ],
 )
-def test_a_part_of_a_word_is_not_a_phrase(tour: Machine, text: str, name: str) -> None:
+def test_a_part_of_a_word_is_not_a_phrase(tour: MachineDefinition, text: str, name: str) -> None:
     assert not heard(tour, text, name)
 
 
-def test_every_state_of_a_conversation_ends_by_itself(tour: Machine) -> None:
+def test_every_state_of_a_conversation_ends_by_itself(tour: MachineDefinition) -> None:
     """A long silence, a motion that never ends: whatever happens, somebody else can be greeted."""
     for state in tour.states.values():
         if state.parent == "guide.talking":

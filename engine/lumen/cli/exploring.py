@@ -9,10 +9,10 @@ from typing import Any
 import yaml
 
 from lumen.cli.show import MORNING, time_of_day
-from lumen.interpreters.exploration import Exploration, Finding, Kind, Stay, explore
+from lumen.interpreters.exploration import Exploration, ExplorationFinding, PathStep, StimulusKind, explore
 from lumen.language.diagnostics import Place
 from lumen.language.events import ROBOT_EVENTS
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.runtime.coverage import Gap, described
 from lumen.runtime.visitor import SPEECH
@@ -66,19 +66,19 @@ def explored(
     return Explored(behavior, found, findings, tuple(_unseen(project, behavior, found)), time.perf_counter() - began)
 
 
-def outside(project: Project, machine: Machine) -> Mapping[str, Any]:
+def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
     """The events that come to a behaviour from outside, each with the JSON Schema of its data, None for any."""
     routes = {r.event: project.messages.get(r.schema) for r in project.routes.values() if r.event}
     return {**ROBOT_EVENTS, **routes, **machine.events}
 
 
-def story(project: Project, behavior: str, finding: Finding) -> str:
+def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:
     """A story file that leads to what was found."""
     robot = dict(_broken(finding.way))
     lines = [HEAD, f"title: {_flow(finding.message)}"]
     lines += [f"behavior: {_flow(behavior)}"] if behavior != project.behavior else []
     lines += [f"robot: {_flow(robot)}"] if robot else []
-    worked = {_verb(s.move.command) for s in finding.way if s.move and s.move.kind is Kind.DONE} & robot.keys()
+    worked = {_verb(s.move.command) for s in finding.way if s.move and s.move.kind is StimulusKind.DONE} & robot.keys()
     lines += [
         f"# On this way `{verb}` works at first; a story can only let it fail from the beginning."
         for verb in sorted(worked)
@@ -86,18 +86,18 @@ def story(project: Project, behavior: str, finding: Finding) -> str:
     return "\n".join([*lines, "steps:", *(f"  - {step}" for step in _steps(project, finding.way))]) + "\n"
 
 
-def _steps(project: Project, way: tuple[Stay, ...]) -> Iterator[str]:
+def _steps(project: Project, way: tuple[PathStep, ...]) -> Iterator[str]:
     yield _expect(way[0].states, (), {})
     for before, stay in pairwise(way):
         move = stay.move
         assert move is not None  # only the first stay has none
         changed = stay.states != before.states
-        if move.kind is Kind.EVENT:
+        if move.kind is StimulusKind.EVENT:
             yield _happens(project, move.event.name, move.event.data)
-        if move.kind is Kind.TIME and not changed:
+        if move.kind is StimulusKind.TIME and not changed:
             yield f"wait: {move.waited:g}s"
         elif changed:
-            within = {Kind.TIME: f"{move.waited + 1:g}s", Kind.DONE: PATIENCE}.get(move.kind)
+            within = {StimulusKind.TIME: f"{move.waited + 1:g}s", StimulusKind.DONE: PATIENCE}.get(move.kind)
             yield _expect(stay.states, before.states, {"within": within} if within else {})
 
 
@@ -117,10 +117,10 @@ def _expect(states: tuple[str, ...], before: tuple[str, ...], more: Mapping[str,
     return f"expect: {_flow({'state': fresh[0] if len(fresh) == 1 else fresh, **more})}"
 
 
-def _broken(way: tuple[Stay, ...]) -> Iterator[tuple[str, str]]:
+def _broken(way: tuple[PathStep, ...]) -> Iterator[tuple[str, str]]:
     """What the robot has to do badly on the way: verbs that fail, and verbs that hang while a timer ends."""
     for stay in way:
-        if stay.move and stay.move.kind is Kind.FAILED:
+        if stay.move and stay.move.kind is StimulusKind.FAILED:
             yield _verb(stay.move.command), "fails"
         elif stay.move:
             yield from ((_verb(command), "hangs") for command in stay.move.pending)

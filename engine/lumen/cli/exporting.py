@@ -19,12 +19,12 @@ from lumen.formats.mermaid import mermaid
 from lumen.formats.scxml import write_scxml
 from lumen.formats.xstate import write_xstate
 from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.loading.packaged import find_project
 from lumen.loading.source import Document, parse
 
-Writer = Callable[[Machine, Placing], tuple[str, list[Diagnostic]]]
+Writer = Callable[[MachineDefinition, Placing], tuple[str, list[Diagnostic]]]
 
 WRITERS: Mapping[str, Writer] = {
     "scxml": write_scxml,

@@ -9,7 +9,7 @@ from pathlib import Path
 from lumen.bus import connect
 from lumen.buses.validated import ValidatedBus, validated
 from lumen.cli.cast import Cast
-from lumen.interpreters.migration import Plan, Verdict
+from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.language.commands import Command, Say, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -92,11 +92,11 @@ class Show(Observer):
             part(now)
         return now
 
-    def plan(self, project: Project, *, now: bool = False, back: bool = False) -> Verdict:
+    def plan(self, project: Project, *, now: bool = False, back: bool = False) -> MigrationVerdict:
         """How another bundle would go on from here, or why it can't; nothing changes."""
         return self.exhibition.plan(staged(project, self._story), now=now, back=back)
 
-    def apply(self, project: Project, plan: Plan, begun: Callable[[], None] = lambda: None) -> None:
+    def apply(self, project: Project, plan: MigrationPlan, begun: Callable[[], None] = lambda: None) -> None:
         """Go on with another bundle as planned for this moment; `begun` is called before what that asks for is done.
 
         Raises what `switch` raises.
@@ -106,7 +106,7 @@ class Show(Observer):
         begun()
         self.exhibition.perform(plan, old)
 
-    def switch(self, project: Project, plan: Plan) -> None:
+    def switch(self, project: Project, plan: MigrationPlan) -> None:
         """Go on with another bundle, and leave undone what that asks for.
 
         Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.

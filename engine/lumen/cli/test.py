@@ -13,7 +13,7 @@ from lumen.cli.terminal import coloured
 from lumen.cli.verdict import Verdict
 from lumen.cli.verdicts import FORMATS, text
 from lumen.errors import UsageError
-from lumen.interpreters.exploration import BOUND
+from lumen.interpreters.exploration import MAX_CONFIGURATIONS
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -38,7 +38,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--explore", action="store_true", help="walk the behaviour for dead ends instead of playing the stories")
     add("--behavior", metavar="NAME", help="with --explore: another one than the one that runs")
     add("--home", metavar="STATE", help="with --explore: the state to come back to; default: those of the beginning")
-    add("--bound", metavar="N", type=int, default=BOUND, help=f"configurations to explore (default: {BOUND:,})")
+    add(
+        "--bound",
+        metavar="N",
+        type=int,
+        default=MAX_CONFIGURATIONS,
+        help=f"configurations to explore (default: {MAX_CONFIGURATIONS:,})",
+    )
 
 
 def run(options: argparse.Namespace) -> int:

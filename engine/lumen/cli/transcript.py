@@ -28,7 +28,7 @@ from lumen.language.commands import (
     Walk,
 )
 from lumen.language.events import CUE, RECORDED, Event
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Arrive, Deed, Happen, Leave, Send, Speak, Touch
 from lumen.runtime.loop import Observer
 
@@ -40,7 +40,9 @@ WHO = {"visitor": "yellow", "robot": "cyan", "state": "green", "reload": "magent
 class Transcript(Observer):
     """Prints what happens, a line each, with simulated time; counts it for the summary."""
 
-    def __init__(self, now: Callable[[], float], machine: Callable[[], Machine], stream: TextIO | None = None) -> None:
+    def __init__(
+        self, now: Callable[[], float], machine: Callable[[], MachineDefinition], stream: TextIO | None = None
+    ) -> None:
         self._now, self._machine = now, machine
         self._stream = stream or sys.stdout
         self._colour = coloured(self._stream)

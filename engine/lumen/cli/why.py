@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 
 from lumen.interpreters.statechart import Step
 from lumen.language.events import Event
-from lumen.language.machines import Machine, Transition
+from lumen.language.machines import MachineDefinition, Transition
 
 
-def innermost(machine: Machine, names: Iterable[str]) -> list[str]:
+def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:
     """Of these states the ones that no other of them lies in."""
     listed = list(names)
     states = {state.name: state for state in machine.states.values()}

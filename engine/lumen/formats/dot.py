@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from lumen.formats.captions import caption, invocation
-from lumen.language.machines import Invoke, Kind, Machine, State, Transition
+from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
 
 _HEAD = """\
 digraph {
@@ -12,7 +12,7 @@ digraph {
   edge [fontname="Helvetica", fontsize=9]"""
 
 
-def dot(machine: Machine) -> str:
+def dot(machine: MachineDefinition) -> str:
     """The graph's text, ending with a newline; `dot -Tsvg` draws it.
 
     A state with states within is a cluster; an arrow to or from it ends at its frame. A behaviour that a state invokes
@@ -24,7 +24,7 @@ def dot(machine: Machine) -> str:
 class _Drawing:
     """The lines of one graph; every state has an id `s1, s2, …` in document order."""
 
-    def __init__(self, machine: Machine, prefix: str = "", drawn: set[str] | None = None) -> None:
+    def __init__(self, machine: MachineDefinition, prefix: str = "", drawn: set[str] | None = None) -> None:
         self.machine = machine
         self.drawn = set() if drawn is None else drawn
         self.ids = {path: f"{prefix}s{number}" for number, path in enumerate(machine.states)}
@@ -40,7 +40,7 @@ class _Drawing:
         indent = "  " * depth
         within = [s for s in self.machine.states.values() if s.parent == state.path and s.path]
         parent = self.machine.states[state.parent] if state.parent is not None else None
-        look = "dashed" if name or (parent and parent.kind is Kind.PARALLEL) else "rounded"
+        look = "dashed" if name or (parent and parent.kind is StateKind.PARALLEL) else "rounded"
         yield f"{indent}subgraph cluster_{self.ids[state.path]} {{"
         yield f"{indent}  label={_quoted(name or _label(state, self.machine))}; style={look}"
         yield f"{indent}  {self.ids[state.path]} [shape=point, style=filled, width=0.1]"
@@ -64,9 +64,9 @@ class _Drawing:
 
     def _box(self, state: State, depth: int) -> Iterator[str]:
         shape = ""
-        if state.kind is Kind.FINAL:
+        if state.kind is StateKind.FINAL:
             shape = ", peripheries=2"
-        elif state.kind is Kind.HISTORY:
+        elif state.kind is StateKind.HISTORY:
             shape = ", shape=circle"
         yield f"{'  ' * depth}{self.ids[state.path]} [label={_quoted(_label(state, self.machine))}{shape}]"
 
@@ -87,8 +87,8 @@ class _Drawing:
         return f"  {self.ids[source]} -> {self.ids[target]}{shown}"
 
 
-def _label(state: State, machine: Machine) -> str:
-    if state.kind is Kind.HISTORY:
+def _label(state: State, machine: MachineDefinition) -> str:
+    if state.kind is StateKind.HISTORY:
         return "H*" if state.deep else "H"
     return state.path.rpartition(".")[2] or machine.id or "behaviour"
 

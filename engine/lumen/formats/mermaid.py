@@ -4,12 +4,12 @@ import re
 from collections.abc import Iterator
 
 from lumen.formats.captions import caption, invocation
-from lumen.language.machines import Invoke, Kind, Machine, State, Transition
+from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
 
 _SPECIAL = re.compile(r"[^\w .,!?()=+*/&|\'\[\]…-]|--+|\b_+")
 
 
-def mermaid(machine: Machine) -> str:
+def mermaid(machine: MachineDefinition) -> str:
     """The diagram's text, ending with a newline.
 
     Every state gets an id `s1, s2, …` in document order and its key as its label, since Mermaid takes few characters
@@ -22,12 +22,12 @@ def mermaid(machine: Machine) -> str:
 class _Drawing:
     """The lines of one diagram. An arrow is drawn in the innermost compound state around both its ends."""
 
-    def __init__(self, machine: Machine, prefix: str = "", drawn: set[str] | None = None) -> None:
+    def __init__(self, machine: MachineDefinition, prefix: str = "", drawn: set[str] | None = None) -> None:
         self.machine, self.prefix = machine, prefix
         self.drawn = set() if drawn is None else drawn
         self.ids = {path: f"{prefix}s{number}" for number, path in enumerate(machine.states)}
         self.arrows: dict[str, list[str]] = {}
-        self.framed = machine.root.kind is Kind.PARALLEL
+        self.framed = machine.root.kind is StateKind.PARALLEL
         for transition in (t for state in machine.states.values() for t in state.transitions):
             for target in transition.targets:
                 self._arrow(transition, target)
@@ -49,7 +49,7 @@ class _Drawing:
     def _home(self, one: str, other: str) -> str:
         states = self.machine.states
         home = states[one].parent
-        while home and not (other.startswith(f"{home}.") and states[home].kind is Kind.COMPOUND):
+        while home and not (other.startswith(f"{home}.") and states[home].kind is StateKind.COMPOUND):
             home = states[home].parent
         return home or ""
 
@@ -59,7 +59,7 @@ class _Drawing:
             return
         indent, id = "  " * depth, self.ids[state.path]
         yield f'{indent}state "{_label(state)}" as {id}'
-        if state.kind is Kind.FINAL:
+        if state.kind is StateKind.FINAL:
             yield f"{indent}{id} --> [*]"
 
     def _box(self, state: State, depth: int) -> Iterator[str]:
@@ -71,7 +71,7 @@ class _Drawing:
     def _body(self, state: State, depth: int) -> Iterator[str]:
         indent = "  " * depth
         for number, child in enumerate(state.children):
-            if number and state.kind is Kind.PARALLEL:
+            if number and state.kind is StateKind.PARALLEL:
                 yield f"{indent}--"
             yield from self._state(self.machine.states[child], depth)
         for path in state.initial:
@@ -98,7 +98,7 @@ class _Drawing:
 
 def _label(state: State) -> str:
     key = state.path.rpartition(".")[2] or state.alias or "behaviour"
-    if state.kind is Kind.HISTORY:
+    if state.kind is StateKind.HISTORY:
         key = f"{key} (H*)" if state.deep else f"{key} (H)"
     inner = [_caption(t).removeprefix(" : ") for t in state.transitions if not t.targets and not state.children]
     return _escaped(key) + "".join(f"<br/>{line}" for line in inner)

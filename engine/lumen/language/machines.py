@@ -12,7 +12,7 @@ from lumen.language.actions import Expression, Step, Value
 from lumen.language.diagnostics import NodePath
 
 
-class Kind(StrEnum):
+class StateKind(StrEnum):
     """`type:` of a state; a state with children is compound, one without is atomic."""
 
     ATOMIC = "atomic"
@@ -63,7 +63,7 @@ class State:
     """
 
     path: str
-    kind: Kind = Kind.ATOMIC
+    kind: StateKind = StateKind.ATOMIC
     parent: str | None = None
     alias: str = ""
     children: tuple[str, ...] = ()
@@ -93,7 +93,7 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Machine:
+class MachineDefinition:
     """A whole statechart; `states` maps paths to states in document order, the root under the empty path.
 
     `invoked` holds the machines that its states invoke, by the names of their behaviours.
@@ -108,7 +108,7 @@ class Machine:
     answers: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
     renamed: Mapping[str, str] = field(default_factory=dict)
     hash: str = ""
-    invoked: Mapping[str, "Machine"] = field(default_factory=dict, repr=False)
+    invoked: Mapping[str, "MachineDefinition"] = field(default_factory=dict, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
         """What it says, for another process: what was made of it here is none of its fields."""

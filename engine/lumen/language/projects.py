@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.modules import ModuleSettings
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
@@ -38,7 +38,7 @@ class Project:
     body: Body
     hall: str
     behavior: str
-    behaviors: Mapping[str, Machine]
+    behaviors: Mapping[str, MachineDefinition]
     controllers: Mapping[str, ControllerDefinition] = field(default_factory=dict)
     motions: Mapping[str, Motion] = field(default_factory=dict)
     routes: Mapping[str, Route] = field(default_factory=dict)
@@ -54,7 +54,7 @@ class Project:
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 
     @property
-    def machine(self) -> Machine:
+    def machine(self) -> MachineDefinition:
         """The behaviour that runs."""
         return self.behaviors[self.behavior]
 

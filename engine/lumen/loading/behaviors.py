@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.language.machines import Answer, Kind, Machine, State
+from lumen.language.machines import Answer, MachineDefinition, State, StateKind
 from lumen.loading.actions import Actions
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import check_ids, invocations
@@ -15,7 +15,7 @@ from lumen.loading.shapes import check_shapes
 from lumen.loading.source import DocumentReport
 from lumen.loading.transitions import TransitionReader
 
-M = TypeVar("M", bound=Machine)
+M = TypeVar("M", bound=MachineDefinition)
 
 CONTEXT = "context"
 """How `renamed` calls keys of the context: `context.name: context.visitor`."""
@@ -89,11 +89,13 @@ class _Builder:
     def initial(self, entry: OutlinedState) -> tuple[str, ...]:
         """The paths entered by default: what the file says, else the first child."""
         if entry.path not in self.beginnings:
-            self.beginnings[entry.path] = self.remembered(entry) if entry.kind is Kind.HISTORY else self.begin(entry)
+            self.beginnings[entry.path] = (
+                self.remembered(entry) if entry.kind is StateKind.HISTORY else self.begin(entry)
+            )
         return self.beginnings[entry.path]
 
     def begin(self, entry: OutlinedState) -> tuple[str, ...]:
-        if entry.kind is not Kind.COMPOUND:
+        if entry.kind is not StateKind.COMPOUND:
             return ()
         where = (*entry.where, "initial")
         if "initial" in entry.data:
@@ -110,11 +112,11 @@ class _Builder:
         if "target" in entry.data:
             where = (*entry.where, "target")
             found = self.within(parent, entry, entry.data["target"], where)
-            if any(state.kind is Kind.HISTORY for state in found):
+            if any(state.kind is StateKind.HISTORY for state in found):
                 self.report("not-within", where, "a history can't lead to a history", hint="name a state")
                 return ()
             return tuple(state.path for state in found)
-        begin = _children(parent) if parent.kind is Kind.PARALLEL else self.initial(parent)
+        begin = _children(parent) if parent.kind is StateKind.PARALLEL else self.initial(parent)
         return begin if entry.path not in begin else _children(parent)[:1]
 
     def within(
@@ -164,7 +166,7 @@ class _Builder:
 
 
 def _children(entry: OutlinedState) -> tuple[str, ...]:
-    return tuple(child.path for child in entry.children.values() if child.kind is not Kind.HISTORY)
+    return tuple(child.path for child in entry.children.values() if child.kind is not StateKind.HISTORY)
 
 
 def _child(target: str) -> str:

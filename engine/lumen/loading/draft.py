@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Diagnostic, Place, Severity, gathered
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.motions import Motion
 from lumen.language.robots import Body
 from lumen.language.stories import Story
@@ -29,7 +29,7 @@ class ProjectDraft:
     files: Mapping[str, bytes]
     settings: Settings | None = None
     bodies: dict[str, Body] = field(default_factory=dict)
-    behaviors: dict[str, Machine] = field(default_factory=dict)
+    behaviors: dict[str, MachineDefinition] = field(default_factory=dict)
     controllers: dict[str, ControllerDefinition] = field(default_factory=dict)
     motions: dict[str, Motion] = field(default_factory=dict)
     stories: dict[str, Story] = field(default_factory=dict)

@@ -5,7 +5,7 @@ from itertools import combinations
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
-from lumen.language.machines import Invoke, Kind
+from lumen.language.machines import Invoke, StateKind
 from lumen.loading.expressions import Expressions
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.source import DocumentReport
@@ -51,4 +51,4 @@ def _together(one: OutlinedState, other: OutlinedState) -> bool:
     while not one.lies_in(inner):
         assert inner.parent is not None  # every state lies in the root
         inner = inner.parent
-    return inner is one or inner is other or inner.kind is Kind.PARALLEL
+    return inner is one or inner is other or inner.kind is StateKind.PARALLEL

@@ -7,10 +7,10 @@ from typing import Generic, TypeVar
 from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.machines import Invoke, Machine
+from lumen.language.machines import Invoke, MachineDefinition
 from lumen.loading.source import DocumentReport
 
-M = TypeVar("M", bound=Machine)
+M = TypeVar("M", bound=MachineDefinition)
 
 DEPTH = 16
 """How many levels of behaviours may run within one another."""
@@ -40,7 +40,7 @@ class _Linker(Generic[M]):
         """The machine of that name with those that it invokes, and they with theirs."""
         if name not in self.linked:
             self.way.append(name)
-            machine, found = self.machines[name], dict[str, Machine]()
+            machine, found = self.machines[name], dict[str, MachineDefinition]()
             self.levels[name] = 0
             for invoke in (i for state in machine.states.values() for i in state.invoke):
                 if other := self.invoked(name, invoke):
@@ -68,7 +68,7 @@ class _Linker(Generic[M]):
             report("too-large", where, f"more than {DEPTH} behaviours would run within one another", hint=hint)
         return None
 
-    def check_input(self, name: str, invoke: Invoke, machine: Machine) -> None:
+    def check_input(self, name: str, invoke: Invoke, machine: MachineDefinition) -> None:
         """Report input that the invoked behaviour has no key for, or that can't be of the key's type."""
         report, checks, called = self.reports[name], type_checks(machine), invoke.behavior
         for key, value in invoke.input.items():

@@ -5,13 +5,13 @@ from typing import Any
 
 from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.diagnostics import NodePath
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.loading.messages import examine
 from lumen.loading.numbers import finite
 from lumen.loading.source import DocumentReport
 
 
-def check_memory(machine: Machine, report: DocumentReport) -> list[tuple[str, str]]:
+def check_memory(machine: MachineDefinition, report: DocumentReport) -> list[tuple[str, str]]:
     """Report what is wrong under `context:`, `types:` and `events:`; the part and key of each unsound schema."""
     unsound = [
         (part, key)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumen.language.diagnostics import COMPARED, NodePath, did_you_mean, nearest
-from lumen.language.machines import Kind
+from lumen.language.machines import StateKind
 from lumen.loading.source import DocumentReport
 
 
@@ -17,7 +17,7 @@ class OutlinedState:
     parent: "OutlinedState | None"
     data: Mapping[str, Any]
     where: NodePath
-    kind: Kind
+    kind: StateKind
     alias: str = ""
     children: "dict[str, OutlinedState]" = field(default_factory=dict)
 
@@ -141,10 +141,10 @@ class BehaviorOutline:
             entry.alias = ""
 
 
-def _kind(data: Mapping[str, Any]) -> Kind:
+def _kind(data: Mapping[str, Any]) -> StateKind:
     if kind := data.get("type"):
-        return Kind(kind)
-    return Kind.COMPOUND if data.get("states") else Kind.ATOMIC
+        return StateKind(kind)
+    return StateKind.COMPOUND if data.get("states") else StateKind.ATOMIC
 
 
 def _descend(entry: OutlinedState | None, path: str) -> OutlinedState | None:

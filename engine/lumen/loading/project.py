@@ -6,7 +6,7 @@ from pathlib import PurePosixPath
 from typing import Any, TypeVar
 
 from lumen.language.diagnostics import Severity, has_errors
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.motions import Motion
 from lumen.language.projects import Project
 from lumen.loading.behaviors import build_machine
@@ -126,8 +126,8 @@ def _read(found: ProjectDraft, file: str, content: bytes, kind: str, build: Buil
     return read
 
 
-def _machine(data: Any, report: DocumentReport, *, name: str) -> Machine | None:
-    return build_machine(data, report, name=name, into=Machine)
+def _machine(data: Any, report: DocumentReport, *, name: str) -> MachineDefinition | None:
+    return build_machine(data, report, name=name, into=MachineDefinition)
 
 
 def _motions(found: ProjectDraft, folder: str) -> dict[str, Motion]:

@@ -1,7 +1,7 @@
 """What a state may hold, by its type; a schema can say it only in riddles."""
 
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.machines import Kind
+from lumen.language.machines import StateKind
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.source import DocumentReport
 
@@ -13,11 +13,11 @@ _STATE = {
     *_COMMON, *_MACHINE, "on", "always", "after", "onDone", "onError", "onReload", "entry", "do", "exit", "invoke"
 }  # fmt: skip
 _ALLOWED = {
-    Kind.HISTORY: _HISTORY,
-    Kind.FINAL: _FINAL,
-    Kind.ATOMIC: _STATE,
-    Kind.PARALLEL: {*_STATE, "states"},
-    Kind.COMPOUND: {*_STATE, "states", "initial"},
+    StateKind.HISTORY: _HISTORY,
+    StateKind.FINAL: _FINAL,
+    StateKind.ATOMIC: _STATE,
+    StateKind.PARALLEL: {*_STATE, "states"},
+    StateKind.COMPOUND: {*_STATE, "states", "initial"},
 }
 _ARTICLES = {"atomic": "an atomic"}
 
@@ -45,16 +45,16 @@ def _check_keys(entry: OutlinedState, report: DocumentReport) -> None:
 
 
 def _check_children(entry: OutlinedState, report: DocumentReport) -> None:
-    if entry.kind not in (Kind.COMPOUND, Kind.PARALLEL):
+    if entry.kind not in (StateKind.COMPOUND, StateKind.PARALLEL):
         return
-    if all(child.kind is Kind.HISTORY for child in entry.children.values()):
+    if all(child.kind is StateKind.HISTORY for child in entry.children.values()):
         hint = "give it `states`, or leave out its `type`"
         report("no-states", entry.where, f"{entry.title} has no states to be in", hint=hint, key=True)
 
 
 def _check_parent(entry: OutlinedState, report: DocumentReport) -> None:
     parent = entry.parent
-    if entry.kind is Kind.FINAL and parent and parent.kind is Kind.PARALLEL:
+    if entry.kind is StateKind.FINAL and parent and parent.kind is StateKind.PARALLEL:
         hint = "a parallel state is done when each of its regions has reached a final state of its own"
         report("final-in-parallel", entry.where, f"`{entry.path}` is final in a parallel state", hint=hint, key=True)
 
@@ -62,7 +62,7 @@ def _check_parent(entry: OutlinedState, report: DocumentReport) -> None:
 def _check_done(entry: OutlinedState, report: DocumentReport) -> None:
     if report.broken((*entry.where, "do")):
         return
-    if entry.kind is Kind.ATOMIC and "onDone" in entry.data and "do" not in entry.data:
+    if entry.kind is StateKind.ATOMIC and "onDone" in entry.data and "do" not in entry.data:
         hint = "give it a `do`, or use `always`"
         report(
             "never-done", (*entry.where, "onDone"), f"{entry.title} has no `do` to be done with", hint=hint, key=True

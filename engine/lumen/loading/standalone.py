@@ -6,7 +6,7 @@ from typing import Any, Generic, TypeVar
 
 from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import Diagnostic, has_errors
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.loading.behaviors import build_machine
 from lumen.loading.linking import link
 from lumen.loading.memory import check_memory
@@ -14,7 +14,7 @@ from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
 from lumen.loading.source import Document, DocumentReport, parse
 
-M = TypeVar("M", bound=Machine)
+M = TypeVar("M", bound=MachineDefinition)
 Read = Callable[[str], tuple[Document | None, list[Diagnostic]]]
 
 

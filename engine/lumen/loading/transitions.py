@@ -5,7 +5,7 @@ from itertools import combinations
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
-from lumen.language.machines import Kind, Transition
+from lumen.language.machines import StateKind, Transition
 from lumen.loading.actions import Actions
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import invoked
@@ -59,7 +59,7 @@ class TransitionReader:
                         if end in row:
                             yield from self._candidates(entry, row[end], (*place, end), event=event, exact=True)
             case "onDone":
-                kind = "do" if entry.kind is Kind.ATOMIC else "state"
+                kind = "do" if entry.kind is StateKind.ATOMIC else "state"
                 yield from self._candidates(entry, body, where, event=f"done.{kind}.{entry.name}", exact=True)
             case "onError":
                 yield from self._candidates(entry, body, where, event=f"error.do.{entry.name}", exact=True)
@@ -119,9 +119,9 @@ def _fit(one: OutlinedState, other: OutlinedState) -> bool:
     """Whether two states can be targets together; a history speaks for all that is in its parent."""
     for history, state in ((one, other), (other, one)):
         home = history.parent
-        if history.kind is Kind.HISTORY and home and state not in (history, home) and state.lies_in(home):
+        if history.kind is StateKind.HISTORY and home and state not in (history, home) and state.lies_in(home):
             return False
-    return one.lies_in(other) or other.lies_in(one) or _meeting(one, other).kind is Kind.PARALLEL
+    return one.lies_in(other) or other.lies_in(one) or _meeting(one, other).kind is StateKind.PARALLEL
 
 
 def _meeting(one: OutlinedState, other: OutlinedState) -> OutlinedState:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.motions import Motion
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
@@ -18,7 +18,7 @@ def check(draft: ProjectDraft) -> None:
             _sounds(motion, draft.report("motions", name), draft.root)
 
 
-def _reload(machine: Machine, report: DocumentReport) -> None:
+def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
     for state in machine.states.values():
         if state.on_reload and not state.children:
             message = "`onReload` has no effect in a state without states: nothing within it can be gone"

@@ -1,7 +1,7 @@
 """Events of the engine that speak of one state or invoke, `done.state.talk`: whether there is one that could end so."""
 
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.machines import Kind, Machine, State
+from lumen.language.machines import MachineDefinition, State, StateKind
 
 _LACKS = {
     "done.state": "it has no final state to end in",
@@ -12,7 +12,7 @@ _ANSWERS = ("done.command", "error.command", "cancelled.command")
 """What the robot says of commands: it goes to the `do` that waits for it, or nowhere, and never to a transition."""
 
 
-def ending_fault(machine: Machine, descriptor: str) -> str:
+def ending_fault(machine: MachineDefinition, descriptor: str) -> str:
     """Why a descriptor can't be heard: a hint where it names nothing that could end; else empty."""
     words = descriptor.removesuffix(".*").split(".")
     family, name = ".".join(words[:2]), ".".join(words[2:])
@@ -30,7 +30,7 @@ def _begins(descriptor: str, name: str) -> bool:
     return name == descriptor or name.startswith(f"{descriptor}.")
 
 
-def _able(machine: Machine, family: str) -> set[str] | None:
+def _able(machine: MachineDefinition, family: str) -> set[str] | None:
     """The names after that family; None for a family that does not speak of states or invokes."""
     states = machine.states.values()
     match family:
@@ -43,9 +43,9 @@ def _able(machine: Machine, family: str) -> set[str] | None:
     return None
 
 
-def _ends(machine: Machine, state: State) -> bool:
+def _ends(machine: MachineDefinition, state: State) -> bool:
     """Whether a state can come to its end (`isInFinalState`)."""
     children = [machine.states[path] for path in state.children]
-    if state.kind is Kind.PARALLEL:
-        return all(_ends(machine, child) for child in children if child.kind is not Kind.HISTORY)
-    return any(child.kind is Kind.FINAL for child in children)
+    if state.kind is StateKind.PARALLEL:
+        return all(_ends(machine, child) for child in children if child.kind is not StateKind.HISTORY)
+    return any(child.kind is StateKind.FINAL for child in children)

@@ -6,7 +6,7 @@ from typing import Any
 from lumen.language.actions import Raise, Send
 from lumen.language.diagnostics import NodePath, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
-from lumen.language.machines import Kind, Machine, Transition
+from lumen.language.machines import MachineDefinition, StateKind, Transition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.endings import ending_fault
@@ -37,13 +37,13 @@ def hears(descriptor: str, event: str) -> bool:
     return descriptor == "*" or event == prefix or event.startswith(f"{prefix}.")
 
 
-def descriptors(machine: Machine) -> Iterator[str]:
+def descriptors(machine: MachineDefinition) -> Iterator[str]:
     """What stands under `on` anywhere in the machine."""
     for state in machine.states.values():
         yield from (t.event for t in state.transitions if t.event and not t.exact)
 
 
-def declared(draft: ProjectDraft, machine: Machine) -> dict[str, Any]:
+def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
     """The events that the world can raise in this machine, each with the JSON Schema of its data, None for any."""
     found: dict[str, Any] = {}
     routes = draft.settings.routes.values() if draft.settings else ()
@@ -54,7 +54,7 @@ def declared(draft: ProjectDraft, machine: Machine) -> dict[str, Any]:
     return {**ROBOT_EVENTS, **found, **machine.events}
 
 
-def outcome(machine: Machine, transition: Transition) -> dict[str, Any] | None:
+def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any] | None:
     """The event of an `onDone` or `onError` of an invoke, with the schema of its data; None for other transitions."""
     for invoke in machine.states[transition.source].invoke:
         if transition.event == f"error.invoke.{invoke.id}":
@@ -65,10 +65,10 @@ def outcome(machine: Machine, transition: Transition) -> dict[str, Any] | None:
     return None
 
 
-def _output(machine: Machine) -> Mapping[str, Any] | None:
+def _output(machine: MachineDefinition) -> Mapping[str, Any] | None:
     """The JSON Schema of what a machine hands on at its end; None where that is no map in all cases."""
     states = [machine.states[path] for path in machine.root.children]
-    outputs = [state.output for state in states if state.kind is Kind.FINAL]
+    outputs = [state.output for state in states if state.kind is StateKind.FINAL]
     maps = [output for output in outputs if isinstance(output, Mapping)]
     if not maps or len(maps) < len(outputs):
         return None
@@ -92,7 +92,7 @@ def raised(data: Any) -> Iterator[str]:
                     yield name
 
 
-def _waited(draft: ProjectDraft, machine: Machine, report: DocumentReport) -> None:
+def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentReport) -> None:
     if draft.settings is None or draft.main is None:
         return
     known = {*declared(draft, machine), *raised(report.document.data), *draft.main.lost, *report.lost}
@@ -134,7 +134,7 @@ def _descriptor(where: NodePath, event: str) -> NodePath:
     return where if where[-1] == event else where[:-1]
 
 
-def _raised(machine: Machine, report: DocumentReport) -> None:
+def _raised(machine: MachineDefinition, report: DocumentReport) -> None:
     waited = set(descriptors(machine))
     for site in sites(machine):
         match site.step.action:

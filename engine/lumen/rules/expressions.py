@@ -8,7 +8,7 @@ from typing import Any
 from lumen.interpreters.expressions import Finding, check_expression, check_template, schema_of
 from lumen.language.actions import Template
 from lumen.language.diagnostics import Diagnostic, Related
-from lumen.language.machines import Machine, Transition
+from lumen.language.machines import MachineDefinition, Transition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import cause_of, place_within
 from lumen.loading.source import DocumentReport
@@ -27,7 +27,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Expressions:
-    def __init__(self, draft: ProjectDraft, name: str, machine: Machine, report: DocumentReport) -> None:
+    def __init__(self, draft: ProjectDraft, name: str, machine: MachineDefinition, report: DocumentReport) -> None:
         self.machine, self.report = machine, report
         self.known = draft.settings is not None
         self.events = declared(draft, machine)

@@ -7,7 +7,7 @@ from lumen.interpreters.expressions.phrases import is_heard
 from lumen.interpreters.expressions.tree import Call, Literal, Logic, Node
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
-from lumen.language.machines import Machine, State, Transition
+from lumen.language.machines import MachineDefinition, State, Transition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.events import hears
@@ -57,7 +57,7 @@ def _simple(node: Node) -> bool:
     return not isinstance(node, Logic)
 
 
-def _late(machine: Machine, state: State, report: DocumentReport) -> None:
+def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
     """Candidates that are never taken, or not for all that they name, because an earlier one is."""
     earlier: list[Transition] = []
     for transition in state.transitions[:MOST]:
@@ -73,7 +73,7 @@ def covers(earlier: Transition, later: Transition) -> bool:
     return hears(earlier.event, later.event.removesuffix(".*")) and (later.event != "*" or earlier.event == "*")
 
 
-def _takes_all(earlier: Transition, later: Transition, machine: Machine, report: DocumentReport) -> bool:
+def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinition, report: DocumentReport) -> bool:
     """Whether the earlier one leaves nothing for the later one; said, as is where it leaves less than was meant."""
     related = [(earlier.where, "the earlier one stands here")]
     if earlier.guard is None:

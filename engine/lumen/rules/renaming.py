@@ -1,6 +1,6 @@
 """What `renamed` says of the past: nothing that is still there can have got another name."""
 
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
@@ -12,7 +12,7 @@ def check(draft: ProjectDraft) -> None:
         _check(machine, draft.report("behaviors", name))
 
 
-def _check(machine: Machine, report: DocumentReport) -> None:
+def _check(machine: MachineDefinition, report: DocumentReport) -> None:
     known = {path: path for path in machine.states} | {f"context.{key}": f"context.{key}" for key in machine.context}
     known |= {state.alias: path for path, state in machine.states.items() if path and state.alias}
     taken = set(machine.renamed.values())

@@ -7,7 +7,7 @@ from lumen.interpreters.expressions.phrases import is_heard
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related, did_you_mean, nearest
-from lumen.language.machines import Answer, Machine
+from lumen.language.machines import Answer, MachineDefinition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
@@ -72,7 +72,7 @@ def _silent(draft: ProjectDraft, languages: tuple[str, ...]) -> dict[str, tuple[
     }
 
 
-def _spoken(machine: Machine) -> Iterator[NodePath]:
+def _spoken(machine: MachineDefinition) -> Iterator[NodePath]:
     """Where texts stand that the machine says or answers."""
     yield from ((*s.step.where, "say") for s in sites(machine) if isinstance(s.step.action, SayText))
     for table, rows in machine.answers.items():
@@ -88,7 +88,7 @@ class _Speech:
     def __init__(self, languages: tuple[str, ...], lost: Iterable[str]) -> None:
         self.languages, self.lost = languages, set(lost)
 
-    def behavior(self, machine: Machine, report: DocumentReport) -> None:
+    def behavior(self, machine: MachineDefinition, report: DocumentReport) -> None:
         for site in sites(machine):
             match site.step.action:
                 case SayText(texts):

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from lumen.language.actions import Assign, Step
 from lumen.language.diagnostics import COMPARED, nearest
-from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
@@ -34,7 +34,7 @@ def check(draft: ProjectDraft) -> None:
         _loops(machine, report)
 
 
-def reachable(machine: Machine, begin: str = "") -> set[str]:
+def reachable(machine: MachineDefinition, begin: str = "") -> set[str]:
     """The paths of all states that some sequence of events could enter from `begin`, whatever guards say."""
     found: set[str] = set()
     waiting = [begin]
@@ -51,7 +51,7 @@ def reachable(machine: Machine, begin: str = "") -> set[str]:
 def _next(state: State) -> Iterator[str]:
     """Where one gets from a state: down by default, and by its transitions."""
     yield from state.initial
-    if state.kind is Kind.PARALLEL:
+    if state.kind is StateKind.PARALLEL:
         yield from state.children
     if state.on_reload:
         yield state.on_reload
@@ -59,7 +59,7 @@ def _next(state: State) -> Iterator[str]:
         yield from transition.targets
 
 
-def _unreachable(machine: Machine, report: DocumentReport) -> None:
+def _unreachable(machine: MachineDefinition, report: DocumentReport) -> None:
     """States that nothing leads to, unless something broken may have meant them."""
     meant = {text.rpartition(".")[2].lstrip("#") for text in report.lost | report.missed}
     missed = meant & report.missed if len(report.missed) <= COMPARED else set()
@@ -75,7 +75,7 @@ def _unreachable(machine: Machine, report: DocumentReport) -> None:
             find(report, "unreachable-state", state.where, f"no transition leads to `{path}`", hint, key=True)
 
 
-def _endless(machine: Machine, report: DocumentReport) -> None:
+def _endless(machine: MachineDefinition, report: DocumentReport) -> None:
     """States that lead back to themselves by `always` alone, nothing asked on the way."""
     onward = {path: found for path in machine.states if (found := _at_once(machine, path))}
     said: set[str] = set()
@@ -90,23 +90,23 @@ def _endless(machine: Machine, report: DocumentReport) -> None:
             find(report, "endless-always", onward[path][0].where, f"this never comes to rest: {names}", hint)
 
 
-def _at_once(machine: Machine, path: str) -> tuple[Transition, str] | None:
+def _at_once(machine: MachineDefinition, path: str) -> tuple[Transition, str] | None:
     """The transition that an atomic state takes as soon as it is entered, and the atomic state that it leads to."""
     state = machine.states[path]
     always = next((t for t in state.transitions if not t.event), None)
-    if state.kind is not Kind.ATOMIC or always is None or always.guard or len(always.targets) != 1:
+    if state.kind is not StateKind.ATOMIC or always is None or always.guard or len(always.targets) != 1:
         return None
     target = machine.states[always.targets[0]]
-    while target.kind is Kind.COMPOUND and len(target.initial) == 1:
+    while target.kind is StateKind.COMPOUND and len(target.initial) == 1:
         target = machine.states[target.initial[0]]
-    return (always, target.path) if target.kind is Kind.ATOMIC else None
+    return (always, target.path) if target.kind is StateKind.ATOMIC else None
 
 
-def _loops(machine: Machine, report: DocumentReport) -> None:
+def _loops(machine: MachineDefinition, report: DocumentReport) -> None:
     """States that lead back to themselves by guarded `always`, where nothing on the way changes what is asked."""
     onward: dict[str, list[tuple[Transition, str]]] = {}
     for state in machine.states.values():
-        if state.kind is Kind.ATOMIC:
+        if state.kind is StateKind.ATOMIC:
             for transition in (t for t in state.transitions if not t.event and t.guard):
                 target = _settled(machine, transition)
                 if target and not _assigns(transition.actions):
@@ -124,7 +124,7 @@ def _loops(machine: Machine, report: DocumentReport) -> None:
 
 
 def _rounds(
-    machine: Machine, onward: Onward, begin: str, path: str, way: tuple[Transition, ...]
+    machine: MachineDefinition, onward: Onward, begin: str, path: str, way: tuple[Transition, ...]
 ) -> Iterator[tuple[Transition, ...]]:
     """The ways of at most LONGEST transitions back to `begin` whose guards can all be true at once."""
     for transition, target in onward.get(path, ())[:MOST]:
@@ -139,16 +139,16 @@ def _rounds(
             yield from _rounds(machine, onward, begin, target, longer)
 
 
-def _settled(machine: Machine, transition: Transition) -> str:
+def _settled(machine: MachineDefinition, transition: Transition) -> str:
     """The atomic state that a transition ends in, empty where that is not a single one."""
     if not transition.targets:
         return transition.source
     if len(transition.targets) > 1:
         return ""
     target = machine.states[transition.targets[0]]
-    while target.kind is Kind.COMPOUND and len(target.initial) == 1:
+    while target.kind is StateKind.COMPOUND and len(target.initial) == 1:
         target = machine.states[target.initial[0]]
-    return target.path if target.kind is Kind.ATOMIC else ""
+    return target.path if target.kind is StateKind.ATOMIC else ""
 
 
 def _assigns(block: tuple[Step, ...]) -> bool:

@@ -4,10 +4,10 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.interpreters.statechart.inside import INSIDE, meant
+from lumen.interpreters.statechart.inside import ID_SEPARATOR, meant
 from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect, Happen, Send, Story, Touch
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.schema import faults
@@ -108,7 +108,7 @@ class _Script:
             find(self.report, "unknown-sensor", path, f"there is no tactile sensor `{sensor}`", hint)
 
     def event(self, path: NodePath, event: str) -> None:
-        machine: Machine | None = self.machine
+        machine: MachineDefinition | None = self.machine
         if machine is None or self._lost(event) or any(hears(d, event) for d in descriptors(machine)):
             return
         data = self.draft.report("behaviors", self.behavior).document.data
@@ -133,20 +133,20 @@ class _Script:
 
     def _lost(self, name: str) -> bool:
         """Whether the name stood in a part of the behaviour, or of one that it invokes, that is broken."""
-        last = name.rpartition(INSIDE)[2]
+        last = name.rpartition(ID_SEPARATOR)[2]
         behaviors = self.draft.behaviors if last != name else (self.behavior,)
         lost = [self.draft.report("behaviors", behavior).lost for behavior in behaviors]
         return any(name in found or last in found or last.rpartition(".")[2] in found for found in lost)
 
 
-def _has(machine: Machine, name: str) -> bool:
+def _has(machine: MachineDefinition, name: str) -> bool:
     return any(state.path and state.name == name for state in machine.states.values())
 
 
-def _names(machine: Machine, prefix: str) -> set[str]:
+def _names(machine: MachineDefinition, prefix: str) -> set[str]:
     """The states of a machine, and of those that it invokes, as one calls them from outside."""
     names = {prefix + state.name for state in machine.states.values() if state.path}
     for invoke in (invoke for state in machine.states.values() for invoke in state.invoke):
         if other := machine.invoked.get(invoke.behavior):
-            names |= {f"{prefix}{invoke.id}{INSIDE}{state.name}" for state in other.states.values() if state.path}
+            names |= {f"{prefix}{invoke.id}{ID_SEPARATOR}{state.name}" for state in other.states.values() if state.path}
     return names

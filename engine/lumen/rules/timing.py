@@ -6,7 +6,7 @@ from math import hypot
 from lumen.interpreters.expressions import split_template
 from lumen.language.actions import If, Parallel, SayText, Step, Wait
 from lumen.language.commands import Play, Posture, Walk
-from lumen.language.machines import Machine, State
+from lumen.language.machines import MachineDefinition, State
 from lumen.language.motions import Motion
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
@@ -24,7 +24,7 @@ def check(draft: ProjectDraft) -> None:
                 _cut(machine, state, draft.report("behaviors", name), draft.motions)
 
 
-def _cut(machine: Machine, state: State, report: DocumentReport, motions: Mapping[str, Motion]) -> None:
+def _cut(machine: MachineDefinition, state: State, report: DocumentReport, motions: Mapping[str, Motion]) -> None:
     length = duration(state.do, motions)
     for transition in state.transitions:
         delay = transition.delay

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from lumen.language.actions import SayText
 from lumen.language.diagnostics import NodePath
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find, value_at
@@ -72,7 +72,7 @@ def _quotes(report: DocumentReport, path: NodePath, source: str, value: object) 
         find(report, "curly-quotes", path, "these quotes are part of the text: YAML knows only straight ones", hint)
 
 
-def _holes(machine: Machine, report: DocumentReport) -> None:
+def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
     """Texts that are said with the name of a value in place of the value."""
     for site in sites(machine):
         if isinstance(site.step.action, SayText):

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.language.commands import Look, Move, Walk
 from lumen.language.diagnostics import NodePath
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.loading.draft import ProjectDraft
@@ -67,7 +67,7 @@ def _angles(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
             waiting.extend((value, (*here, i)) for i, value in enumerate(item))
 
 
-def _actions(machine: Machine, report: DocumentReport, body: Body | None, stage: Stage | None) -> None:
+def _actions(machine: MachineDefinition, report: DocumentReport, body: Body | None, stage: Stage | None) -> None:
     units = value_at(report, ("units",)) or {}
     angle, length = units.get("angle", "rad"), units.get("length", "m")
     for site in sites(machine):

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.language.commands import Play, Track
 from lumen.language.diagnostics import NodePath, Severity, has_errors, nearest
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
@@ -34,7 +34,7 @@ def check(draft: ProjectDraft) -> None:
         _files(draft)
 
 
-def _inside(draft: ProjectDraft, name: str, machine: Machine, report: DocumentReport) -> None:
+def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: DocumentReport) -> None:
     said = "\n".join(_texts({k: v for k, v in report.document.data.items() if k not in _DECLARED}))
     everywhere = f"{said}\n" + "\n".join(_texts(report.document.data.get("answers", {})))
     if not _WHOLE.search(everywhere):
@@ -53,7 +53,7 @@ def _inside(draft: ProjectDraft, name: str, machine: Machine, report: DocumentRe
             find(report, "unused-event", ("events", event), message, hint, key=True, root=_states_of(report))
 
 
-def _context(machine: Machine, report: DocumentReport, read: set[str]) -> None:
+def _context(machine: MachineDefinition, report: DocumentReport, read: set[str]) -> None:
     written = {key for site in sites(machine) for key in getattr(site.step.action, "values", ())}
     for key in machine.context:
         if key not in read:
@@ -126,7 +126,7 @@ def _alike_files(draft: ProjectDraft) -> None:
         _say_alike(draft.main, ("routes",), draft.settings.routes)
 
 
-def _alike_inside(machine: Machine, report: DocumentReport) -> None:
+def _alike_inside(machine: MachineDefinition, report: DocumentReport) -> None:
     for part in ("context", "phrases", "answers", "events"):
         _say_alike(report, (part,), getattr(machine, part))
     for state in machine.states.values():

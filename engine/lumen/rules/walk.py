@@ -18,7 +18,7 @@ from lumen.language.actions import (
     Template,
     Value,
 )
-from lumen.language.machines import Invoke, Machine, State, Transition
+from lumen.language.machines import Invoke, MachineDefinition, State, Transition
 
 
 class Site(NamedTuple):
@@ -42,7 +42,7 @@ class Spot(NamedTuple):
     expected: Mapping[str, Any] | None = None
 
 
-def sites(machine: Machine) -> Iterator[Site]:
+def sites(machine: MachineDefinition) -> Iterator[Site]:
     """All actions, those inside `if` and `parallel` too, in the order of the file."""
     for state in machine.states.values():
         for block in (state.entry, state.do, state.exit):
@@ -51,7 +51,7 @@ def sites(machine: Machine) -> Iterator[Site]:
             yield from (Site(state, transition, step) for step in nested(transition.actions))
 
 
-def spots(machine: Machine) -> Iterator[Spot]:
+def spots(machine: MachineDefinition) -> Iterator[Spot]:
     """All expressions and templates."""
     for state in machine.states.values():
         yield from (Spot(text, None) for text in _values(state.output))
@@ -64,7 +64,7 @@ def spots(machine: Machine) -> Iterator[Spot]:
         yield from _spots(site)
 
 
-def _input(invoke: Invoke, machine: Machine | None) -> Iterator[Spot]:
+def _input(invoke: Invoke, machine: MachineDefinition | None) -> Iterator[Spot]:
     for key, value in invoke.input.items():
         if isinstance(value, Expression) and machine and key in machine.context:
             yield Spot(value, None, expected=machine.types.get(key, schema_of(machine.context[key])))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from lumen.language.actions import Raise, Send
 from lumen.language.diagnostics import NodePath
-from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
@@ -28,13 +28,13 @@ def check(draft: ProjectDraft) -> None:
             _ended(machine, report)
 
 
-def _ended(machine: Machine, report: DocumentReport) -> None:
+def _ended(machine: MachineDefinition, report: DocumentReport) -> None:
     """Histories that are gone to from where their parent's end leads: they remember that end, and end at once."""
     for path, state in machine.states.items():
         parent = machine.states[state.parent] if state.parent is not None else None
-        if state.kind is not Kind.HISTORY or parent is None:
+        if state.kind is not StateKind.HISTORY or parent is None:
             continue
-        if not any(machine.states[child].kind is Kind.FINAL for child in parent.children):
+        if not any(machine.states[child].kind is StateKind.FINAL for child in parent.children):
             continue
         done = [t for t in parent.transitions if t.event == f"done.state.{parent.name}" and t.targets]
         for transition in (t for d in done for target in d.targets for t in machine.states[target].transitions):
@@ -49,7 +49,7 @@ def _ended(machine: Machine, report: DocumentReport) -> None:
 class _Graph:
     """Where one gets from each node in one move, and from where one gets there; guards are taken to hold."""
 
-    machine: Machine
+    machine: MachineDefinition
     after: dict[Node, list[Node]] = field(default_factory=dict)
     before: dict[Node, list[Node]] = field(default_factory=dict)
 
@@ -60,9 +60,9 @@ class _Graph:
                 self.join(("in", path), ("in", state.parent))
                 self.join(("any", state.parent), ("any", path))
             self.join(("any", path), ("in", path))
-            for inner in state.children if state.kind is Kind.PARALLEL else state.initial:
+            for inner in state.children if state.kind is StateKind.PARALLEL else state.initial:
                 self.join(("to", path), ("to", inner))
-            if state.kind is Kind.HISTORY and state.parent is not None:
+            if state.kind is StateKind.HISTORY and state.parent is not None:
                 self.join(("to", path), ("any", state.parent))
             for transition in state.transitions:
                 for target in transition.targets:
@@ -76,11 +76,11 @@ class _Graph:
         """A transition: it also leaves what is active beside its source, and begins what is beside its target."""
         self.join(("in", source), ("to", target))
         for path in self.above(source):
-            if self.machine.states[path].kind is Kind.PARALLEL and not within(target, path):
+            if self.machine.states[path].kind is StateKind.PARALLEL and not within(target, path):
                 self.join(("in", path), ("to", target))
         for path in self.above(target):
             state = self.machine.states[path]
-            if state.kind is Kind.PARALLEL and not within(source, path):
+            if state.kind is StateKind.PARALLEL and not within(source, path):
                 for child in state.children:
                     if not within(target, child):
                         self.join(("in", source), ("to", child))
@@ -112,7 +112,7 @@ def spread(begin: Iterable[Node], moves: dict[Node, list[Node]]) -> set[Node]:
 class _Ways:
     """Looks at one machine: `tracks` are its outermost rows of states, each of which is in one of them at a time."""
 
-    def __init__(self, machine: Machine, report: DocumentReport, events: set[str]) -> None:
+    def __init__(self, machine: MachineDefinition, report: DocumentReport, events: set[str]) -> None:
         self.machine, self.report, self.events = machine, report, events
         self.graph = _Graph(machine)
         self.exits: dict[str, list[Transition]] = {}
@@ -125,15 +125,15 @@ class _Ways:
     def check(self) -> None:
         root = self.machine.root
         found, ranks = reachable(self.machine), {path: i for i, path in enumerate(self.machine.states)}
-        tracks = [root] if root.kind is Kind.COMPOUND else [self.machine.states[p] for p in root.children]
+        tracks = [root] if root.kind is StateKind.COMPOUND else [self.machine.states[p] for p in root.children]
         for track in tracks:
             below = set(self.below(track)) & found
             order = sorted(below, key=ranks.__getitem__)
-            self.track(track, [path for path in order if self.machine.states[path].kind is Kind.ATOMIC])
+            self.track(track, [path for path in order if self.machine.states[path].kind is StateKind.ATOMIC])
 
     def track(self, track: State, leaves: list[str]) -> None:
         home = track
-        while home.kind is Kind.COMPOUND and home.initial:
+        while home.kind is StateKind.COMPOUND and home.initial:
             home = self.machine.states[home.initial[0]]
         others = [path for path in leaves if path != home.path]
         dead = dict.fromkeys(path for path in others if not any(self.ways_out(path)))
@@ -151,7 +151,7 @@ class _Ways:
         state: State | None = self.machine.states[path]
         while state is not None:
             yield from (t for t in state.transitions if any(target != path for target in t.targets))
-            if state.kind is Kind.PARALLEL:
+            if state.kind is StateKind.PARALLEL:
                 yield from self.leaving(state)
             state = self.machine.states[state.parent] if state.parent is not None else None
 
@@ -187,7 +187,7 @@ class _Ways:
     def lost(self, track: State, home: State, lost: list[str], dead: Iterable[str]) -> None:
         """States from which no way leads home; of those that lead to one another only the first is told."""
         ends = [("in", path) for path in dead]
-        ends += [("in", p) for p in track.children if self.machine.states[p].kind is Kind.FINAL]
+        ends += [("in", p) for p in track.children if self.machine.states[p].kind is StateKind.FINAL]
         ended = spread(ends, self.graph.before)
         told: set[Node] = set()
         for path in lost:
@@ -217,7 +217,7 @@ class _Ways:
         """Whether a transition belongs to the ordinary course, not to an alarm around it."""
         source = self.machine.states[transition.source]
         return (
-            source.kind is Kind.ATOMIC
+            source.kind is StateKind.ATOMIC
             or not transition.event
             or transition.event in self.events
             or (

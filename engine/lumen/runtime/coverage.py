@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.inside import ran
 from lumen.language.diagnostics import NodePath, Place
-from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.language.projects import Project
 from lumen.runtime.loop import Observer
 
@@ -78,7 +78,7 @@ class _Watcher(Observer):
         self._coverage.note(self._behavior, step)
 
 
-def described(machine: Machine, transition: Transition) -> str:
+def described(machine: MachineDefinition, transition: Transition) -> str:
     """`ask_name` on `heard`, as GUARD, to `offer`: a transition in words."""
     source = machine.states[transition.source].name
     guard = f", as {transition.guard.source}" if transition.guard else ""
@@ -95,9 +95,9 @@ def trigger(transition: Transition) -> str:
     return f"on `{transition.event}`" if transition.event else "always"
 
 
-def _states(machine: Machine) -> Iterator[State]:
-    return (s for s in machine.states.values() if s.path and s.kind is not Kind.HISTORY)
+def _states(machine: MachineDefinition) -> Iterator[State]:
+    return (s for s in machine.states.values() if s.path and s.kind is not StateKind.HISTORY)
 
 
-def _transitions(machine: Machine) -> Iterator[Transition]:
+def _transitions(machine: MachineDefinition) -> Iterator[Transition]:
     return (t for state in machine.states.values() for t in state.transitions)

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
-from lumen.interpreters.statechart import Snapshot, freeze
+from lumen.interpreters.statechart import Snapshot, serialize
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint
 from lumen.runtime.home import Home
@@ -59,7 +59,7 @@ class Keeper:
             return
         self._written = time.perf_counter()
         try:
-            frozen = freeze(project.machine, snapshot)
+            frozen = serialize(project.machine, snapshot)
         except LumenError as error:
             self._wrote(str(error))
             return

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from lumen.interpreters.migration import Plan, Verdict
+from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Track
 from lumen.language.events import CUE, RECORDED, Event
@@ -104,17 +104,17 @@ class BehaviorLoop:
         self._perform(self.runtime.tick(now, self._gather(now)), now)
         return now
 
-    def plan(self, project: Project, *, now: bool = False, back: bool = False) -> Verdict:
+    def plan(self, project: Project, *, now: bool = False, back: bool = False) -> MigrationVerdict:
         """How another bundle would go on from here, or why it can't; nothing changes."""
         return self.runtime.plan(project, self._last, now=now, back=back)
 
-    def apply(self, project: Project, plan: Plan) -> None:
+    def apply(self, project: Project, plan: MigrationPlan) -> None:
         """Go on with another bundle as planned for this moment, between two macrosteps; what that asks for is done."""
         old = self.project
         self.switch(project, plan)
         self.perform(plan, old)
 
-    def switch(self, project: Project, plan: Plan) -> None:
+    def switch(self, project: Project, plan: MigrationPlan) -> None:
         """What `apply` does, but for what has to be performed.
 
         Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
@@ -129,7 +129,7 @@ class BehaviorLoop:
             self.tracking.reload(old)
             raise
 
-    def perform(self, plan: Plan, old: Project) -> None:
+    def perform(self, plan: MigrationPlan, old: Project) -> None:
         """Do what a plan asks for that has been switched to: what is left is left by the old bundle."""
         self._perform(plan.leaving, self._last, old)
         self._perform(plan.entering, self._last)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from lumen.interpreters.migration import Plan, Refusal, plan
+from lumen.interpreters.migration import MigrationPlan, Refusal, plan
 from lumen.interpreters.statechart import Snapshot, initial, retimed
 from lumen.interpreters.statechart.answers import outside
 from lumen.interpreters.statechart.doing import awaited
@@ -42,14 +42,14 @@ def resume(
     Newer files are a reload that waits for nothing: what was under way has ended anyway.
     """
     later = retimed(snapshot._replace(at=snapshot.at + away), 0.0, "remaining")
-    verdict = Plan(later) if old is new else plan(old, new, later, now=True)
-    if not isinstance(verdict, Plan):
+    verdict = MigrationPlan(later) if old is new else plan(old, new, later, now=True)
+    if not isinstance(verdict, MigrationPlan):
         return verdict if isinstance(verdict, Refusal) else Refusal(verdict.reason)
     lost, known = tuple(_awaited(snapshot)), tuple(name for name in tracking if name in new.controllers)
     return Resumption(verdict.snapshot, away, verdict.entering, lost, known, verdict.notes)
 
 
-def anew(project: Project, snapshot: Snapshot, now: float) -> Plan:
+def anew(project: Project, snapshot: Snapshot, now: float) -> MigrationPlan:
     """How a project that can't go on from a snapshot begins anew at `now` [s]: with all that fits of its context."""
     checks = type_checks(project.machine)
     kept = {key: value for key, value in snapshot.context.items() if key in checks and fits(value, checks[key])}
@@ -57,7 +57,7 @@ def anew(project: Project, snapshot: Snapshot, now: float) -> Plan:
     first = initial(project.machine, now, kept, language, epoch=snapshot.epoch)
     counted = first.snapshot._replace(generator=snapshot.generator)
     leaving = tuple(Cancel(id) for id in _awaited(snapshot))
-    return Plan(counted, leaving, first.commands, entered=first.entered, notes=("the behaviour begins anew",))
+    return MigrationPlan(counted, leaving, first.commands, entered=first.entered, notes=("the behaviour begins anew",))
 
 
 def _awaited(snapshot: Snapshot) -> Iterator[str]:

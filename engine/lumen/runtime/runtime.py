@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from lumen.errors import LumenError
-from lumen.interpreters.migration import Verdict, plan
+from lumen.interpreters.migration import MigrationVerdict, plan
 from lumen.interpreters.statechart import Snapshot, Step, elapse, initial, step
 from lumen.language.commands import Command
 from lumen.language.events import Event
@@ -58,7 +58,7 @@ class Runtime:
             commands += self._hear(event)
         return commands + self._timers(now)
 
-    def plan(self, project: Project, at: float, *, now: bool = False, back: bool = False) -> Verdict:
+    def plan(self, project: Project, at: float, *, now: bool = False, back: bool = False) -> MigrationVerdict:
         """How the behaviour would go on under another bundle at `at` [s], or why it can't; nothing changes.
 
         `now` cancels what it would have to wait for; `back` says that the bundle ran before.

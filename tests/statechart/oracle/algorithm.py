@@ -9,7 +9,7 @@ from typing import Any
 
 from lumen.errors import ExpressionError
 from lumen.language.events import Event
-from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from tests.statechart.oracle.content import LIMIT, RestlessError, Waiting, World
 from tests.statechart.oracle.sets import Sets
 from tests.statechart.oracle.tree import is_atomic
@@ -20,7 +20,7 @@ Wanted = Callable[[Transition], bool]
 class Oracle(Sets):
     """A machine that runs; `exited`, `entered` and `taken` tell of the last macrostep."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineDefinition) -> None:
         super().__init__(World(machine, dict(machine.context)))
         self.begin_macrostep()
         first = self.in_document_order(self.add_descendants(machine.root, []))
@@ -121,7 +121,7 @@ class Oracle(Sets):
             for event, delay in {t.event: t.delay for t in state.transitions if t.delay is not None}.items():
                 world.timers.append(Waiting(event, world.at + delay, None, state.path, event))
             world.execute(state.entry, state)
-            if state.kind is Kind.FINAL:
+            if state.kind is StateKind.FINAL:
                 self.done(state)
 
     def done(self, state: State) -> None:
@@ -129,7 +129,7 @@ class Oracle(Sets):
         assert parent is not None  # no machine is a final state
         outer = self.parent(parent)
         self.world.enqueue(Event(f"done.state.{parent.name}", self.done_data(state), self.world.at))
-        if outer is not None and outer.kind is Kind.PARALLEL and all(map(self.is_in_final, self.children(outer))):
+        if outer is not None and outer.kind is StateKind.PARALLEL and all(map(self.is_in_final, self.children(outer))):
             self.world.enqueue(Event(f"done.state.{outer.name}", None, self.world.at))
 
     def done_data(self, state: State) -> Any:
@@ -141,9 +141,9 @@ class Oracle(Sets):
 
     def is_in_final(self, state: State) -> bool:
         children = self.children(state)
-        if state.kind is Kind.COMPOUND:
-            return any(s.kind is Kind.FINAL and s in self.world.configuration for s in children)
-        return state.kind is Kind.PARALLEL and all(map(self.is_in_final, children))
+        if state.kind is StateKind.COMPOUND:
+            return any(s.kind is StateKind.FINAL and s in self.world.configuration for s in children)
+        return state.kind is StateKind.PARALLEL and all(map(self.is_in_final, children))
 
 
 def matches(transition: Transition, name: str) -> bool:

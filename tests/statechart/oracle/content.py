@@ -10,7 +10,7 @@ from lumen.language.actions import Assign, CancelSend, Expression, If, LogText, 
 from lumen.language.commands import Command, Log, Play, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
-from lumen.language.machines import Machine, State
+from lumen.language.machines import MachineDefinition, State
 
 LIMIT = 1000
 """Microsteps and internal events of a macrostep; the interpreter promises to give up after as many."""
@@ -41,7 +41,7 @@ class Waiting:
 class World:
     """Everything that a machine changes while it runs."""
 
-    machine: Machine
+    machine: MachineDefinition
     context: dict[str, Any]
     configuration: list[State] = field(default_factory=list)
     history: dict[str, list[State]] = field(default_factory=dict)

@@ -7,7 +7,7 @@ of its children is in the set: a target around another target enters nothing by 
 asked again after the exit, when a history among its targets has begun to remember, it could be a smaller one.
 """
 
-from lumen.language.machines import Kind, State, Transition
+from lumen.language.machines import State, StateKind, Transition
 from tests.statechart.oracle.content import World
 from tests.statechart.oracle.tree import Tree, is_atomic
 
@@ -54,7 +54,7 @@ class Sets(Tree):
     def transition_domain(self, transition: Transition) -> State:
         source, targets = self.source(transition), self.effective_targets(self.targets(transition))
         inside = all(self.is_descendant(s, source) for s in targets)
-        if not transition.reenter and source.kind is Kind.COMPOUND and inside:
+        if not transition.reenter and source.kind is StateKind.COMPOUND and inside:
             return source
         return self.find_lcca([source, *targets])
 
@@ -64,7 +64,7 @@ class Sets(Tree):
     def effective_targets(self, targets: list[State]) -> list[State]:
         found: list[State] = []
         for state in targets:
-            if state.kind is not Kind.HISTORY:
+            if state.kind is not StateKind.HISTORY:
                 found.append(state)
             elif self.world.history.get(state.path):
                 found += self.world.history[state.path]
@@ -85,15 +85,15 @@ class Sets(Tree):
         return entering
 
     def add_descendants(self, state: State, entering: list[State]) -> list[State]:
-        if state.kind is Kind.HISTORY:
+        if state.kind is StateKind.HISTORY:
             parent = self.parent(state)
             assert parent is not None  # a history state lies in another
             self.add_all(self.world.history.get(state.path) or self.initial(state), parent, entering)
             return entering
         entering.append(state)
-        if state.kind is Kind.COMPOUND:
+        if state.kind is StateKind.COMPOUND:
             self.add_all(self.initial(state), state, entering)
-        elif state.kind is Kind.PARALLEL:
+        elif state.kind is StateKind.PARALLEL:
             self.add_regions(state, entering)
         return entering
 
@@ -111,7 +111,7 @@ class Sets(Tree):
             if above in self.world.configuration:
                 return
             entering.append(above)
-            if above.kind is Kind.PARALLEL:
+            if above.kind is StateKind.PARALLEL:
                 self.add_regions(above, entering)
 
     def add_regions(self, parallel: State, entering: list[State]) -> None:

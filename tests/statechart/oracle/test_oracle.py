@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, seed, settings
 from lumen.errors import LumenError
 from lumen.interpreters.statechart import Snapshot, Step, due, initial, step
 from lumen.language.events import Event
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from tests.statechart.oracle.algorithm import Oracle
 from tests.statechart.oracle.content import RestlessError
 from tests.statechart.oracle.generating import Event as Happening
@@ -18,7 +18,7 @@ from tests.statechart.oracle.generating import happenings, machines
 BUSY = settings(deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 
 
-def compare(machine: Machine, events: list[Happening | None], tally: Counter[str]) -> None:
+def compare(machine: MachineDefinition, events: list[Happening | None], tally: Counter[str]) -> None:
     """Run both side by side; AssertionError at the first step in which they differ."""
     tally["machines"] += 1
     oracle, snapshot = None, None
@@ -45,7 +45,7 @@ def happened(snapshot: Snapshot | None, happening: Happening | None) -> Event:
     return Event(*happening, at + 0.05)
 
 
-def by_lumen(machine: Machine, snapshot: Snapshot | None, event: Event) -> Step | None:
+def by_lumen(machine: MachineDefinition, snapshot: Snapshot | None, event: Event) -> Step | None:
     try:
         return initial(machine) if snapshot is None else step(machine, snapshot, event)
     except LumenError as error:
@@ -58,7 +58,7 @@ def due_in(oracle: Oracle | None) -> bool:
     return oracle is not None and bool(oracle.world.timers)
 
 
-def by_the_book(machine: Machine, oracle: Oracle | None, event: Event | None) -> Oracle | None:
+def by_the_book(machine: MachineDefinition, oracle: Oracle | None, event: Event | None) -> Oracle | None:
     """The oracle after the event, or after its own next timer."""
     try:
         if oracle is None:
@@ -114,7 +114,7 @@ def shown(event: Event) -> tuple[Any, ...]:
 @seed(2015)
 @settings(BUSY, max_examples=300)
 @given(machines(), happenings)
-def test_three_hundred_machines(machine: Machine, events: list[Happening | None]) -> None:
+def test_three_hundred_machines(machine: MachineDefinition, events: list[Happening | None]) -> None:
     compare(machine, events, Counter())
 
 
@@ -126,7 +126,7 @@ def test_twenty_thousand_machines() -> None:
         @seed(thousand)
         @settings(BUSY, max_examples=1_000)
         @given(machines(), happenings)
-        def everyone(machine: Machine, events: list[Happening | None]) -> None:
+        def everyone(machine: MachineDefinition, events: list[Happening | None]) -> None:
             compare(machine, events, tally)
 
         everyone()

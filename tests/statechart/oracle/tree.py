@@ -2,16 +2,16 @@
 
 from collections.abc import Iterable
 
-from lumen.language.machines import Kind, Machine, State
+from lumen.language.machines import MachineDefinition, State, StateKind
 
-SCXML = State("<scxml>", Kind.COMPOUND, None, children=("",), initial=("",))
+SCXML = State("<scxml>", StateKind.COMPOUND, None, children=("",), initial=("",))
 """The element around the root."""
 
 
 class Tree:
     """The states of a machine, by the names of W3C SCXML 1.0, Appendix D."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineDefinition) -> None:
         self.machine = machine
 
     def parent(self, state: State) -> State | None:
@@ -22,10 +22,10 @@ class Tree:
     def children(self, state: State) -> list[State]:
         """`getChildStates`: neither histories nor anything else that is no real state."""
         below = [s for s in self.machine.states.values() if self.parent(s) is state]
-        return [s for s in below if s.kind is not Kind.HISTORY]
+        return [s for s in below if s.kind is not StateKind.HISTORY]
 
     def histories(self, state: State) -> list[State]:
-        return [s for s in self.machine.states.values() if self.parent(s) is state and s.kind is Kind.HISTORY]
+        return [s for s in self.machine.states.values() if self.parent(s) is state and s.kind is StateKind.HISTORY]
 
     def initial(self, state: State) -> list[State]:
         """The targets of the transition in `<initial>`, or in a history state."""
@@ -46,7 +46,7 @@ class Tree:
     def find_lcca(self, states: list[State]) -> State:
         head, *tail = states
         for above in self.proper_ancestors(head, None):
-            if above.kind is Kind.COMPOUND and all(self.is_descendant(s, above) for s in tail):
+            if above.kind is StateKind.COMPOUND and all(self.is_descendant(s, above) for s in tail):
                 return above
         raise AssertionError("everything lies in <scxml>")
 
@@ -57,4 +57,4 @@ class Tree:
 
 
 def is_atomic(state: State) -> bool:
-    return state.kind in (Kind.ATOMIC, Kind.FINAL)
+    return state.kind in (StateKind.ATOMIC, StateKind.FINAL)

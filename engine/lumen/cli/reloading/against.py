@@ -12,7 +12,7 @@ from lumen.interpreters.migration import Refusal
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.statechart.types import type_checks, type_name
 from lumen.language.diagnostics import Diagnostic, NodePath, Place
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.rules import check_files
 from lumen.rules.codes import CODES
@@ -63,7 +63,7 @@ def _moved(old: Project, new: Project, everywhere: Fates) -> Iterator[Diagnostic
                 yield _finding("reload-moves", message, place, hint)
 
 
-def _says(old: Machine, new: Machine, identity: Identity, path: str) -> NodePath | None:
+def _says(old: MachineDefinition, new: MachineDefinition, identity: Identity, path: str) -> NodePath | None:
     """Where stands what is to be done about a state that is gone; None for one that is not, or goes without."""
     if identity.state(path) is not None:
         return None

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.cli.reloading.judging import Judged, told
 from lumen.interpreters.changes import Change, Risk, risk, summary
-from lumen.interpreters.migration import Refusal, Wait
+from lumen.interpreters.migration import MigrationDelay, Refusal
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
 
@@ -131,6 +131,6 @@ def reason_of(refusal: Refusal, project: Project) -> str:
     return f"{place}: {refusal.reason}" if place else refusal.reason
 
 
-def what_for(verdict: Wait | Refusal) -> str:
+def what_for(verdict: MigrationDelay | Refusal) -> str:
     """The state that has to be left first."""
-    return verdict.what if isinstance(verdict, Wait) else verdict.state
+    return verdict.what if isinstance(verdict, MigrationDelay) else verdict.state

@@ -10,7 +10,7 @@ from lumen.cli.reloading.records import Records
 from lumen.errors import LumenError
 from lumen.interpreters.changes import changes
 from lumen.interpreters.migration import Refusal
-from lumen.interpreters.statechart import thaw
+from lumen.interpreters.statechart import deserialize
 from lumen.language.projects import Project
 from lumen.rules import check_files
 from lumen.runtime.keeping import Keeper, Kept
@@ -43,7 +43,7 @@ def comeback(root: Path, records: Records, project: Project) -> Found:
         return Found("The last runs ended without notice soon after their start: this one begins anew.")
     try:
         old = _before(root, keeper, kept, project)
-        how = resume(old, project, thaw(old.machine, kept.frozen), away, kept.tracking) if old else _UNKNOWN
+        how = resume(old, project, deserialize(old.machine, kept.frozen), away, kept.tracking) if old else _UNKNOWN
     except LumenError as error:
         return Found(f"The last run ended without notice and can't be gone on with: {error}")
     news = () if old is None or old.hash == project.hash else (_news(old, project, how, time.perf_counter() - began),)

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 from lumen.cli.exploring import outside
 from lumen.cli.show import MORNING, time_of_day
-from lumen.interpreters.exploration.walking import Walk, leaves
-from lumen.interpreters.migration import Plan, Verdict, Wait, plan
+from lumen.interpreters.exploration.search import StateSpaceSearch, leaves
+from lumen.interpreters.migration import MigrationDelay, MigrationPlan, MigrationVerdict, plan
 from lumen.interpreters.statechart import Snapshot
 from lumen.language.projects import Project
 
@@ -22,7 +22,7 @@ class Fate:
     outcome: str
     told: str
     after: tuple[str, ...]
-    verdict: Verdict
+    verdict: MigrationVerdict
     count: int = 1
 
 
@@ -39,7 +39,7 @@ def fates(old: Project, new: Project, bound: int, tell: Callable[[int, int], Non
     """The fate of every configuration of the old behaviour, those of the same states and fate counted together."""
     machine = old.machine
     language, epoch = old.languages[0], time_of_day(MORNING)
-    walk = Walk(machine, outside(old, machine), language=language, epoch=epoch)
+    walk = StateSpaceSearch(machine, outside(old, machine), language=language, epoch=epoch)
     for walked in walk.go(bound):
         tell(walked, walk.waiting)
     found: dict[tuple[object, ...], Fate] = {}
@@ -56,11 +56,11 @@ def fate_of(old: Project, new: Project, snapshot: Snapshot) -> Fate:
     """What a reload at that moment would do."""
     verdict = plan(old, new, snapshot, at=snapshot.at)
     before = _inner(old, snapshot)
-    if isinstance(verdict, Plan):
+    if isinstance(verdict, MigrationPlan):
         after = _inner(new, verdict.snapshot)
         outcome = "moved" if verdict.exited or verdict.entered else "kept"
         return Fate(before, outcome, "; ".join(verdict.notes), after, verdict)
-    if isinstance(verdict, Wait):
+    if isinstance(verdict, MigrationDelay):
         return Fate(before, "waits", verdict.reason, (), verdict)
     return Fate(before, "refused", verdict.reason, (), verdict)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from lumen.cli.show import Show
 from lumen.interpreters.changes import live
-from lumen.interpreters.migration import Plan
+from lumen.interpreters.migration import MigrationPlan
 from lumen.language.commands import Command
 from lumen.language.projects import Project
 from lumen.runtime.resuming import anew
@@ -62,9 +62,9 @@ class Probation:
         self._back(str(error) or repr(error), bad, time.perf_counter() - began)
         return plan.commands
 
-    def _plan(self, good: Project) -> Plan:
+    def _plan(self, good: Project) -> MigrationPlan:
         plan = self._show.plan(good, now=True, back=True)
-        if isinstance(plan, Plan):
+        if isinstance(plan, MigrationPlan):
             return plan
         exhibition = self._show.exhibition
         return anew(good, exhibition.runtime.snapshot, exhibition.clock.now())

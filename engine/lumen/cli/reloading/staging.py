@@ -14,7 +14,7 @@ from lumen.cli.reloading.telling import Herald
 from lumen.cli.show import Show
 from lumen.errors import BusError
 from lumen.interpreters.changes import Change, changes
-from lumen.interpreters.migration import Plan, Refusal, Wait
+from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal
 from lumen.language.projects import Project
 
 _log = logging.getLogger(__name__)
@@ -81,9 +81,9 @@ class Staging:
         verdict = self._show.plan(staged.project, now=order.now)
         bulletin = self._about(staged, "dry run")
         match verdict:
-            case Plan(notes=notes):
+            case MigrationPlan(notes=notes):
                 bulletin.reason, bulletin.notes = "it would be in force at once", notes
-            case Wait(reason, what):
+            case MigrationDelay(reason, what):
                 bulletin.reason = f"it would wait for `{what}`: {reason}"
             case Refusal(hint=hint):
                 bulletin.verdict, bulletin.reason = "refused", reason_of(verdict, staged.project)
@@ -105,7 +105,7 @@ class Staging:
         staged.asked = snapshot
         try:
             verdict = self._show.plan(staged.project, now=staged.now, back=staged.back)
-            if isinstance(verdict, Plan):
+            if isinstance(verdict, MigrationPlan):
                 self._apply(staged, verdict, now)
                 return
         except Exception as error:  # a fault of ours costs the reload, and nothing else
@@ -122,7 +122,7 @@ class Staging:
             waiting.waiting_for, waiting.reason = what_for(verdict), verdict.reason
             self._herald.tell(waiting, staged.orders)
 
-    def _apply(self, staged: Staged, plan: Plan, now: float) -> None:
+    def _apply(self, staged: Staged, plan: MigrationPlan, now: float) -> None:
         before, began = self.running, time.perf_counter()
 
         def begun() -> None:
@@ -149,10 +149,10 @@ class Staging:
         except Exception:
             _log.exception("other files are in force, and not everybody was told")
 
-    def _give_up(self, staged: Staged, verdict: Wait | Refusal) -> None:
+    def _give_up(self, staged: Staged, verdict: MigrationDelay | Refusal) -> None:
         """It has waited long enough, or can't go on from here at all."""
         staged.going = False
-        if isinstance(verdict, Wait):
+        if isinstance(verdict, MigrationDelay):
             waited = f"`{verdict.what}` is still under way after {self.running.patience:g} s ({verdict.reason})"
             self._refuse(staged, waited, "`lumen reload --now` does not wait", keep=True)
         else:

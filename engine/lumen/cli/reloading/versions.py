@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lumen.errors import ProjectError, UsageError
-from lumen.interpreters.statechart import Snapshot, thaw
+from lumen.interpreters.statechart import Snapshot, deserialize
 from lumen.language.projects import Project
 from lumen.loading.packaged import find_project
 from lumen.loading.project import read_files
@@ -47,7 +47,7 @@ def version(name: str | None, here: Path | None = None) -> Version:
     project, diagnostics = check_files(root, files)
     if project is None:
         raise UsageError(f"{name or root} has errors: {ProjectError(diagnostics)}")
-    return Version(name or str(root), project, files, thaw(project.machine, kept.frozen) if kept else None)
+    return Version(name or str(root), project, files, deserialize(project.machine, kept.frozen) if kept else None)
 
 
 def _running(root: Path) -> tuple[Kept, Mapping[str, bytes]]:

@@ -14,12 +14,12 @@ from lumen.formats.scxml.elements import LUMEN, SCXML, SERVICE
 from lumen.formats.scxml.orders import Orders
 from lumen.formats.scxml.xml import Tag
 from lumen.language.diagnostics import Diagnostic
-from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 
-_TAGS = {Kind.PARALLEL: "parallel", Kind.FINAL: "final", Kind.HISTORY: "history"}
+_TAGS = {StateKind.PARALLEL: "parallel", StateKind.FINAL: "final", StateKind.HISTORY: "history"}
 
 
-def write_scxml(machine: Machine, place: Placing) -> tuple[str, list[Diagnostic]]:
+def write_scxml(machine: MachineDefinition, place: Placing) -> tuple[str, list[Diagnostic]]:
     """The document, and what in it is missing or means something to Lumen only.
 
     What SCXML has no word for (robot verbs, `do`, phrases, answers) stands in a namespace of its own: coming back to
@@ -34,7 +34,7 @@ def write_scxml(machine: Machine, place: Placing) -> tuple[str, list[Diagnostic]
 class _Document:
     """Writes the states of one machine."""
 
-    def __init__(self, machine: Machine, report: Report) -> None:
+    def __init__(self, machine: MachineDefinition, report: Report) -> None:
         self.machine, self.report = machine, report
         names = {state.name for state in machine.states.values() if state.path}
         self.ids = {path: state.name for path, state in machine.states.items()}
@@ -44,7 +44,7 @@ class _Document:
         self.vocabulary = Vocabulary(kinds_of(machine.context, machine.types), keys, self.ids)
         self.orders = Orders(self.vocabulary, report)
         root = machine.root
-        self.wrapped = root.kind is Kind.PARALLEL or any(
+        self.wrapped = root.kind is StateKind.PARALLEL or any(
             (root.transitions, root.entry, root.exit, root.do, root.invoke)
         )
 
@@ -102,11 +102,11 @@ class _Document:
             attributes["lumen:root"] = "true"
         elif state.name not in (state.path, state.path.rpartition(".")[2]):
             attributes["lumen:key"] = state.path.rpartition(".")[2]
-        if state.kind is Kind.HISTORY:
+        if state.kind is StateKind.HISTORY:
             attributes["type"] = "deep" if state.deep else "shallow"
             default = [Tag("transition", {"target": self._ids(state.initial)})] if state.initial else []
             return Tag("history", attributes, default)
-        if state.kind is Kind.COMPOUND:
+        if state.kind is StateKind.COMPOUND:
             attributes["initial"] = self._ids(state.initial)
         children = [*self._blocks(state), *self._transitions(state), *self._invokes(state)]
         if state.output is not None:
@@ -168,7 +168,7 @@ class _Document:
     def _inside(self, state: State, transition: Transition) -> bool:
         below = f"{state.path}." if state.path else ""
         targets = transition.targets
-        return state.kind is Kind.COMPOUND and bool(targets) and all(t and t.startswith(below) for t in targets)
+        return state.kind is StateKind.COMPOUND and bool(targets) and all(t and t.startswith(below) for t in targets)
 
     def _output(self, state: State) -> Iterator[Tag]:
         try:

@@ -4,13 +4,13 @@ from collections.abc import Iterator, Sequence
 
 from lumen.formats.scxml.candidates import overlap
 from lumen.language.actions import If, Raise, Send, Step
-from lumen.language.machines import Machine, State, Transition
+from lumen.language.machines import MachineDefinition, State, Transition
 
 
 class Descriptors:
     """Knows every event that a machine speaks of."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineDefinition) -> None:
         self.names = set(machine.events)
         self.wild: set[str] = set()
         for state in machine.states.values():

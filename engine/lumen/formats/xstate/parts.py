@@ -9,7 +9,7 @@ from lumen.formats.durations import duration
 from lumen.formats.findings import Findings
 from lumen.formats.xstate.source import Source
 from lumen.language.diagnostics import NodePath, has_errors
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.loading.behaviors import build_machine
 from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
@@ -92,7 +92,7 @@ class Parts:
         if document is None:
             return False
         report = DocumentReport(document)
-        build_machine(check_schema(document, "behavior", report), report, name="machine", into=Machine)
+        build_machine(check_schema(document, "behavior", report), report, name="machine", into=MachineDefinition)
         return not has_errors([*found, *(d for d in report.diagnostics if d.code != "unknown-state")])
 
     def guard(self, data: Any, where: NodePath) -> str | None:

@@ -12,12 +12,12 @@ from lumen.interpreters.expressions import ExpressionError, parse_expression
 from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import Expression, Step, Value
 from lumen.language.diagnostics import Diagnostic
-from lumen.language.machines import Answer, Invoke, Kind, Machine, State, Transition
+from lumen.language.machines import Answer, Invoke, MachineDefinition, State, StateKind, Transition
 
 _HINT = "give XState an implementation of that name"
 
 
-def write_xstate(machine: Machine, place: Placing) -> tuple[str, list[Diagnostic]]:
+def write_xstate(machine: MachineDefinition, place: Placing) -> tuple[str, list[Diagnostic]]:
     """The configuration, and what in it is missing or needs code.
 
     An action of ours is `{"type": "lumen.say", "params": …}`, a guard `{"type": "lumen.expression", "params":
@@ -32,7 +32,7 @@ def write_xstate(machine: Machine, place: Placing) -> tuple[str, list[Diagnostic
 class _Config:
     """Writes the states of one machine."""
 
-    def __init__(self, machine: Machine, report: Report) -> None:
+    def __init__(self, machine: MachineDefinition, report: Report) -> None:
         self.machine, self.report = machine, report
         self.descriptors = Descriptors(machine)
 
@@ -45,9 +45,9 @@ class _Config:
 
     def _state(self, state: State) -> dict[str, Any]:
         data: dict[str, Any] = {"id": state.alias} if state.alias and state.path else {}
-        if state.kind in (Kind.PARALLEL, Kind.FINAL, Kind.HISTORY):
+        if state.kind in (StateKind.PARALLEL, StateKind.FINAL, StateKind.HISTORY):
             data["type"] = str(state.kind)
-        if state.kind is Kind.HISTORY:
+        if state.kind is StateKind.HISTORY:
             data["history"] = "deep" if state.deep else "shallow"
             return data | ({"target": self._targets(state, state.initial)} if state.initial else {})
         below = [s for s in self.machine.states.values() if s.parent == state.path and s.path]
@@ -59,7 +59,7 @@ class _Config:
 
     def _begin(self, state: State, data: dict[str, Any]) -> dict[str, Any]:
         """`initial`; where that is no single child, a state that leads there at once."""
-        if state.kind is not Kind.COMPOUND:
+        if state.kind is not StateKind.COMPOUND:
             return {}
         if len(state.initial) == 1 and self.machine.states[state.initial[0]].parent == state.path:
             data["initial"] = state.initial[0].rpartition(".")[2]
@@ -167,7 +167,9 @@ class _Config:
         """Whether XState would stay in the state, and we leave it."""
         prefix = f"{state.path}." if state.path else ""
         within = all(path == state.path or path.startswith(prefix) for path in transition.targets)
-        return within and (transition.reenter or state.kind is not Kind.COMPOUND or state.path in transition.targets)
+        return within and (
+            transition.reenter or state.kind is not StateKind.COMPOUND or state.path in transition.targets
+        )
 
     def _actions(self, steps: Sequence[Step]) -> list[dict[str, Any]]:
         return [self._action(step) for step in steps]

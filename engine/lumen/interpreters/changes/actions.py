@@ -5,7 +5,7 @@ from difflib import SequenceMatcher
 from typing import TypeVar, assert_never
 
 from lumen.interpreters.changes.change import Change, Risk
-from lumen.interpreters.changes.words import code, names, quoted, seconds
+from lumen.interpreters.changes.formatting import code, names, quoted, seconds
 from lumen.language.actions import (
     Action,
     Assign,

@@ -6,19 +6,19 @@ from typing import Any
 
 from lumen.interpreters.changes.actions import block_changes
 from lumen.interpreters.changes.change import Change, Risk
+from lumen.interpreters.changes.formatting import code, how_many, names, quoted
 from lumen.interpreters.changes.transitions import transition_changes
-from lumen.interpreters.changes.words import code, how_many, names, quoted
 from lumen.interpreters.migration.identity import Identity
-from lumen.language.machines import Machine, State
+from lumen.language.machines import MachineDefinition, State
 
 
-def machine_changes(name: str, old: Machine, new: Machine) -> Iterator[Change]:
+def machine_changes(name: str, old: MachineDefinition, new: MachineDefinition) -> Iterator[Change]:
     """The changes of behaviors/NAME.yaml; a renamed state is the same one."""
     return _Comparison(name, old, new).all()
 
 
 class _Comparison:
-    def __init__(self, name: str, old: Machine, new: Machine) -> None:
+    def __init__(self, name: str, old: MachineDefinition, new: MachineDefinition) -> None:
         self.name, self.old, self.new, self.file = name, old, new, f"behaviors/{name}.yaml"
         identity = Identity(old, new)
         self.images = {path: identity.state(path) if path else "" for path in old.states}
@@ -53,7 +53,7 @@ class _Comparison:
                 sentence = f"{self.title(self.old.states[path])} is `{self.new.states[image].path}` now"
                 yield self.change("state", path, sentence)
 
-    def outermost(self, machine: Machine, paths: Collection[str], how: str) -> Iterator[Change]:
+    def outermost(self, machine: MachineDefinition, paths: Collection[str], how: str) -> Iterator[Change]:
         """A sentence for each of these states that lies in no other of them."""
         within = Counter(around for path in paths for around in _around(path) if around in paths)
         for path in paths:

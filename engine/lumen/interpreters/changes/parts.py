@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from lumen.interpreters.changes.change import Change, Risk
-from lumen.interpreters.changes.words import code, names, seconds
+from lumen.interpreters.changes.formatting import code, names, seconds
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.motions import Motion
 from lumen.language.routes import Route

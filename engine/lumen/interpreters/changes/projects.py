@@ -6,13 +6,13 @@ from itertools import groupby
 from typing import TypeVar
 
 from lumen.interpreters.changes.change import Change, Risk
-from lumen.interpreters.changes.fixed import FIXED
+from lumen.interpreters.changes.formatting import code, how_many
 from lumen.interpreters.changes.machines import machine_changes
 from lumen.interpreters.changes.parts import controller_changes, motion_changes, route_changes
-from lumen.interpreters.changes.words import code, how_many
+from lumen.interpreters.changes.restart_fields import RESTART_FIELDS
 from lumen.language.projects import Project
 
-MOST = 4
+MAX_SUMMARY_CHANGES = 4
 """Changes that a summary names; of what there is more of, it gives the number."""
 
 T = TypeVar("T")
@@ -36,12 +36,12 @@ def summary(found: Sequence[Change]) -> str:
     parts: list[str] = []
     for kind, group in groupby(sorted(found, key=lambda change: change.kind), lambda change: change.kind):
         rows = list(group)
-        if kind == "text" or (len(found) > MOST and len(rows) > 2):
+        if kind == "text" or (len(found) > MAX_SUMMARY_CHANGES and len(rows) > 2):
             parts.append(f"{how_many(len(rows), kind)} changed")
         else:
             parts += [change.sentence for change in rows]
-    if len(parts) > 2 * MOST:
-        parts = [*parts[: 2 * MOST], f"{how_many(len(parts) - 2 * MOST, 'more change')}"]
+    if len(parts) > 2 * MAX_SUMMARY_CHANGES:
+        parts = [*parts[: 2 * MAX_SUMMARY_CHANGES], f"{how_many(len(parts) - 2 * MAX_SUMMARY_CHANGES, 'more change')}"]
     return "; ".join(parts) or "nothing that matters changed"
 
 
@@ -64,7 +64,7 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
 
 def _settings(old: Project, new: Project) -> Iterator[Change]:
     """What else lumen.yaml says."""
-    for name, title in FIXED.items():
+    for name, title in RESTART_FIELDS.items():
         if getattr(old, name) != getattr(new, name):
             told = f"{title} changed: in force from the next start on"
             yield Change("fixed", name, told, Risk.RESTART, "lumen.yaml")
@@ -74,7 +74,7 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
             yield Change("language", language, f"language `{language}` {how}", Risk.BEHAVIOR, "lumen.yaml")
     if old.languages[:1] != new.languages[:1]:
         yield Change("language", "", f"`{new.languages[0]}` is spoken first now", Risk.BEHAVIOR, "lumen.yaml")
-    for field in (f.name for f in fields(Project) if f.name not in (*FIXED, *_PARTS, *_SELF)):
+    for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_PARTS, *_SELF)):
         before, after = getattr(old, field), getattr(new, field)
         if before != after:
             risk = Risk.BEHAVIOR if field == "behavior" else Risk.COSMETIC

@@ -5,14 +5,16 @@ from dataclasses import replace
 
 from lumen.interpreters.changes.actions import block_changes, paired
 from lumen.interpreters.changes.change import Change, Risk
-from lumen.interpreters.changes.words import code, names, seconds
+from lumen.interpreters.changes.formatting import code, names, seconds
 from lumen.language.machines import State, Transition
 
-Mapped = Callable[[tuple[str, ...]], tuple[str, ...]]
-Name = Callable[[str], str]
+PathMapping = Callable[[tuple[str, ...]], tuple[str, ...]]
+StateNaming = Callable[[str], str]
 
 
-def transition_changes(old: State, new: State, title: str, file: str, mapped: Mapped, name: Name) -> Iterator[Change]:
+def transition_changes(
+    old: State, new: State, title: str, file: str, mapped: PathMapping, name: StateNaming
+) -> Iterator[Change]:
     """The changes, trigger by trigger; `mapped` gives old paths their new names, `name` what a state is called."""
     comparison = _Comparison(title, file, name)
     before = _by_trigger([replace(t, targets=mapped(t.targets), source=new.path) for t in old.transitions])
@@ -32,7 +34,7 @@ def transition_changes(old: State, new: State, title: str, file: str, mapped: Ma
 
 
 class _Comparison:
-    def __init__(self, title: str, file: str, name: Name) -> None:
+    def __init__(self, title: str, file: str, name: StateNaming) -> None:
         self.title, self.file, self.name = title, file, name
 
     def change(self, sentence: str) -> Change:

@@ -7,15 +7,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.interpreters.exploration.findings import Finding, Stay, findings
-from lumen.interpreters.exploration.moves import Kind, Move
-from lumen.interpreters.exploration.walking import Walk
+from lumen.interpreters.exploration.findings import ExplorationFinding, PathStep, findings
+from lumen.interpreters.exploration.search import StateSpaceSearch
+from lumen.interpreters.exploration.stimuli import Stimulus, StimulusKind
 from lumen.language import machines
-from lumen.language.machines import Machine, Transition
+from lumen.language.machines import MachineDefinition, Transition
 
-__all__ = ["Exploration", "Finding", "Kind", "Move", "Stay", "explore"]
+__all__ = ["Exploration", "ExplorationFinding", "PathStep", "Stimulus", "StimulusKind", "explore"]
 
-BOUND = 10_000
+MAX_CONFIGURATIONS = 10_000
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Exploration:
     what can't be.
     """
 
-    findings: tuple[Finding, ...]
+    findings: tuple[ExplorationFinding, ...]
     configurations: int
     steps: int
     waiting: int
@@ -39,10 +39,10 @@ class Exploration:
 
 
 def explore(
-    machine: Machine,
+    machine: MachineDefinition,
     events: Mapping[str, Any],
     *,
-    bound: int = BOUND,
+    bound: int = MAX_CONFIGURATIONS,
     home: str = "",
     language: str = "",
     epoch: float = 0.0,
@@ -55,10 +55,10 @@ def explore(
     anywhere: nothing is found that depends on it. `tell` hears how many
     configurations were walked and how many are in sight, every now and then.
     """
-    walk = Walk(machine, events, language=language, epoch=epoch)
+    walk = StateSpaceSearch(machine, events, language=language, epoch=epoch)
     for walked in walk.go(bound):
         tell(walked, walk.waiting)
-    states = (s for s in machine.states.values() if s.path and s.kind is not machines.Kind.HISTORY)
+    states = (s for s in machine.states.values() if s.path and s.kind is not machines.StateKind.HISTORY)
     return Exploration(
         tuple(findings(machine, walk, home)),
         walk.walked,

@@ -5,16 +5,16 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from lumen.interpreters.exploration.expression_uses import invoked_behavior, of_state
 from lumen.interpreters.exploration.liveness import Liveness
-from lumen.interpreters.exploration.reading import behind, of_state
 from lumen.interpreters.expressions.tree import Call, Literal, walk
 from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
-ITEMS = 4
+MAX_ITEMS_COMPARED = 4
 """Of a list or map in the context more is not looked at."""
 
-Key = tuple[Any, ...]
+ConfigurationKey = tuple[Any, ...]
 
 
 class Abstraction:
@@ -26,7 +26,7 @@ class Abstraction:
     Times, ids, what has been drawn and (unless it is asked for) the language do not count.
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineDefinition) -> None:
         self._machine = machine
         self._liveness = Liveness(machine)
         uses = [use for state in machine.states.values() for use in of_state(state)]
@@ -37,7 +37,7 @@ class Abstraction:
         self._language = any(re.search(r"\bstate\.language\b", t) for t in _guards(machine))
         self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 
-    def key(self, snapshot: Snapshot) -> Key:
+    def key(self, snapshot: Snapshot) -> ConfigurationKey:
         live = self._liveness.of(snapshot.configuration)
         return (
             snapshot.configuration,
@@ -49,8 +49,8 @@ class Abstraction:
             tuple(self._child(id, child) for id, child in sorted(snapshot.invoked.items())),
         )
 
-    def _child(self, id: str, child: Invoked) -> Key:
-        behavior = behind(self._machine, child.state, id)
+    def _child(self, id: str, child: Invoked) -> ConfigurationKey:
+        behavior = invoked_behavior(self._machine, child.state, id)
         return (id, behavior, self._inner[behavior].key(child.snapshot))
 
     def value(self, value: Any) -> Any:
@@ -63,9 +63,9 @@ class Abstraction:
             known = value if not value or value in self._texts else "…"
             return (known, self._number(len(value))) if self._sized else known
         if isinstance(value, Mapping):
-            items: tuple[Any, ...] = tuple((k, self.value(v)) for k, v in sorted(value.items())[:ITEMS])
+            items: tuple[Any, ...] = tuple((k, self.value(v)) for k, v in sorted(value.items())[:MAX_ITEMS_COMPARED])
         else:
-            items = tuple(self.value(item) for item in value[:ITEMS])
+            items = tuple(self.value(item) for item in value[:MAX_ITEMS_COMPARED])
         return (items, self._number(len(value))) if self._sized else items
 
     def _number(self, value: float) -> tuple[int, float]:
@@ -74,7 +74,7 @@ class Abstraction:
         return (0, near) if least <= value <= most else (-1 if value < least else 1, 0)
 
 
-def _guards(machine: Machine) -> Iterator[str]:
+def _guards(machine: MachineDefinition) -> Iterator[str]:
     return (t.guard.source for state in machine.states.values() for t in state.transitions if t.guard)
 
 

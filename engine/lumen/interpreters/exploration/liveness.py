@@ -6,22 +6,22 @@ differ in it alone are one.
 
 from collections.abc import Iterator, Mapping
 
-from lumen.interpreters.exploration.reading import of_state, relevant, tree_of
+from lumen.interpreters.exploration.expression_uses import of_state, relevant, tree_of
 from lumen.interpreters.expressions import names
 from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import Assign, Expression, Step, Value
-from lumen.language.machines import Kind, Machine, State
+from lumen.language.machines import MachineDefinition, State, StateKind
 
 
 class Liveness:
     """The keys that can still matter, by atomic state."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineDefinition) -> None:
         self._machine = machine
         self.keys = relevant(machine)
         self._reads = {path: self._read(state) for path, state in machine.states.items()}
         self._kills = {path: self._killed(state) for path, state in machine.states.items()}
-        leaves = [s.path for s in machine.states.values() if s.kind in (Kind.ATOMIC, Kind.FINAL)]
+        leaves = [s.path for s in machine.states.values() if s.kind in (StateKind.ATOMIC, StateKind.FINAL)]
         self._next = {leaf: tuple(self._successors(leaf)) for leaf in leaves}
         self._live = self._solve(leaves)
         names_of = {s.name: s.path for s in machine.states.values() if s.path}
@@ -66,14 +66,14 @@ class Liveness:
         state = self._machine.states[target]
         while state.parent is not None:
             parent = self._machine.states[state.parent]
-            if parent.kind is Kind.PARALLEL or state.kind is Kind.HISTORY:
+            if parent.kind is StateKind.PARALLEL or state.kind is StateKind.HISTORY:
                 found |= set(self._below(parent.path))
             state = parent
         return found
 
     def _below(self, path: str) -> Iterator[str]:
         state = self._machine.states[path]
-        if state.kind in (Kind.ATOMIC, Kind.FINAL):
+        if state.kind in (StateKind.ATOMIC, StateKind.FINAL):
             yield path
         for child in state.children:
             yield from self._below(child)

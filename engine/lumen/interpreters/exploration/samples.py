@@ -6,22 +6,22 @@ from math import prod
 from typing import Any
 
 from lumen.interpreters.expressions.tree import Binary, Call, Items, Literal, Node, children, path_of, walk
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
-MOST = 300
+MAX_FIELD_COMBINATIONS = 300
 """Combinations of fields that are tried."""
 
-NAME = "Ani"
+SAMPLE_TEXT = "Ani"
 
-Path = tuple[str, ...]
+FieldPath = tuple[str, ...]
 
 
-def samples(machine: Machine, schema: Any, trees: Iterable[Node]) -> Iterator[Any]:
+def samples(machine: MachineDefinition, schema: Any, trees: Iterable[Node]) -> Iterator[Any]:
     """Data of an event with that JSON Schema, with every field that the trees read at all values they mention.
 
     Further ones go on where a field has many values; the first is the plainest.
     """
-    values: dict[Path, dict[Any, None]] = {}
+    values: dict[FieldPath, dict[Any, None]] = {}
     for tree in trees:
         for path, found in _mentioned(machine, tree):
             values.setdefault(path, {}).update(dict.fromkeys(found))
@@ -37,7 +37,7 @@ def samples(machine: Machine, schema: Any, trees: Iterable[Node]) -> Iterator[An
 
 def _chosen(columns: list[list[Any]]) -> Iterator[tuple[Any, ...]]:
     """Every combination of a value from each column; where there are too many, every value once."""
-    if prod(map(len, columns)) <= MOST:
+    if prod(map(len, columns)) <= MAX_FIELD_COMBINATIONS:
         yield from product(*columns)
         return
     first = tuple(column[0] for column in columns)
@@ -59,20 +59,20 @@ def example(schema: Any) -> Any:
 def _plain(schema: Any) -> list[Any]:
     """A few values of a field, by its schema."""
     if not isinstance(schema, Mapping) or not schema:
-        return [NAME, "", 0, True]
+        return [SAMPLE_TEXT, "", 0, True]
     if "const" in schema:
         return [schema["const"]]
     if schema.get("enum"):
         return list(schema["enum"])
     declared = schema.get("type", ())
     kinds = [declared] if isinstance(declared, str) else list(declared)
-    return [value for kind in kinds for value in _of_kind(kind, schema)] or [NAME]
+    return [value for kind in kinds for value in _of_kind(kind, schema)] or [SAMPLE_TEXT]
 
 
 def _of_kind(kind: str, schema: Mapping[str, Any]) -> list[Any]:
     least = schema.get("minimum", 0)
     plain: Mapping[str, list[Any]] = {
-        "string": [NAME, ""] if not schema.get("minLength") else [NAME],
+        "string": [SAMPLE_TEXT, ""] if not schema.get("minLength") else [SAMPLE_TEXT],
         "integer": [least, least + 1],
         "number": [least, least + 1],
         "boolean": [True, False],
@@ -80,7 +80,7 @@ def _of_kind(kind: str, schema: Mapping[str, Any]) -> list[Any]:
     return plain.get(kind, [None])
 
 
-def _mentioned(machine: Machine, tree: Node) -> Iterator[tuple[Path, list[Any]]]:
+def _mentioned(machine: MachineDefinition, tree: Node) -> Iterator[tuple[FieldPath, list[Any]]]:
     """For each field of the event's data that stands in the tree, values that it is compared with."""
     yield from ((path, []) for path in _fields(tree))
     for node, _ in walk(tree):
@@ -95,7 +95,7 @@ def _mentioned(machine: Machine, tree: Node) -> Iterator[tuple[Path, list[Any]]]
                     yield from ((path, found) for path in _fields(one))
 
 
-def _heard(machine: Machine, function: str, text: str) -> list[Any]:
+def _heard(machine: MachineDefinition, function: str, text: str) -> list[Any]:
     """Texts of which a function with that second argument says something, and others."""
     match function:
         case "heard":
@@ -104,7 +104,7 @@ def _heard(machine: Machine, function: str, text: str) -> list[Any]:
             rows = machine.answers.get(text, ())
             return [phrase for row in rows for texts in row.phrases.values() for phrase in texts[:1]]
         case "after":
-            return [text, f"{text} {NAME}"]
+            return [text, f"{text} {SAMPLE_TEXT}"]
         case "contains" | "matches":
             return [text.strip("^$")]
     return []
@@ -117,7 +117,7 @@ def _compared(other: Node, *, sized: bool) -> list[Any]:
         if isinstance(item, Literal):
             value = item.value
             if sized and isinstance(value, int):
-                found += [" ".join([NAME] * n) for n in (value, value + 1) if 0 <= n < 50]
+                found += [" ".join([SAMPLE_TEXT] * n) for n in (value, value + 1) if 0 <= n < 50]
             elif isinstance(value, int | float) and not isinstance(value, bool):
                 found += [value, value - 1, value + 1]
             else:
@@ -125,7 +125,7 @@ def _compared(other: Node, *, sized: bool) -> list[Any]:
     return found
 
 
-def _fields(tree: Node) -> Iterator[Path]:
+def _fields(tree: Node) -> Iterator[FieldPath]:
     """The fields of the event's data in a tree, each as a whole."""
     path = _field(tree)
     if path is not None:
@@ -135,18 +135,18 @@ def _fields(tree: Node) -> Iterator[Path]:
         yield from _fields(child)
 
 
-def _field(node: Node) -> Path | None:
+def _field(node: Node) -> FieldPath | None:
     path = path_of(node)
     return path[2:] if path and path[:2] == ("event", "data") else None
 
 
-def _below(schema: Any, path: Path) -> Any:
+def _below(schema: Any, path: FieldPath) -> Any:
     for key in path:
         schema = (schema.get("properties") or {}).get(key) if isinstance(schema, Mapping) else None
     return schema
 
 
-def _with(data: Any, path: Path, value: Any) -> Any:
+def _with(data: Any, path: FieldPath, value: Any) -> Any:
     if not path:
         return value
     fields = data if isinstance(data, Mapping) else {}

@@ -4,18 +4,18 @@
 in `placing`; what a `do` under way has to do with it, in `doing`; context, timers and history, in `carrying`.
 """
 
-from lumen.interpreters.migration.moving import How, move
-from lumen.interpreters.migration.verdicts import Plan, Refusal, Verdict, Wait
+from lumen.interpreters.migration.migrating import MigrationOptions, move
+from lumen.interpreters.migration.verdicts import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal
 from lumen.interpreters.statechart import Snapshot
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 
-__all__ = ["Plan", "Refusal", "Verdict", "Wait", "migrate", "plan"]
+__all__ = ["MigrationDelay", "MigrationPlan", "MigrationVerdict", "Refusal", "migrate", "plan"]
 
 
 def plan(
     old: Project, new: Project, snapshot: Snapshot, *, at: float = 0.0, now: bool = False, back: bool = False
-) -> Verdict:
+) -> MigrationVerdict:
     """How the behaviour that runs by `old` goes on by `new` from that snapshot at `at` [s]; nothing happens.
 
     Active states keep their identity by path or by `renamed`. One that is still there is not entered again, keeps its
@@ -25,12 +25,18 @@ def plan(
 
     `back` is a rollback: `new` ran before `old`, whose renamings are undone.
     """
-    how = How(at, now, back, new.languages)
+    how = MigrationOptions(at, now, back, new.languages)
     return move(old.machine, new.machine, snapshot, how, new.behavior)
 
 
 def migrate(
-    old: Machine, new: Machine, snapshot: Snapshot, *, at: float = 0.0, now: bool = False, back: bool = False
-) -> Verdict:
+    old: MachineDefinition,
+    new: MachineDefinition,
+    snapshot: Snapshot,
+    *,
+    at: float = 0.0,
+    now: bool = False,
+    back: bool = False,
+) -> MigrationVerdict:
     """The plan for machines without a project around them."""
-    return move(old, new, snapshot, How(at, now, back), new.id)
+    return move(old, new, snapshot, MigrationOptions(at, now, back), new.id)

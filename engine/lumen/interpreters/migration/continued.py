@@ -3,17 +3,17 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.migration.verdicts import Plan
+from lumen.interpreters.migration.verdicts import MigrationPlan
+from lumen.interpreters.statechart.activities import ActivityRunner
 from lumen.interpreters.statechart.answers import labelled
-from lumen.interpreters.statechart.chart import Node
-from lumen.interpreters.statechart.foreman import Foreman
+from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.hosting import output_of
 from lumen.interpreters.statechart.sessions import Session
 from lumen.interpreters.statechart.values import Invoked, Step
 from lumen.language.events import Event
 
 
-class Fresh(NamedTuple):
+class NewWork(NamedTuple):
     """What a state that stays has to begin: behaviours to invoke, by their ids, and its `do`."""
 
     invokes: frozenset[str]
@@ -23,10 +23,10 @@ class Fresh(NamedTuple):
 class Continued(Session):
     """States that stay (`fresh`) begin only what they did not have; `outcome` is the output of a machine at its end."""
 
-    fresh: Mapping[Node, Fresh] = {}
+    fresh: Mapping[StateNode, NewWork] = {}
     outcome: Any = None
 
-    def begin(self, node: Node) -> None:
+    def begin(self, node: StateNode) -> None:
         if node not in self.fresh:
             super().begin(node)
             return
@@ -34,14 +34,14 @@ class Continued(Session):
             if invoke.id in self.fresh[node].invokes:
                 self.introduce(node, invoke, given)
         if self.fresh[node].do:
-            Foreman.begin(self, node)
+            ActivityRunner.begin(self, node)
 
-    def leave(self, node: Node) -> None:
+    def leave(self, node: StateNode) -> None:
         """Leave a state; it is one like others after that."""
         super().leave(node)
         self.fresh = {other: fresh for other, fresh in self.fresh.items() if other is not node}
 
-    def adopt(self, id: str, child: Invoked, plan: Plan) -> None:
+    def adopt(self, id: str, child: Invoked, plan: MigrationPlan) -> None:
         """Go on with an invoked behaviour as planned, and follow what comes of it."""
         after = plan.snapshot
         self.invoked = {**self.invoked, id: child}

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
-KEYS = "context."
+CONTEXT_PREFIX = "context."
 """How `renamed` calls keys of the context: `context.name: context.visitor`."""
 
 
@@ -15,7 +15,7 @@ class Identity:
     below it along. `back` is the way to a bundle that ran before: the old machine's renamings are undone.
     """
 
-    def __init__(self, old: Machine, new: Machine, *, back: bool = False) -> None:
+    def __init__(self, old: MachineDefinition, new: MachineDefinition, *, back: bool = False) -> None:
         self._new = new
         fresh = {_path(old, name): now for name, now in new.renamed.items() if old.renamed.get(name) != now}
         past = {now: _path(new, name) for name, now in old.renamed.items() if new.renamed.get(name) != now}
@@ -41,15 +41,15 @@ class Identity:
         names = {key: key for key in self._new.context}
         for table in (self._last, self._first):
             for was, now in table.items():
-                if was.startswith(KEYS) and now.removeprefix(KEYS) in names:
-                    names[now.removeprefix(KEYS)] = was.removeprefix(KEYS)
+                if was.startswith(CONTEXT_PREFIX) and now.removeprefix(CONTEXT_PREFIX) in names:
+                    names[now.removeprefix(CONTEXT_PREFIX)] = was.removeprefix(CONTEXT_PREFIX)
         return names
 
     def _known(self, name: str) -> bool:
-        return name in self._new.states or name.removeprefix(KEYS) in self._new.context
+        return name in self._new.states or name.removeprefix(CONTEXT_PREFIX) in self._new.context
 
 
-def _path(machine: Machine, name: str) -> str:
+def _path(machine: MachineDefinition, name: str) -> str:
     """The path of the state of that id, else the name as it is."""
     if name in machine.states:
         return name

@@ -4,31 +4,31 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from lumen.interpreters.migration.identity import Identity
-from lumen.interpreters.statechart.chart import Chart, Node, Rule
-from lumen.interpreters.statechart.entering import Entered, History, Topology
-from lumen.language.machines import Kind, Transition
+from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
+from lumen.interpreters.statechart.state_sets import EntrySet, History, StateSets
+from lumen.language.machines import StateKind, Transition
 
 
 class Placement(NamedTuple):
     """`kept` maps old states that stay active to new ones; `left` are old ones, `entered` new ones."""
 
-    kept: Mapping[Node, Node]
-    left: frozenset[Node]
-    entered: frozenset[Node]
+    kept: Mapping[StateNode, StateNode]
+    left: frozenset[StateNode]
+    entered: frozenset[StateNode]
 
 
-class Homeless(NamedTuple):
+class Unplaced(NamedTuple):
     """What was active in `state` (new) is gone, and nothing says where to go; `gone` is the innermost old one.
 
     Or nothing is gone, but several children are active that can't be so together: `rivals`.
     """
 
-    state: Node
-    gone: Node
-    rivals: tuple[Node, ...] = ()
+    state: StateNode
+    gone: StateNode
+    rivals: tuple[StateNode, ...] = ()
 
 
-def place(new: Chart, active: frozenset[Node], identity: Identity, history: History) -> Placement | Homeless:
+def place(new: Chart, active: frozenset[StateNode], identity: Identity, history: History) -> Placement | Unplaced:
     """Where the active states of an old chart stand in the new one; `history` is the new one's.
 
     Nothing that stays is entered again. Where a compound state has lost the one that was active in it, the nearest
@@ -39,27 +39,27 @@ def place(new: Chart, active: frozenset[Node], identity: Identity, history: Hist
         if not placing.lead(empty, history):
             standing = placing.standing()
             rivals = tuple(child for child in empty.children if child in standing)
-            return Homeless(empty, _gone(empty, active, placing), rivals)
+            return Unplaced(empty, _gone(empty, active, placing), rivals)
     return placing.finish(history)
 
 
 class _Placing:
     """The states that stay, while it is found out which."""
 
-    def __init__(self, new: Chart, active: frozenset[Node], identity: Identity) -> None:
+    def __init__(self, new: Chart, active: frozenset[StateNode], identity: Identity) -> None:
         self.new, self.active = new, active
-        self.goals: list[Node] = []
+        self.goals: list[StateNode] = []
         self.images = {node: self._image(node, identity) for node in active}
-        self.kept: dict[Node, Node] = {}
+        self.kept: dict[StateNode, StateNode] = {}
         for leaf in sorted(_leaves(active), key=lambda node: node.index):
             self._keep(leaf)
 
-    def _image(self, node: Node, identity: Identity) -> Node | None:
+    def _image(self, node: StateNode, identity: Identity) -> StateNode | None:
         path = identity.state(node.path) if node.path else ""
         found = None if path is None else self.new.nodes[path]
-        return None if found and found.kind is Kind.HISTORY else found
+        return None if found and found.kind is StateKind.HISTORY else found
 
-    def _keep(self, leaf: Node) -> None:
+    def _keep(self, leaf: StateNode) -> None:
         """Keep a leaf and the states around it that are still around it; or those around where it was."""
         chain = [node for node in (leaf, *leaf.ancestors) if node in self.images]
         anchor = next(image for node in chain if (image := self.images[node]) is not None)
@@ -68,68 +68,68 @@ class _Placing:
             image = self.images[node]
             if image is None or image not in around or image in self.kept.values():
                 continue
-            if image.kind is Kind.FINAL and node.kind is not Kind.FINAL:
+            if image.kind is StateKind.FINAL and node.kind is not StateKind.FINAL:
                 self.goals.append(image)
             else:
                 self.kept[node] = image
 
-    def standing(self) -> set[Node]:
+    def standing(self) -> set[StateNode]:
         """All that stays or is entered for sure, and what is around it."""
         found = {*self.kept.values(), *self.goals}
         return found.union(*(node.ancestors for node in found))
 
-    def homeless(self) -> Node | None:
+    def homeless(self) -> StateNode | None:
         """The outermost compound state of which none or several children stand, and that can't just begin."""
         standing = self.standing()
         begins = {self.kept[leaf] for leaf in _leaves(self.active) if leaf in self.kept} | set(self.goals)
         for node in sorted(standing, key=lambda node: node.index):
             active = sum(child in standing for child in node.children)
-            if node.kind is Kind.COMPOUND and node is not self.new.document and node not in begins and active != 1:
+            if node.kind is StateKind.COMPOUND and node is not self.new.document and node not in begins and active != 1:
                 return node
         return None
 
-    def lead(self, empty: Node, history: History) -> bool:
+    def lead(self, empty: StateNode, history: History) -> bool:
         """Follow the nearest `onReload`: what lies in its way is left; False where there is none."""
         source = next((n for n in (empty, *empty.ancestors) if n.state and n.state.on_reload), None)
         if source is None or source.state is None:
             return False
         target = self.new.nodes[source.state.on_reload]
-        domain = Topology(self.new, history).domain(Rule(Transition(empty.path), empty, (target,)))
+        domain = StateSets(self.new, history).domain(CompiledTransition(Transition(empty.path), empty, (target,)))
         self.kept = {node: image for node, image in self.kept.items() if not image.lies_below(domain)}
         self.goals = [goal for goal in self.goals if not goal.lies_below(domain)]
-        self.goals += Topology(self.new, history).effective([target])
+        self.goals += StateSets(self.new, history).effective([target])
         return True
 
     def finish(self, history: History) -> Placement:
         """Enter what the states that stay need around, beside and within them."""
         staying = frozenset(self.kept.values())
-        topology = Topology(self.new, history, staying)
-        entered = Entered()
+        topology = StateSets(self.new, history, staying)
+        entered = EntrySet()
         entered.reached |= self.standing()
         topology.reach(self.goals, entered)
         for node in staying:
             topology.add_ancestors(node, self.new.document, entered)
         for node in sorted(staying, key=lambda node: node.index):
-            if node.kind is Kind.PARALLEL or not any(child in entered.reached for child in node.children):
+            if node.kind is StateKind.PARALLEL or not any(child in entered.reached for child in node.children):
                 topology.fill(node, entered)
         left = frozenset(node for node in self.active if node not in self.kept)
         return Placement(self.kept, left, frozenset(entered - staying))
 
 
-def is_legal(chart: Chart, active: Iterable[Node]) -> bool:
+def is_legal(chart: Chart, active: Iterable[StateNode]) -> bool:
     """Whether these states are a configuration (SCXML 3.11): one child of a compound state, all of a parallel one."""
     known = set(active)
     counts = {node: sum(child in known for child in node.children) for node in known}
-    needed = {node: {Kind.COMPOUND: 1, Kind.PARALLEL: len(node.children)}.get(node.kind, 0) for node in known}
+    needed = {node: {StateKind.COMPOUND: 1, StateKind.PARALLEL: len(node.children)}.get(node.kind, 0) for node in known}
     around = all(node is chart.root or node.parent in known for node in known)
     return chart.root in known and around and counts == needed
 
 
-def _leaves(active: frozenset[Node]) -> Iterator[Node]:
+def _leaves(active: frozenset[StateNode]) -> Iterator[StateNode]:
     return (node for node in active if not any(child in active for child in node.children))
 
 
-def _gone(empty: Node, active: frozenset[Node], placing: _Placing) -> Node:
+def _gone(empty: StateNode, active: frozenset[StateNode], placing: _Placing) -> StateNode:
     """The innermost old state that stood in `empty` and does not stay."""
     left = [node for node in active if node not in placing.kept]
     inside = [n for n in left if any(placing.kept.get(a) is empty for a in n.ancestors)]

@@ -3,18 +3,18 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from lumen.interpreters.migration import carrying
-from lumen.interpreters.migration.doing import goes_on
+from lumen.interpreters.migration import carried_state as carrying
+from lumen.interpreters.migration.activity_compatibility import can_continue
 from lumen.interpreters.migration.identity import Identity
-from lumen.interpreters.migration.placing import Homeless, Placement, place
-from lumen.interpreters.migration.verdicts import Refusal, Wait
-from lumen.interpreters.statechart.chart import Node
-from lumen.interpreters.statechart.program import Program, compiled
+from lumen.interpreters.migration.placing import Placement, Unplaced, place
+from lumen.interpreters.migration.verdicts import MigrationDelay, Refusal
+from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.program import CompiledMachine, compiled
 from lumen.interpreters.statechart.values import Snapshot
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
 
-class How(NamedTuple):
+class MigrationOptions(NamedTuple):
     """The time of the change [s], whether to cancel rather than wait, whether back to a bundle that ran before.
 
     `languages` are those that may be spoken, the first where the present one is gone; any where there are none.
@@ -29,7 +29,9 @@ class How(NamedTuple):
 class Situation:
     """A snapshot between two machines; `placement` is what stays of it, or for whom there is no place."""
 
-    def __init__(self, old: Machine, new: Machine, snapshot: Snapshot, how: How) -> None:
+    def __init__(
+        self, old: MachineDefinition, new: MachineDefinition, snapshot: Snapshot, how: MigrationOptions
+    ) -> None:
         self.old, self.new, self.how = compiled(old), compiled(new), how
         self.before = snapshot._replace(at=max(snapshot.at, how.at))
         self.start = self.old.planner.configuration(snapshot.configuration)
@@ -37,7 +39,7 @@ class Situation:
         history = carrying.history(snapshot.history, self.new.chart, self.identity)
         self.placement = place(self.new.chart, self.start.nodes, self.identity, history)
 
-    def refusal(self, homeless: Homeless, behavior: str) -> Refusal:
+    def refusal(self, homeless: Unplaced, behavior: str) -> Refusal:
         state, gone, rivals = homeless
         title = f"`{state.name or behavior}`"
         if len(rivals) > 1:
@@ -50,12 +52,12 @@ class Situation:
             hint = f"give {title} an `onReload`, or say under `renamed` what `{gone.path}` is called now"
         return Refusal(reason, hint, gone.name, behavior, state.state.where if state.state else ())
 
-    def busy(self) -> Wait | None:
+    def busy(self) -> MigrationDelay | None:
         """The first state that is gone and still does something: it may lead elsewhere by itself."""
         gone = [node for node in self.start.ordered if node.path and self.identity.state(node.path) is None]
         return next((_gone(node) for node in gone if node.path in self.before.doing), None)
 
-    def waits(self, placement: Placement) -> Iterator[Wait]:
+    def waits(self, placement: Placement) -> Iterator[MigrationDelay]:
         """What is under way and could not go on, in the order of the old file."""
         doing = self.before.doing
         changed = self.changed(placement)
@@ -63,20 +65,20 @@ class Situation:
             if node.path in doing and node in placement.left:
                 yield _gone(node)
             elif node in changed:
-                yield Wait(f"what `{node.name}` is doing has changed", node.name)
+                yield MigrationDelay(f"what `{node.name}` is doing has changed", node.name)
         for id in self.ending(placement):
             child = self.before.invoked[id]
             if _is_busy(child.snapshot):
-                yield Wait(f"`{id}` is not invoked any more, and is still doing something", id)
+                yield MigrationDelay(f"`{id}` is not invoked any more, and is still doing something", id)
 
-    def changed(self, placement: Placement) -> list[Node]:
+    def changed(self, placement: Placement) -> list[StateNode]:
         """The states that stay, and whose `do` is under way and can't go on."""
         doing = [(node, image) for node, image in placement.kept.items() if node.path in self.before.doing]
         return [
             node
             for node, image in doing
             if node.state and image.state
-            if not goes_on(node.state.do, image.state.do, self.before.doing[node.path])
+            if not can_continue(node.state.do, image.state.do, self.before.doing[node.path])
         ]
 
     def ending(self, placement: Placement) -> list[str]:
@@ -86,15 +88,15 @@ class Situation:
             id
             for id, child in self.before.invoked.items()
             if child.state not in kept
-            or behind(self.old, child.state, id) != behind(self.new, kept[child.state].path, id)
+            or invoked_behavior(self.old, child.state, id) != invoked_behavior(self.new, kept[child.state].path, id)
         ]
 
 
-def _gone(node: Node) -> Wait:
-    return Wait(f"`{node.name}` is gone, and is still doing something", node.name)
+def _gone(node: StateNode) -> MigrationDelay:
+    return MigrationDelay(f"`{node.name}` is gone, and is still doing something", node.name)
 
 
-def behind(program: Program, path: str, id: str) -> str:
+def invoked_behavior(program: CompiledMachine, path: str, id: str) -> str:
     """The behaviour that a state invokes under that id; empty for none."""
     return next((i.behavior for i, _ in program.chart.nodes[path].invokes if i.id == id), "")
 

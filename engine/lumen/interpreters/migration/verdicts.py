@@ -7,7 +7,7 @@ from lumen.language.commands import Command
 from lumen.language.diagnostics import NodePath
 
 
-class Plan(NamedTuple):
+class MigrationPlan(NamedTuple):
     """How a behaviour goes on: `snapshot` under the new files, and what has to be done for that.
 
     Perform `leaving` under the old bundle (exit actions and cancels, in the order of exit), then `entering` under the
@@ -30,7 +30,7 @@ class Plan(NamedTuple):
         return self.leaving + self.entering
 
 
-class Wait(NamedTuple):
+class MigrationDelay(NamedTuple):
     """Not yet: `what` names the state whose `do` (or invoked behaviour) is under way and gone or changed.
 
     Ask again when the behaviour has taken a step, or with `now`, which cancels what is under way.
@@ -54,4 +54,4 @@ class Refusal(NamedTuple):
     where: NodePath = ()
 
 
-Verdict = Plan | Wait | Refusal
+MigrationVerdict = MigrationPlan | MigrationDelay | Refusal

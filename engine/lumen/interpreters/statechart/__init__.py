@@ -7,9 +7,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lumen.interpreters.statechart.frozen import Timing, freeze, retimed
+    from lumen.interpreters.statechart.deserialization import deserialize
+    from lumen.interpreters.statechart.serialization import TimerPolicy, retimed, serialize
     from lumen.interpreters.statechart.stepping import due, elapse, initial, step
-    from lumen.interpreters.statechart.thawing import thaw
     from lumen.interpreters.statechart.values import (
         Awaiting,
         Counters,
@@ -31,27 +31,27 @@ __all__ = [
     "Snapshot",
     "Step",
     "Timer",
-    "Timing",
+    "TimerPolicy",
     "Within",
+    "deserialize",
     "due",
     "elapse",
-    "freeze",
     "initial",
     "retimed",
+    "serialize",
     "step",
-    "thaw",
 ]
 
-_PLACES = {
-    "frozen": ("Timing", "freeze", "retimed"),
+_MODULES = {
+    "serialization": ("TimerPolicy", "retimed", "serialize"),
     "stepping": ("due", "elapse", "initial", "step"),
-    "thawing": ("thaw",),
+    "deserialization": ("deserialize",),
     "values": ("Awaiting", "Counters", "Fork", "Invoked", "Position", "Snapshot", "Step", "Timer", "Within"),
 }
 
 
 def __getattr__(name: str) -> Any:
-    for module, names in _PLACES.items():
+    for module, names in _MODULES.items():
         if name in names:
             found = globals()[name] = getattr(import_module(f"{__name__}.{module}"), name)
             return found

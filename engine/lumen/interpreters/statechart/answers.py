@@ -10,10 +10,10 @@ from typing import NamedTuple
 from lumen.language.commands import Cancel, Command, Start
 from lumen.language.events import Event
 
-KINDS = ("done", "error", "cancelled")
+ANSWER_KINDS = ("done", "error", "cancelled")
 
 
-class Answer(NamedTuple):
+class CommandAnswer(NamedTuple):
     """What became of a command: `done`, or `error` or `cancelled` with a reason."""
 
     kind: str
@@ -21,13 +21,13 @@ class Answer(NamedTuple):
     reason: str
 
 
-def answer_of(event: Event) -> Answer | None:
+def answer_of(event: Event) -> CommandAnswer | None:
     """The robot's answer that an event is; None where it is something else."""
     kind, _, id = event.name.partition(".command.")
-    if kind not in KINDS or id[:1] not in ("c", "d") or not id[1:].partition("@")[0].isdecimal():
+    if kind not in ANSWER_KINDS or id[:1] not in ("c", "d") or not id[1:].partition("@")[0].isdecimal():
         return None
     data = event.data if isinstance(event.data, Mapping) else {}
-    return Answer(kind, id, str(data.get("reason", "")) or kind)
+    return CommandAnswer(kind, id, str(data.get("reason", "")) or kind)
 
 
 def outside(id: str, owner: str) -> str:

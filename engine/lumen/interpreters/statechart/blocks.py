@@ -40,68 +40,68 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 
 if TYPE_CHECKING:
-    from lumen.interpreters.statechart.workbench import Workbench
+    from lumen.interpreters.statechart.execution_context import ExecutionContext
 
-Act: TypeAlias = "Callable[[Workbench], None]"
-Block: TypeAlias = "tuple[tuple[Act, NodePath], ...]"
-Make: TypeAlias = "Callable[[Workbench], BodyCommand]"
+ActionFunction: TypeAlias = "Callable[[ExecutionContext], None]"
+CompiledBlock: TypeAlias = "tuple[tuple[ActionFunction, NodePath], ...]"
+CommandFactory: TypeAlias = "Callable[[ExecutionContext], BodyCommand]"
 
 
 class ActionError(Exception):
     """An action can't be done as it is written; the rest of its block is skipped."""
 
 
-def compile_block(steps: tuple[Step, ...]) -> Block:
+def compile_block(steps: tuple[Step, ...]) -> CompiledBlock:
     """Each action with the place it stands at."""
     return tuple((compile_action(step.action), step.where) for step in steps)
 
 
-def compile_action(action: Action) -> Act:
+def compile_action(action: Action) -> ActionFunction:
     """The doing of one action; it raises ExpressionError or ActionError where it fails."""
     match action:
         case Assign(values):
             return _assign(values)
         case Raise(event, data):
             body = compile_value(data)
-            return lambda bench: bench.post(Event(event, body(bench.view()), bench.at))
+            return lambda execution: execution.post(Event(event, body(execution.view()), execution.at))
         case Send(event, data, delay, id):
             body = compile_value(data)
-            return lambda bench: bench.set_timer(id, delay, event, body(bench.view()))
+            return lambda execution: execution.set_timer(id, delay, event, body(execution.view()))
         case CancelSend(id):
-            return lambda bench: bench.cancel_send(id)
+            return lambda execution: execution.cancel_send(id)
         case PublishBody(route, data):
             body = compile_value(data)
-            return lambda bench: bench.emit(Publish(route, body(bench.view())))
+            return lambda execution: execution.emit(Publish(route, body(execution.view())))
         case LogText(template):
             text = compile_template(template.text)
-            return lambda bench: bench.emit(Log(text(bench.view())))
+            return lambda execution: execution.emit(Log(text(execution.view())))
         case If(guard, then, otherwise):
             return _if(guard, compile_block(then), compile_block(otherwise))
         case Wait() | Parallel():
             raise TypeError(f"{action} stands outside `do`")
     make = compile_command(action)
 
-    def begin(bench: "Workbench") -> None:
-        bench.start(make(bench))
+    def begin(execution: "ExecutionContext") -> None:
+        execution.start(make(execution))
 
     return begin
 
 
-def compile_command(action: Action) -> Make:
+def compile_command(action: Action) -> CommandFactory:
     """The command that a robot verb stands for."""
     match action:
         case SayText(texts):
             return _say(texts)
         case Language(language):
 
-            def speak(bench: "Workbench") -> BodyCommand:
-                bench.language = language
-                bench.scope = None
+            def speak(execution: "ExecutionContext") -> BodyCommand:
+                execution.language = language
+                execution.scope = None
                 return action
 
             return speak
         case Play() | Posture() | Walk() | Move() | Look() | Track() | Stop() | Rest() | Wake():
-            return lambda bench: action
+            return lambda execution: action
         case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText() | If() | Wait() | Parallel():
             raise TypeError(f"{action} is no command")
         case _:
@@ -123,42 +123,42 @@ def compile_value(value: Value) -> Callable[[Scope], Any]:
             return lambda scope: value
 
 
-def _assign(values: Mapping[str, Value]) -> Act:
+def _assign(values: Mapping[str, Value]) -> ActionFunction:
     pairs = [(key, compile_value(value)) for key, value in values.items()]
 
-    def assign(bench: "Workbench") -> None:
-        before = bench.context
+    def assign(execution: "ExecutionContext") -> None:
+        before = execution.context
         try:
             for key, value in pairs:
-                bench.store(key, value(bench.scope or bench.view()))
+                execution.store(key, value(execution.scope or execution.view()))
         except BaseException:
-            bench.context, bench.scope = before, None
+            execution.context, execution.scope = before, None
             raise
 
     return assign
 
 
-def _if(guard: Expression, then: Block, otherwise: Block) -> Act:
+def _if(guard: Expression, then: CompiledBlock, otherwise: CompiledBlock) -> ActionFunction:
     holds = compile_guard(guard.source)
 
-    def choose(bench: "Workbench") -> None:
-        for act, _ in then if holds(bench.view()) else otherwise:
-            act(bench)
+    def choose(execution: "ExecutionContext") -> None:
+        for act, _ in then if holds(execution.view()) else otherwise:
+            act(execution)
 
     return choose
 
 
-def _say(texts: Mapping[str, tuple[Any, ...]]) -> Make:
+def _say(texts: Mapping[str, tuple[Any, ...]]) -> CommandFactory:
     spoken = {
         language: tuple(compile_template(template.text) for template in templates)
         for language, templates in texts.items()
     }
     fallback = "" if "" in spoken else next(iter(spoken))
 
-    def say(bench: "Workbench") -> BodyCommand:
-        language = bench.language if bench.language in spoken else fallback
+    def say(execution: "ExecutionContext") -> BodyCommand:
+        language = execution.language if execution.language in spoken else fallback
         alternatives = spoken[language]
-        text = alternatives[bench.draw(len(alternatives))](bench.view())
-        return Say(text, language or bench.language)
+        text = alternatives[execution.draw(len(alternatives))](execution.view())
+        return Say(text, language or execution.language)
 
     return say

@@ -3,15 +3,15 @@
 from collections.abc import Callable, Iterator, Mapping
 
 from lumen.interpreters.expressions import Scope, compile_guard
-from lumen.interpreters.statechart.blocks import Block, compile_block, compile_value
-from lumen.interpreters.statechart.doing import Deed, compile_do
+from lumen.interpreters.statechart.blocks import CompiledBlock, compile_block, compile_value
+from lumen.interpreters.statechart.doing import CompiledAction, compile_do
 from lumen.interpreters.statechart.types import type_checks
-from lumen.language.machines import Kind, Machine, State, Transition
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 
-Guard = Callable[[Scope], bool]
+CompiledGuard = Callable[[Scope], bool]
 
 
-class Node:
+class StateNode:
     """A state, with its neighbours at hand; compared by identity. `index` is its place in document order."""
 
     __slots__ = (
@@ -19,22 +19,22 @@ class Node:
         "kind", "name", "output", "parent", "path", "rules", "state", "views",
     )  # fmt: skip
 
-    def __init__(self, state: State | None, index: int, parent: "Node | None") -> None:
+    def __init__(self, state: State | None, index: int, parent: "StateNode | None") -> None:
         self.state = state
         self.index = index
         self.parent = parent
         self.path = state.path if state else ""
         self.name = state.name if state else ""
-        self.kind = state.kind if state else Kind.COMPOUND
-        self.ancestors: tuple[Node, ...] = (parent, *parent.ancestors) if parent else ()
-        self.children: list[Node] = []
-        self.histories: list[Node] = []
-        self.initial: tuple[Node, ...] = ()
-        self.rules: tuple[Rule, ...] = ()
+        self.kind = state.kind if state else StateKind.COMPOUND
+        self.ancestors: tuple[StateNode, ...] = (parent, *parent.ancestors) if parent else ()
+        self.children: list[StateNode] = []
+        self.histories: list[StateNode] = []
+        self.initial: tuple[StateNode, ...] = ()
+        self.rules: tuple[CompiledTransition, ...] = ()
         self.afters: tuple[tuple[str, float], ...] = ()
-        self.entry: Block = compile_block(state.entry) if state else ()
-        self.exit: Block = compile_block(state.exit) if state else ()
-        self.do: tuple[Deed, ...] = compile_do(state.do) if state else ()
+        self.entry: CompiledBlock = compile_block(state.entry) if state else ()
+        self.exit: CompiledBlock = compile_block(state.exit) if state else ()
+        self.do: tuple[CompiledAction, ...] = compile_do(state.do) if state else ()
         self.invokes = tuple((i, compile_value(i.input)) for i in state.invoke) if state else ()
         self.views: dict[str, Mapping[str, str]] = {}
         self.output = compile_value(state.output) if state and state.output is not None else None
@@ -54,11 +54,11 @@ class Node:
             found = self.views[language] = {"path": self.path, "language": language}
         return found
 
-    def lies_below(self, other: "Node") -> bool:
+    def lies_below(self, other: "StateNode") -> bool:
         """Whether it is a proper descendant of the other (`isDescendant`)."""
         return other in self.ancestors
 
-    def below(self, top: "Node") -> Iterator["Node"]:
+    def below(self, top: "StateNode") -> Iterator["StateNode"]:
         """Its proper ancestors, from the inside, up to but not including `top` (`getProperAncestors`)."""
         for ancestor in self.ancestors:
             if ancestor is top:
@@ -66,19 +66,19 @@ class Node:
             yield ancestor
 
 
-class Rule:
+class CompiledTransition:
     """A transition, its guard and actions compiled; compared by identity."""
 
     __slots__ = ("alone", "block", "guard", "source", "targets", "transition", "where")
 
-    def __init__(self, transition: Transition, source: Node, targets: tuple[Node, ...]) -> None:
+    def __init__(self, transition: Transition, source: StateNode, targets: tuple[StateNode, ...]) -> None:
         self.transition = transition
         self.source = source
         self.targets = targets
         guard = transition.guard
-        self.guard: Guard | None = compile_guard(guard.source) if guard else None
+        self.guard: CompiledGuard | None = compile_guard(guard.source) if guard else None
         self.where = guard.where if guard else transition.where
-        self.block: Block = compile_block(transition.actions)
+        self.block: CompiledBlock = compile_block(transition.actions)
         self.alone = (self,)
 
     def matches(self, name: str) -> bool:
@@ -95,14 +95,14 @@ class Rule:
 class Chart:
     """All nodes of a machine: `document` is the implicit `<scxml>` around the root."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineDefinition) -> None:
         self.machine = machine
-        self.document = Node(None, -1, None)
-        self.nodes: dict[str, Node] = {}
+        self.document = StateNode(None, -1, None)
+        self.nodes: dict[str, StateNode] = {}
         for index, state in enumerate(machine.states.values()):
             parent = self.document if state.parent is None else self.nodes[state.parent]
-            node = self.nodes[state.path] = Node(state, index, parent)
-            (parent.histories if node.kind is Kind.HISTORY else parent.children).append(node)
+            node = self.nodes[state.path] = StateNode(state, index, parent)
+            (parent.histories if node.kind is StateKind.HISTORY else parent.children).append(node)
         self.root = self.nodes[""]
         self.document.initial = (self.root,)
         self.by_name = {node.name: node for node in self.nodes.values() if node is not self.root}
@@ -111,8 +111,10 @@ class Chart:
         for node in self.nodes.values():
             self._connect(node)
 
-    def _connect(self, node: Node) -> None:
+    def _connect(self, node: StateNode) -> None:
         assert node.state is not None  # only the document has none, and it is not among the nodes
         node.initial = tuple(self.nodes[path] for path in node.state.initial)
-        node.rules = tuple(Rule(t, node, tuple(self.nodes[path] for path in t.targets)) for t in node.state.transitions)
+        node.rules = tuple(
+            CompiledTransition(t, node, tuple(self.nodes[path] for path in t.targets)) for t in node.state.transitions
+        )
         node.afters = tuple({t.event: t.delay for t in node.state.transitions if t.delay is not None}.items())

@@ -5,7 +5,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from lumen.interpreters.expressions import ExpressionError, Scope, compile_guard
-from lumen.interpreters.statechart.blocks import Act, ActionError, Make, compile_action, compile_command
+from lumen.interpreters.statechart.blocks import (
+    ActionError,
+    ActionFunction,
+    CommandFactory,
+    compile_action,
+    compile_command,
+)
 from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Within
 from lumen.language.actions import (
     Action,
@@ -23,83 +29,87 @@ from lumen.language.actions import (
 from lumen.language.diagnostics import NodePath
 
 if TYPE_CHECKING:
-    from lumen.interpreters.statechart.workbench import Workbench
+    from lumen.interpreters.statechart.execution_context import ExecutionContext
 
 
 @dataclass(frozen=True, slots=True)
-class Instant:
+class InstantAction:
     """Done at once."""
 
-    act: Act
+    act: ActionFunction
     where: NodePath
 
 
 @dataclass(frozen=True, slots=True)
-class Awaited:
+class AwaitedCommand:
     """A robot's command, over when it is answered."""
 
-    make: Make
+    make: CommandFactory
     where: NodePath
 
 
 @dataclass(frozen=True, slots=True)
-class Pause:
+class TimedWait:
     """Over after so many [s]."""
 
     seconds: float
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class ConditionalAction:
     """`if`: one block or the other."""
 
     guard: Callable[[Scope], bool]
-    then: "tuple[Deed, ...]"
-    otherwise: "tuple[Deed, ...]"
+    then: "tuple[CompiledAction, ...]"
+    otherwise: "tuple[CompiledAction, ...]"
     where: NodePath
 
-    def block(self, name: str) -> "tuple[Deed, ...]":
+    def block(self, name: str) -> "tuple[CompiledAction, ...]":
         return self.then if name == "then" else self.otherwise
 
 
 @dataclass(frozen=True, slots=True)
-class Together:
+class ParallelActions:
     """`parallel`: over with the last of its branches."""
 
-    branches: "tuple[Deed, ...]"
+    branches: "tuple[CompiledAction, ...]"
 
 
-Deed: TypeAlias = Instant | Awaited | Pause | Choice | Together
+CompiledAction: TypeAlias = InstantAction | AwaitedCommand | TimedWait | ConditionalAction | ParallelActions
 
 
-class DeedError(Exception):
-    """A deed failed; carries the place and the reason."""
+class ActivityError(Exception):
+    """A action failed; carries the place and the reason."""
 
     def __init__(self, reason: str, where: NodePath) -> None:
         super().__init__(reason)
         self.reason, self.where = reason, where
 
 
-def compile_do(steps: tuple[Step, ...]) -> tuple[Deed, ...]:
-    """The deeds of a `do`."""
+def compile_do(steps: tuple[Step, ...]) -> tuple[CompiledAction, ...]:
+    """The actions of a `do`."""
     return tuple(_compile(step.action, step.where) for step in steps)
 
 
-def begin_block(bench: "Workbench", deeds: tuple[Deed, ...], name: Any = "do", index: int = 0) -> Within | None:
+def begin_block(
+    execution: "ExecutionContext", actions: tuple[CompiledAction, ...], name: Any = "do", index: int = 0
+) -> Within | None:
     """Do everything from `index` on that takes no time; where it stands then, None at its end."""
-    for place in range(index, len(deeds)):
-        inner = _begin(bench, deeds[place])
+    for place in range(index, len(actions)):
+        inner = _begin(execution, actions[place])
         if inner is not None:
             return Within(name, place, inner)
     return None
 
 
-def resume(bench: "Workbench", deeds: tuple[Deed, ...], position: Within, id: str) -> Within | None:
+def resume(
+    execution: "ExecutionContext", actions: tuple[CompiledAction, ...], position: Within, id: str
+) -> Within | None:
     """Go on from `position` now that what it awaited under `id` is over."""
-    inner = _resume(bench, deeds[position.place], position.inner, id)
+    inner = _resume(execution, actions[position.place], position.inner, id)
     if inner is not None:
         return position._replace(inner=inner)
-    return begin_block(bench, deeds, position.block, position.place + 1)
+    return begin_block(execution, actions, position.block, position.place + 1)
 
 
 def awaited(position: Position | None) -> Iterator[str]:
@@ -114,37 +124,39 @@ def awaited(position: Position | None) -> Iterator[str]:
                 yield from awaited(branch)
 
 
-def _begin(bench: "Workbench", deed: Deed) -> Position | None:
-    match deed:
-        case Instant(act, where):
+def _begin(execution: "ExecutionContext", action: CompiledAction) -> Position | None:
+    match action:
+        case InstantAction(act, where):
             with _Failing(where):
-                act(bench)
+                act(execution)
             return None
-        case Awaited(make, where):
+        case AwaitedCommand(make, where):
             with _Failing(where):
-                return Awaiting(bench.start(make(bench), awaited=True))
-        case Pause(seconds):
-            return Awaiting(bench.set_wait(seconds))
-        case Choice(guard, then, otherwise, where):
+                return Awaiting(execution.start(make(execution), awaited=True))
+        case TimedWait(seconds):
+            return Awaiting(execution.set_wait(seconds))
+        case ConditionalAction(guard, then, otherwise, where):
             with _Failing(where):
-                holds = guard(bench.view())
-            return begin_block(bench, then if holds else otherwise, "then" if holds else "else")
-        case Together(branches):
-            return _fork([_begin(bench, branch) for branch in branches])
-    raise AssertionError(deed)
+                holds = guard(execution.view())
+            return begin_block(execution, then if holds else otherwise, "then" if holds else "else")
+        case ParallelActions(branches):
+            return _fork([_begin(execution, branch) for branch in branches])
+    raise AssertionError(action)
 
 
-def _resume(bench: "Workbench", deed: Deed, position: Position, id: str) -> Position | None:
-    match deed, position:
-        case Choice(), Within(block, _, _):
-            return resume(bench, deed.block(block), position, id)
-        case Together(branches), Fork(positions):
-            return _fork([_move(bench, branch, place, id) for branch, place in zip(branches, positions, strict=True)])
+def _resume(execution: "ExecutionContext", action: CompiledAction, position: Position, id: str) -> Position | None:
+    match action, position:
+        case ConditionalAction(), Within(block, _, _):
+            return resume(execution, action.block(block), position, id)
+        case ParallelActions(branches), Fork(positions):
+            return _fork(
+                [_move(execution, branch, place, id) for branch, place in zip(branches, positions, strict=True)]
+            )
     return None
 
 
-def _move(bench: "Workbench", deed: Deed, position: Position | None, id: str) -> Position | None:
-    return _resume(bench, deed, position, id) if position is not None and id in awaited(position) else position
+def _move(execution: "ExecutionContext", action: CompiledAction, position: Position | None, id: str) -> Position | None:
+    return _resume(execution, action, position, id) if position is not None and id in awaited(position) else position
 
 
 def _fork(branches: list[Position | None]) -> Fork | None:
@@ -161,17 +173,17 @@ class _Failing:
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         if isinstance(error, ExpressionError | ActionError):
-            raise DeedError(str(error), self.where) from error
+            raise ActivityError(str(error), self.where) from error
 
 
-def _compile(action: Action, where: NodePath) -> Deed:
+def _compile(action: Action, where: NodePath) -> CompiledAction:
     match action:
         case Wait(seconds):
-            return Pause(seconds)
+            return TimedWait(seconds)
         case Parallel(branches):
-            return Together(compile_do(branches))
+            return ParallelActions(compile_do(branches))
         case If(guard, then, otherwise):
-            return Choice(compile_guard(guard.source), compile_do(then), compile_do(otherwise), guard.where)
+            return ConditionalAction(compile_guard(guard.source), compile_do(then), compile_do(otherwise), guard.where)
         case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText():
-            return Instant(compile_action(action), where)
-    return Awaited(compile_command(action), where)
+            return InstantAction(compile_action(action), where)
+    return AwaitedCommand(compile_command(action), where)

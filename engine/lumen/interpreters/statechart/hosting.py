@@ -8,19 +8,19 @@ from typing import Any, Self
 from lumen.errors import LumenError, UsageError
 from lumen.interpreters.expressions import ExpressionError, Scope
 from lumen.interpreters.statechart.answers import labelled
-from lumen.interpreters.statechart.chart import Node
-from lumen.interpreters.statechart.program import Program
-from lumen.interpreters.statechart.run import LIMIT, Run
+from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.program import CompiledMachine
+from lumen.interpreters.statechart.run import MAX_MICROSTEPS, MacrostepRunner
 from lumen.interpreters.statechart.types import checked
 from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
 from lumen.language.events import Event
 from lumen.language.machines import Invoke
 
-SHARE = 0.9
+INVOKED_MICROSTEP_SHARE = 0.9
 """The part of the microsteps still allowed that an invoked behaviour may take: what is left serves to answer it."""
 
 
-class Host(Run, ABC):
+class InvocationRunner(MacrostepRunner, ABC):
     """A run that knows of the behaviours invoked in it, each of them a run of its own (SCXML 6.4).
 
     `news` is an event from the world that they have not heard yet.
@@ -61,13 +61,13 @@ class Host(Run, ABC):
         for id in tuple(self.invoked):
             self.tell(id, event)
 
-    def begin(self, node: Node) -> None:
+    def begin(self, node: StateNode) -> None:
         """Invoke what the state invokes, then begin its `do`."""
         for invoke, given in node.invokes:
             self.introduce(node, invoke, given)
         super().begin(node)
 
-    def introduce(self, node: Node, invoke: Invoke, given: Callable[[Scope], Any]) -> None:
+    def introduce(self, node: StateNode, invoke: Invoke, given: Callable[[Scope], Any]) -> None:
         """Begin a behaviour with the input that the state gives it, or say why it can't begin."""
         self.stand(node)
         try:
@@ -77,7 +77,7 @@ class Host(Run, ABC):
             self.fail(str(error), (*invoke.where, "input"))
             self.lose(invoke.id, str(error))
 
-    def leave(self, node: Node) -> None:
+    def leave(self, node: StateNode) -> None:
         """Leave a state; what it invoked ends after its `exit`, and is heard of no more."""
         super().leave(node)
         if node.invokes:
@@ -86,7 +86,7 @@ class Host(Run, ABC):
             gone = {f"{kind}.invoke.{invoke.id}" for kind in ("done", "error") for invoke, _ in node.invokes}
             self.queue = deque(event for event in self.queue if event.name not in gone)
 
-    def invite(self, invoke: Invoke, node: Node, values: Mapping[str, Any]) -> None:
+    def invite(self, invoke: Invoke, node: StateNode, values: Mapping[str, Any]) -> None:
         """Begin a behaviour with these values in its context; raises UsageError where they don't fit."""
         chart = self.program.invoked[invoke.behavior].chart
         before = Snapshot(frozenset(), {**chart.machine.context, **checked(chart.machine.id, chart.checks, values)})
@@ -97,11 +97,11 @@ class Host(Run, ABC):
         """Let an invoked behaviour hear an event, or begin (None), and follow what comes of it."""
         state, _, commands = self.invoked[id]
         child = self.child(id, event)
-        before = child.turns = LIMIT - int(SHARE * (LIMIT - self.turns))
+        before = child.turns = MAX_MICROSTEPS - int(INVOKED_MICROSTEP_SHARE * (MAX_MICROSTEPS - self.turns))
         try:
             step = child.open() if event is None else child.hear(event)
         except LumenError as error:
-            self.turns += LIMIT - before
+            self.turns += MAX_MICROSTEPS - before
             self.end(id)
             self.lose(id, str(error))
             return
@@ -130,7 +130,7 @@ class Host(Run, ABC):
         )
         return type(self)(self.program_of(state, id), lent, event, self.at)
 
-    def program_of(self, state: str, id: str) -> Program:
+    def program_of(self, state: str, id: str) -> CompiledMachine:
         behavior = next(invoke.behavior for invoke, _ in self.chart.nodes[state].invokes if invoke.id == id)
         return self.program.invoked[behavior]
 

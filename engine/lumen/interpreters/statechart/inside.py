@@ -5,12 +5,12 @@ from itertools import compress
 from operator import not_
 from typing import TYPE_CHECKING
 
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
 if TYPE_CHECKING:
     from lumen.interpreters.statechart.values import Snapshot, Step
 
-INSIDE = "/"
+ID_SEPARATOR = "/"
 """Stands between the id of an `invoke` and a state of the behaviour that runs under it."""
 
 
@@ -18,11 +18,11 @@ def active(snapshot: "Snapshot") -> frozenset[str]:
     """The names of all active states, those of invoked behaviours included."""
     if not snapshot.invoked:
         return snapshot.configuration
-    inner = (f"{id}{INSIDE}{name}" for id, child in snapshot.invoked.items() for name in active(child.snapshot))
+    inner = (f"{id}{ID_SEPARATOR}{name}" for id, child in snapshot.invoked.items() for name in active(child.snapshot))
     return snapshot.configuration.union(inner)
 
 
-def innermost(machine: Machine, snapshot: "Snapshot") -> Iterator[str]:
+def innermost(machine: MachineDefinition, snapshot: "Snapshot") -> Iterator[str]:
     """The names of the active states that have none active within, invoked behaviours' after those of their host."""
     for state in machine.states.values():
         if state.name in snapshot.configuration and not any(
@@ -31,17 +31,19 @@ def innermost(machine: Machine, snapshot: "Snapshot") -> Iterator[str]:
             yield state.name
     for id, child in snapshot.invoked.items():
         other = machine.invoked[_behavior(machine, child.state, id)]
-        yield from (f"{id}{INSIDE}{name}" for name in innermost(other, child.snapshot))
+        yield from (f"{id}{ID_SEPARATOR}{name}" for name in innermost(other, child.snapshot))
 
 
 def entered(step: "Step") -> Iterator[str]:
     """The names of all states that a step entered, those of invoked behaviours included."""
     yield from step.entered
     for id, inner in step.invoked:
-        yield from (f"{id}{INSIDE}{name}" for name in entered(inner))
+        yield from (f"{id}{ID_SEPARATOR}{name}" for name in entered(inner))
 
 
-def unfolded(machine: Machine, step: "Step", prefix: str = "") -> "Iterator[tuple[str, Machine, Step]]":
+def unfolded(
+    machine: MachineDefinition, step: "Step", prefix: str = ""
+) -> "Iterator[tuple[str, MachineDefinition, Step]]":
     """A step and those of the behaviours invoked in it, each with its machine, and `quiz/` before its states' names.
 
     What an invoked behaviour did is before its host's step where it led to it, else after.
@@ -53,7 +55,7 @@ def unfolded(machine: Machine, step: "Step", prefix: str = "") -> "Iterator[tupl
     yield from _below(machine, compress(step.invoked, map(not_, early)), prefix)
 
 
-def ran(machine: Machine, id: str, step: "Step") -> str:
+def ran(machine: MachineDefinition, id: str, step: "Step") -> str:
     """The behaviour of which a step is, among those that the machine invokes under that id."""
     behaviors = [invoke.behavior for state in machine.states.values() for invoke in state.invoke if invoke.id == id]
     names = {*step.entered, *step.exited, *step.snapshot.configuration}
@@ -61,20 +63,22 @@ def ran(machine: Machine, id: str, step: "Step") -> str:
     return next((b for b in behaviors if names <= known[b]), behaviors[0])
 
 
-def meant(machine: Machine, name: str) -> Iterator[tuple[Machine, str]]:
+def meant(machine: MachineDefinition, name: str) -> Iterator[tuple[MachineDefinition, str]]:
     """The machines that a name may be about, and the name there: `quiz/ask` is `ask` of what is invoked as `quiz`."""
     invokes = {(invoke.id, invoke.behavior) for state in machine.states.values() for invoke in state.invoke}
     for id, behavior in sorted(invokes):
-        if name.startswith(id + INSIDE) and behavior in machine.invoked:
-            yield from meant(machine.invoked[behavior], name.removeprefix(id + INSIDE))
+        if name.startswith(id + ID_SEPARATOR) and behavior in machine.invoked:
+            yield from meant(machine.invoked[behavior], name.removeprefix(id + ID_SEPARATOR))
     yield machine, name
 
 
-def _below(machine: Machine, steps: "Iterable[tuple[str, Step]]", prefix: str) -> "Iterator[tuple[str, Machine, Step]]":
+def _below(
+    machine: MachineDefinition, steps: "Iterable[tuple[str, Step]]", prefix: str
+) -> "Iterator[tuple[str, MachineDefinition, Step]]":
     for id, step in steps:
-        yield from unfolded(machine.invoked[ran(machine, id, step)], step, f"{prefix}{id}{INSIDE}")
+        yield from unfolded(machine.invoked[ran(machine, id, step)], step, f"{prefix}{id}{ID_SEPARATOR}")
 
 
-def _behavior(machine: Machine, state: str, id: str) -> str:
+def _behavior(machine: MachineDefinition, state: str, id: str) -> str:
     """The behaviour that a state, by its path, invokes under that id."""
     return next(invoke.behavior for invoke in machine.states[state].invoke if invoke.id == id)

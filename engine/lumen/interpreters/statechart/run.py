@@ -4,19 +4,19 @@ from typing import Any
 
 from lumen.errors import LumenError
 from lumen.interpreters.expressions import ExpressionError
-from lumen.interpreters.statechart.chart import Node, Rule
-from lumen.interpreters.statechart.foreman import Foreman
-from lumen.interpreters.statechart.plans import Plan
+from lumen.interpreters.statechart.activities import ActivityRunner
+from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
+from lumen.interpreters.statechart.plans import MicrostepPlan
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.events import Event
 
-LIMIT = 1000
+MAX_MICROSTEPS = 1000
 """How many microsteps, or internal events, a macrostep may take."""
 
-Groups = tuple[tuple[Rule, ...], ...]
+CandidateGroups = tuple[tuple[CompiledTransition, ...], ...]
 
 
-class Run(Foreman):
+class MacrostepRunner(ActivityRunner):
     """The main loop of SCXML's Appendix D."""
 
     def macrostep(self) -> None:
@@ -27,12 +27,12 @@ class Run(Foreman):
             if not self.queue:
                 return
             self.turns += 1
-            if self.turns > LIMIT:
+            if self.turns > MAX_MICROSTEPS:
                 self.give_up()
             self.event, self.happened, self.scope = self.queue.popleft(), None, None
             self.take(self.configuration.candidates(self.event.name))
 
-    def take(self, groups: Groups) -> bool:
+    def take(self, groups: CandidateGroups) -> bool:
         """One microstep with the transitions that are enabled among these candidates; False where none is."""
         enabled = self.enabled(groups)
         if not enabled:
@@ -40,14 +40,14 @@ class Run(Foreman):
         self.microstep(self.planner.plan(self.configuration, enabled, self.history))
         return True
 
-    def enabled(self, groups: Groups) -> tuple[Rule, ...]:
+    def enabled(self, groups: CandidateGroups) -> tuple[CompiledTransition, ...]:
         """The first candidate of each atomic state whose guard holds."""
         if len(groups) == 1:
             for rule in groups[0]:
                 if rule.guard is None or self.holds(rule):
                     return rule.alone
             return ()
-        found: list[Rule] = []
+        found: list[CompiledTransition] = []
         for group in groups:
             for rule in group:
                 if rule.guard is None or self.holds(rule):
@@ -55,7 +55,7 @@ class Run(Foreman):
                     break
         return tuple(dict.fromkeys(found))
 
-    def holds(self, rule: Rule) -> bool:
+    def holds(self, rule: CompiledTransition) -> bool:
         """Whether a guard is true; one that fails is false, and error.execution."""
         assert rule.guard is not None  # asked only of rules that have one
         if rule.source is not self.here:
@@ -66,10 +66,10 @@ class Run(Foreman):
             self.fail(str(error), rule.where)
             return False
 
-    def microstep(self, plan: Plan) -> None:
+    def microstep(self, plan: MicrostepPlan) -> None:
         """Leave, act, enter (`microstep`)."""
         self.turns += 1
-        if self.turns > LIMIT:
+        if self.turns > MAX_MICROSTEPS:
             self.give_up()
         rules, transitions, exits, between, entries, exited, entered, self.history, target = plan
         self.transitions += transitions
@@ -86,7 +86,7 @@ class Run(Foreman):
         self.configuration = target
         self.active = target.known
 
-    def enter(self, node: Node, done: tuple[Node, ...]) -> None:
+    def enter(self, node: StateNode, done: tuple[StateNode, ...]) -> None:
         for event, delay in node.afters:
             self.timers = (*self.timers, Timer(event, self.at + delay, delay, event, None, node.path, "after"))
         if node.entry:
@@ -96,7 +96,7 @@ class Run(Foreman):
         for ended, name in enumerate(done):
             self.post(Event(f"done.state.{name.name}", None if ended else self.output(node), self.at))
 
-    def leave(self, node: Node) -> None:
+    def leave(self, node: StateNode) -> None:
         if node.exit:
             self.perform(node.exit, node)
         if node in self.waiting:
@@ -106,7 +106,7 @@ class Run(Foreman):
         if node.afters:
             self.timers = tuple(t for t in self.timers if t.kind != "after" or t.state != node.path)
 
-    def output(self, node: Node) -> Any:
+    def output(self, node: StateNode) -> Any:
         """The data of a final state; none where it can't be had (SCXML 5.7.1)."""
         if node.output is None:
             return None
@@ -122,7 +122,7 @@ class Run(Foreman):
         """Raises LumenError: there is no end of microsteps."""
         states = ", ".join(f"`{name}`" for name in sorted({*self.entered[-20:], *self.configuration.names}))
         raise LumenError(
-            f"`{self.chart.machine.id}` never comes to rest: after {LIMIT:,} microsteps it still goes through"
+            f"`{self.chart.machine.id}` never comes to rest: after {MAX_MICROSTEPS:,} microsteps it still goes through"
             f" {states}; look at their `always` and `raise`"
         )
 

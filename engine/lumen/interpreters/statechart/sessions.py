@@ -1,13 +1,13 @@
 """What a machine hears, sorted: timers that have ended, the robot's answers, and news."""
 
-from lumen.interpreters.statechart.answers import Answer, answer_of, inside
+from lumen.interpreters.statechart.answers import CommandAnswer, answer_of, inside
 from lumen.interpreters.statechart.doing import awaited
-from lumen.interpreters.statechart.hosting import Host
+from lumen.interpreters.statechart.hosting import InvocationRunner
 from lumen.interpreters.statechart.values import Step, Timer
 from lumen.language.events import Event
 
 
-class Session(Host):
+class Session(InvocationRunner):
     """A run from one event until everything rests."""
 
     def hear(self, event: Event) -> Step:
@@ -42,7 +42,7 @@ class Session(Host):
         elif timer.id in awaited(self.doing.get(timer.state)):
             self.answered(timer.state, timer.id)
 
-    def answer(self, event: Event, answer: Answer) -> None:
+    def answer(self, event: Event, answer: CommandAnswer) -> None:
         """What became of a command: the `do` that awaits it goes on or fails; nobody else hears of it."""
         kind, id, reason = answer
         own, owner = inside(id)

@@ -7,16 +7,16 @@ from typing import Any
 from lumen.errors import LumenError, SnapshotError, UsageError
 from lumen.interpreters.statechart.answers import outside
 from lumen.interpreters.statechart.program import compiled
-from lumen.interpreters.statechart.run import LIMIT
+from lumen.interpreters.statechart.run import MAX_MICROSTEPS
 from lumen.interpreters.statechart.sessions import Session
 from lumen.interpreters.statechart.types import checked
 from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.events import Event
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
 
 def initial(
-    machine: Machine,
+    machine: MachineDefinition,
     at: float = 0.0,
     input: Mapping[str, Any] | None = None,
     language: str = "",
@@ -37,7 +37,7 @@ def initial(
     return Session(program, before, None, at).open()
 
 
-def step(machine: Machine, snapshot: Snapshot, event: Event) -> Step:
+def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
     """One macrostep: `event` and all that follows from it until the next event from outside.
 
     The robot's answers and the events of `due` are known by their names and ids; those that nobody waits for any
@@ -76,16 +76,16 @@ def waiting(snapshot: Snapshot) -> int:
     return len(snapshot.timers) + sum(waiting(child.snapshot) for child in snapshot.invoked.values())
 
 
-def elapse(machine: Machine, current: Callable[[], Snapshot], until: float) -> Iterator[Step]:
+def elapse(machine: MachineDefinition, current: Callable[[], Snapshot], until: float) -> Iterator[Step]:
     """The steps of every timer that ends until `until` [s], those set on the way included, in order.
 
     `current` gives the snapshot to step from: whoever takes a step may have more happen before the next. Raises
     LumenError where there is no end of timers of one time, as of a `send` without delay that answers itself; those
     that were set before that time do not count.
     """
-    left, last = LIMIT, -inf
+    left, last = MAX_MICROSTEPS, -inf
     while (event := due(current())) and event.at <= until:
-        left = left - 1 if event.at == last else LIMIT + waiting(current())
+        left = left - 1 if event.at == last else MAX_MICROSTEPS + waiting(current())
         last = event.at
         if left < 0:
             raise LumenError(f"`{machine.id}` never comes to rest: `{event.name}` is sent over and over without delay")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator
@@ -47,7 +47,7 @@ _NOTES = {
 """Keywords that say nothing of a value beyond its type."""
 
 
-class Check:
+class TypeCheck:
     """The values that a context key may hold; `quick` are Python types of which every value is certain to be one.
 
     Where its `types:` entry says more than a type, the whole JSON Schema holds.
@@ -90,7 +90,7 @@ class Check:
         return _with_article(" or ".join(self.names))
 
 
-def type_checks(machine: Machine) -> dict[str, Check | None]:
+def type_checks(machine: MachineDefinition) -> dict[str, TypeCheck | None]:
     """For each context key its check, None where anything goes.
 
     A first value of null without an entry in `types:` says nothing of what comes later. An integer may become any
@@ -99,18 +99,18 @@ def type_checks(machine: Machine) -> dict[str, Check | None]:
     return {key: _check(value, machine.types.get(key)) for key, value in machine.context.items()}
 
 
-def fits(value: Any, check: Check | None) -> bool:
+def fits(value: Any, check: TypeCheck | None) -> bool:
     """Whether a context key with that check may hold the value."""
     return check is None or type(value) in check.quick or check.accepts(value)
 
 
-def refusal(value: Any, check: Check | None) -> str:
+def refusal(value: Any, check: TypeCheck | None) -> str:
     """Why a context key with that check can't hold a value that does not fit."""
     assert check is not None  # without a check everything fits
     return check.refusal(value)
 
 
-def checked(name: str, checks: Mapping[str, Check | None], given: Mapping[str, Any]) -> Mapping[str, Any]:
+def checked(name: str, checks: Mapping[str, TypeCheck | None], given: Mapping[str, Any]) -> Mapping[str, Any]:
     """The values given for context keys of the machine of that name; raises UsageError where one does not fit."""
     for key, value in given.items():
         if key not in checks:
@@ -126,14 +126,14 @@ def type_name(value: Any) -> str:
     return next((name for name, test in _TESTS.items() if name != "integer" and test(value)), type(value).__name__)
 
 
-def _check(first: Any, schema: Mapping[str, Any] | None) -> Check | None:
+def _check(first: Any, schema: Mapping[str, Any] | None) -> TypeCheck | None:
     if schema is None:
-        return None if first is None else Check((type_name(first),))
+        return None if first is None else TypeCheck((type_name(first),))
     said = schema.get("type")
     names = tuple(said) if isinstance(said, list | tuple) else (said,)
     names = names if all(isinstance(name, str) and name in _TESTS for name in names) else ()
     whole = None if schema.keys() <= _NOTES else schema
-    return Check(names, whole) if names or whole else None
+    return TypeCheck(names, whole) if names or whole else None
 
 
 def _with_article(name: str) -> str:

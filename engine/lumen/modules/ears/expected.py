@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import Speak
 
@@ -17,7 +17,7 @@ def expected(project: Project) -> list[list[str]]:
     return [words for text in dict.fromkeys(found) if (words := _WORD.findall(text.lower()))]
 
 
-def _phrases(machine: Machine) -> Iterator[str]:
+def _phrases(machine: MachineDefinition) -> Iterator[str]:
     for by_language in machine.phrases.values():
         for phrases in by_language.values():
             yield from phrases

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from lumen.interpreters.postures import UPRIGHT
 from lumen.language.actions import If, Parallel, Step
 from lumen.language.commands import Play, Posture, Wake, Walk
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 from lumen.language.motions import Motion
 from lumen.language.projects import Project
 from lumen.ports import Perform, RobotCommand
@@ -99,7 +99,7 @@ def _played(step: Step) -> Iterator[str]:
                 yield from _played(branch)
 
 
-def _blocks(machine: Machine) -> Iterator[Sequence[Step]]:
+def _blocks(machine: MachineDefinition) -> Iterator[Sequence[Step]]:
     """Every list of actions, those inside others too."""
     for state in machine.states.values():
         for block in (state.entry, state.do, state.exit, *(t.actions for t in state.transitions)):

@@ -5,21 +5,21 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 from lumen.interpreters.migration.identity import Identity
-from lumen.interpreters.statechart.chart import Chart, Node
-from lumen.interpreters.statechart.entering import Entered, History, Topology
+from lumen.interpreters.statechart.chart import Chart, StateNode
+from lumen.interpreters.statechart.state_sets import EntrySet, History, StateSets
 from lumen.interpreters.statechart.types import fits, type_name
 from lumen.interpreters.statechart.values import Timer
-from lumen.language.machines import Kind
+from lumen.language.machines import StateKind
 
 
-class Remembered(NamedTuple):
+class CarriedContext(NamedTuple):
     """The context under the new machine, and a sentence for each value that could not be kept."""
 
     context: Mapping[str, Any]
     notes: tuple[str, ...]
 
 
-def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identity) -> Remembered:
+def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identity) -> CarriedContext:
     """Every key still declared keeps its value where that is of the key's type; others have their first values."""
     first, names = new.machine.context, identity.keys()
     kept = {key: values[was] for key, was in names.items() if was in values and fits(values[was], new.checks[key])}
@@ -30,10 +30,10 @@ def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identit
     ]
     gone = values.keys() - names.values()
     notes += [f"`{key}` is forgotten" for key in values if key in gone and values[key] != old.machine.context.get(key)]
-    return Remembered({**first, **kept}, tuple(notes))
+    return CarriedContext({**first, **kept}, tuple(notes))
 
 
-def timers(timers: tuple[Timer, ...], kept: Mapping[Node, Node], at: float) -> tuple[Timer, ...]:
+def timers(timers: tuple[Timer, ...], kept: Mapping[StateNode, StateNode], at: float) -> tuple[Timer, ...]:
     """The timers that go on, in their order, each with its deadline; what is new in a state's `after` is set.
 
     Where the delay of an `after` was changed, it counts from when the old one was set.
@@ -57,7 +57,7 @@ def timers(timers: tuple[Timer, ...], kept: Mapping[Node, Node], at: float) -> t
     return (*(timer for _, timer in sorted(going.items())), *fresh)
 
 
-def _afters(node: Node, image: Node) -> list[tuple[str, float, bool]]:
+def _afters(node: StateNode, image: StateNode) -> list[tuple[str, float, bool]]:
     """The events and delays of a new state's `after`, those first (True) that the old one had."""
     before = [delay for _, delay in node.afters]
     found = []
@@ -74,12 +74,12 @@ def history(old: History, new: Chart, identity: Identity) -> dict[str, tuple[str
     for path, remembered in old.items():
         name = identity.state(path)
         node = new.nodes[name] if name else None
-        if node and node.kind is Kind.HISTORY and (states := _recalled(node, remembered, new, identity)):
+        if node and node.kind is StateKind.HISTORY and (states := _recalled(node, remembered, new, identity)):
             found[node.path] = tuple(state.path for state in states)
     return found
 
 
-def _recalled(history: Node, remembered: tuple[str, ...], new: Chart, identity: Identity) -> list[Node]:
+def _recalled(history: StateNode, remembered: tuple[str, ...], new: Chart, identity: Identity) -> list[StateNode]:
     """What a history stands for now, completed as it would be entered; nothing where that can't be any more."""
     home = history.parent
     assert home is not None  # only the document has none
@@ -87,24 +87,24 @@ def _recalled(history: Node, remembered: tuple[str, ...], new: Chart, identity: 
     nodes = list(dict.fromkeys(node for path in remembered if (node := _nearest(path, home, new, identity))))
     if not nodes or not all(_together(*pair) for pair in combinations(nodes, 2)):
         return []
-    entered = Entered()
-    Topology(new, {}).reach(nodes, entered)
+    entered = EntrySet()
+    StateSets(new, {}).reach(nodes, entered)
     within = [node for node in entered if node.lies_below(home)]
     kept = [n for n in within if not n.children] if history.state.deep else [n for n in within if n.parent is home]
     return sorted(kept, key=lambda node: node.index)
 
 
-def _nearest(path: str, home: Node, new: Chart, identity: Identity) -> Node | None:
+def _nearest(path: str, home: StateNode, new: Chart, identity: Identity) -> StateNode | None:
     while path:
         found = new.nodes.get(identity.state(path) or "")
-        if found and found.lies_below(home) and found.kind is not Kind.HISTORY:
+        if found and found.lies_below(home) and found.kind is not StateKind.HISTORY:
             return found
         path = path.rpartition(".")[0]
     return None
 
 
-def _together(one: Node, other: Node) -> bool:
+def _together(one: StateNode, other: StateNode) -> bool:
     """Whether two states can be active at once."""
     if one.lies_below(other) or other.lies_below(one):
         return True
-    return next(a for a in one.ancestors if other.lies_below(a)).kind is Kind.PARALLEL
+    return next(a for a in one.ancestors if other.lies_below(a)).kind is StateKind.PARALLEL

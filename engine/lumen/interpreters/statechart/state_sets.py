@@ -3,25 +3,25 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 
-from lumen.interpreters.statechart.chart import Chart, Node, Rule
-from lumen.language.machines import Kind
+from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
+from lumen.language.machines import StateKind
 
 History = Mapping[str, tuple[str, ...]]
 
 
-class Entered(set[Node]):
+class EntrySet(set[StateNode]):
     """States to be entered; `reached` are these and all their ancestors."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.reached: set[Node] = set()
+        self.reached: set[StateNode] = set()
 
-    def enter(self, node: Node) -> None:
+    def enter(self, node: StateNode) -> None:
         self.add(node)
         self.reached.update((node, *node.ancestors))
 
 
-class Topology:
+class StateSets:
     """The sets of one chart under one history; `staying` are the active states that are not left.
 
     Three things are not in Appendix D's letter, but in the definitions of 3.13, and keep configurations legal: what is
@@ -30,26 +30,26 @@ class Topology:
     among its targets has come to remember meanwhile.
     """
 
-    def __init__(self, chart: Chart, history: History, staying: AbstractSet[Node] = frozenset()) -> None:
+    def __init__(self, chart: Chart, history: History, staying: AbstractSet[StateNode] = frozenset()) -> None:
         self.chart = chart
         self.history = history
         self.staying = staying
 
-    def exit_set(self, rules: Iterable[Rule], active: AbstractSet[Node]) -> set[Node]:
+    def exit_set(self, rules: Iterable[CompiledTransition], active: AbstractSet[StateNode]) -> set[StateNode]:
         """The active states that these transitions leave (`computeExitSet`)."""
-        left: set[Node] = set()
+        left: set[StateNode] = set()
         for rule in rules:
             if rule.targets:
                 left.update(_active_below(self.domain(rule), active))
         return left
 
-    def domains(self, rules: Iterable[Rule]) -> dict[Rule, Node]:
+    def domains(self, rules: Iterable[CompiledTransition]) -> dict[CompiledTransition, StateNode]:
         """The domain of each of these transitions that has a target."""
         return {rule: self.domain(rule) for rule in rules if rule.targets}
 
-    def entry_set(self, domains: Mapping[Rule, Node]) -> set[Node]:
+    def entry_set(self, domains: Mapping[CompiledTransition, StateNode]) -> set[StateNode]:
         """The states that these transitions enter, each within its domain (`computeEntrySet`)."""
-        entered = Entered()
+        entered = EntrySet()
         for rule, domain in domains.items():
             for target in _innermost(rule.targets):
                 self.add_descendants(target, entered)
@@ -57,98 +57,98 @@ class Topology:
                 self.add_ancestors(target, domain, entered)
         return entered
 
-    def beginning(self) -> set[Node]:
+    def beginning(self) -> set[StateNode]:
         """The states that a machine begins in."""
-        entered = Entered()
+        entered = EntrySet()
         self.add_descendants(self.chart.root, entered)
         return entered
 
-    def domain(self, rule: Rule) -> Node:
+    def domain(self, rule: CompiledTransition) -> StateNode:
         """The state within which everything is left and entered (`getTransitionDomain`)."""
         source, targets = rule.source, self.effective(rule.targets)
-        inside = source.kind is Kind.COMPOUND and all(target.lies_below(source) for target in targets)
+        inside = source.kind is StateKind.COMPOUND and all(target.lies_below(source) for target in targets)
         if inside and not rule.transition.reenter:
             return source
         return _lcca([source, *targets])
 
-    def effective(self, targets: Sequence[Node]) -> list[Node]:
+    def effective(self, targets: Sequence[StateNode]) -> list[StateNode]:
         """The targets, histories replaced by what they stand for (`getEffectiveTargetStates`)."""
-        found: list[Node] = []
+        found: list[StateNode] = []
         for target in targets:
-            found += self.effective(self.recalled(target)) if target.kind is Kind.HISTORY else [target]
+            found += self.effective(self.recalled(target)) if target.kind is StateKind.HISTORY else [target]
         return list(dict.fromkeys(found))
 
-    def recalled(self, history: Node) -> Sequence[Node]:
+    def recalled(self, history: StateNode) -> Sequence[StateNode]:
         """What a history state remembers, else its default."""
         if history.path in self.history:
             return [self.chart.nodes[path] for path in self.history[history.path]]
         return history.initial
 
-    def add_descendants(self, node: Node, entered: Entered) -> None:
+    def add_descendants(self, node: StateNode, entered: EntrySet) -> None:
         """`addDescendantStatesToEnter`."""
-        if node.kind is Kind.HISTORY:
+        if node.kind is StateKind.HISTORY:
             assert node.parent is not None  # only the document has none
             self._add_all(self.recalled(node), node.parent, entered)
             return
         entered.enter(node)
-        if node.kind is Kind.COMPOUND:
+        if node.kind is StateKind.COMPOUND:
             self._add_all(node.initial, node, entered)
-        elif node.kind is Kind.PARALLEL:
+        elif node.kind is StateKind.PARALLEL:
             self._add_regions(node, entered)
 
-    def add_ancestors(self, node: Node, top: Node, entered: Entered) -> None:
+    def add_ancestors(self, node: StateNode, top: StateNode, entered: EntrySet) -> None:
         """`addAncestorStatesToEnter`."""
         for ancestor in node.below(top):
             if ancestor in self.staying:
                 return
             entered.enter(ancestor)
-            if ancestor.kind is Kind.PARALLEL:
+            if ancestor.kind is StateKind.PARALLEL:
                 self._add_regions(ancestor, entered)
 
-    def reach(self, targets: Sequence[Node], entered: Entered) -> None:
+    def reach(self, targets: Sequence[StateNode], entered: EntrySet) -> None:
         """Enter these states, from the outermost that is not active."""
         self._add_all(targets, self.chart.document, entered)
 
-    def fill(self, node: Node, entered: Entered) -> None:
+    def fill(self, node: StateNode, entered: EntrySet) -> None:
         """Enter what a state that is active still needs within it."""
-        if node.kind is Kind.PARALLEL:
+        if node.kind is StateKind.PARALLEL:
             self._add_regions(node, entered)
         else:
             self._add_all(node.initial, node, entered)
 
-    def _add_all(self, nodes: Sequence[Node], top: Node, entered: Entered) -> None:
+    def _add_all(self, nodes: Sequence[StateNode], top: StateNode, entered: EntrySet) -> None:
         for node in _innermost(nodes):
             self.add_descendants(node, entered)
         for node in nodes:
             self.add_ancestors(node, top, entered)
 
-    def _add_regions(self, parallel: Node, entered: Entered) -> None:
+    def _add_regions(self, parallel: StateNode, entered: EntrySet) -> None:
         for region in parallel.children:
             if region not in entered.reached:
                 self.add_descendants(region, entered)
 
 
-def in_final(node: Node, active: AbstractSet[Node]) -> bool:
+def in_final(node: StateNode, active: AbstractSet[StateNode]) -> bool:
     """Whether a state has come to its end (`isInFinalState`)."""
-    if node.kind is Kind.COMPOUND:
-        return any(child.kind is Kind.FINAL and child in active for child in node.children)
-    return node.kind is Kind.PARALLEL and all(in_final(child, active) for child in node.children)
+    if node.kind is StateKind.COMPOUND:
+        return any(child.kind is StateKind.FINAL and child in active for child in node.children)
+    return node.kind is StateKind.PARALLEL and all(in_final(child, active) for child in node.children)
 
 
-def _active_below(node: Node, active: AbstractSet[Node]) -> Iterator[Node]:
+def _active_below(node: StateNode, active: AbstractSet[StateNode]) -> Iterator[StateNode]:
     for child in node.children:
         if child in active:
             yield child
             yield from _active_below(child, active)
 
 
-def _innermost(nodes: Sequence[Node]) -> list[Node]:
+def _innermost(nodes: Sequence[StateNode]) -> list[StateNode]:
     around = {ancestor for node in nodes for ancestor in node.ancestors}
     return [node for node in nodes if node not in around]
 
 
-def _lcca(nodes: Sequence[Node]) -> Node:
+def _lcca(nodes: Sequence[StateNode]) -> StateNode:
     """The least common ancestor that is compound, or the document; never a parallel state (`findLCCA`)."""
     head, *tail = nodes
-    compound = (a for a in head.ancestors if a.kind is Kind.COMPOUND)
+    compound = (a for a in head.ancestors if a.kind is StateKind.COMPOUND)
     return next(a for a in compound if all(node.lies_below(a) for node in tail))

@@ -5,17 +5,17 @@ from heapq import heappop, heappush
 from typing import Any
 
 from lumen.errors import LumenError
-from lumen.interpreters.exploration.abstraction import Abstraction, Key
-from lumen.interpreters.exploration.moves import Move, Moves
+from lumen.interpreters.exploration.abstraction import Abstraction, ConfigurationKey
+from lumen.interpreters.exploration.stimuli import Stimulus, StimulusFinder
 from lumen.interpreters.statechart import Snapshot, Step, initial, step
 from lumen.interpreters.statechart.answers import answer_of
 from lumen.interpreters.statechart.program import compiled
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
 
-class Spot:
+class SearchNode:
     """A configuration come upon: one snapshot that stands for it, the cheapest way to it, and where it leads.
 
     `restless` says how the machine never comes to rest after the move `endless`.
@@ -28,14 +28,14 @@ class Spot:
         snapshot: Snapshot,
         commands: Mapping[str, BodyCommand],
         cost: int,
-        before: "Spot | None",
-        move: Move | None,
+        before: "SearchNode | None",
+        move: Stimulus | None,
     ) -> None:
         self.snapshot, self.commands, self.cost = snapshot, commands, cost
         self.before, self.move = before, move
-        self.exits: list[Spot] = []
+        self.exits: list[SearchNode] = []
         self.restless = ""
-        self.endless: Move | None = None
+        self.endless: Stimulus | None = None
         self.walked = False
 
     @property
@@ -43,9 +43,9 @@ class Spot:
         """The active states."""
         return self.snapshot.configuration
 
-    def way(self) -> list["Spot"]:
+    def way(self) -> list["SearchNode"]:
         """The spots on the way here, this one included."""
-        spot: Spot | None = self
+        spot: SearchNode | None = self
         found = []
         while spot:
             found.append(spot)
@@ -53,23 +53,25 @@ class Spot:
         return found[::-1]
 
 
-class Walk:
+class StateSpaceSearch:
     """Walks a machine up to so many configurations; `spots` are those come upon, in the order they were.
 
     `events` are those that may come from outside, each with the JSON Schema of its data.
     """
 
-    def __init__(self, machine: Machine, events: Mapping[str, Any], *, language: str = "", epoch: float = 0.0) -> None:
+    def __init__(
+        self, machine: MachineDefinition, events: Mapping[str, Any], *, language: str = "", epoch: float = 0.0
+    ) -> None:
         self._machine = machine
-        self._moves = Moves(machine, events)
+        self._moves = StimulusFinder(machine, events)
         self._abstraction = Abstraction(machine)
         self._planner = compiled(machine).planner
-        self.spots: dict[Key, Spot] = {}
+        self.spots: dict[ConfigurationKey, SearchNode] = {}
         self.steps = 0
         self.walked = 0
         self.taken: set[NodePath] = set()
         self.entered: set[str] = set()
-        self._waiting: list[tuple[int, int, Spot]] = []
+        self._waiting: list[tuple[int, int, SearchNode]] = []
         first = initial(machine, language=language, epoch=epoch)
         self.first = self._arrive(first, None, None)
 
@@ -88,11 +90,11 @@ class Walk:
                 self._leave(spot)
                 yield self.walked
 
-    def finished(self, spot: Spot) -> bool:
+    def finished(self, spot: SearchNode) -> bool:
         """Whether the machine has come to its end there."""
         return self._planner.configuration(spot.names).finished
 
-    def _leave(self, spot: Spot) -> None:
+    def _leave(self, spot: SearchNode) -> None:
         """Make every move there is from here."""
         if self.finished(spot):
             return
@@ -107,7 +109,7 @@ class Walk:
             if taken.snapshot is not spot.snapshot:
                 spot.exits.append(self._arrive(taken, spot, move))
 
-    def _arrive(self, taken: Step, before: Spot | None, move: Move | None) -> Spot:
+    def _arrive(self, taken: Step, before: SearchNode | None, move: Stimulus | None) -> SearchNode:
         self.taken.update(t.where for t in taken.transitions)
         self.entered.update(taken.entered)
         cost = (before.cost if before else 0) + (move.cost if move else 0)
@@ -116,7 +118,7 @@ class Walk:
         if spot is None or (cost < spot.cost and not spot.walked):
             commands = _still(before.commands if before else {}, taken.commands, move)
             if spot is None:
-                spot = self.spots[key] = Spot(taken.snapshot, commands, cost, before, move)
+                spot = self.spots[key] = SearchNode(taken.snapshot, commands, cost, before, move)
             else:
                 spot.snapshot, spot.commands, spot.cost = taken.snapshot, commands, cost
                 spot.before, spot.move = before, move
@@ -125,7 +127,7 @@ class Walk:
 
 
 def _still(
-    commands: Mapping[str, BodyCommand], started: tuple[Command, ...], move: Move | None
+    commands: Mapping[str, BodyCommand], started: tuple[Command, ...], move: Stimulus | None
 ) -> dict[str, BodyCommand]:
     """The awaited commands by id, without the one just answered."""
     answer = answer_of(move.event) if move else None
@@ -133,12 +135,12 @@ def _still(
     return kept | {c.id: c.command for c in started if isinstance(c, Start) and c.id.startswith("d")}
 
 
-def leading(spots: list[Spot], goals: set[int], *, inside: bool = False) -> set[int]:
+def reaching(spots: list[SearchNode], goals: set[int], *, inside: bool = False) -> set[int]:
     """The spots (by identity) from which one of the goals can be reached.
 
     With `inside` only ways count on which the active states stay the same.
     """
-    before: dict[int, list[Spot]] = {}
+    before: dict[int, list[SearchNode]] = {}
     for spot in spots:
         for exit in spot.exits:
             if not inside or exit.names == spot.names:
@@ -152,7 +154,7 @@ def leading(spots: list[Spot], goals: set[int], *, inside: bool = False) -> set[
     return found
 
 
-def leaves(machine: Machine, names: frozenset[str]) -> Iterator[str]:
+def leaves(machine: MachineDefinition, names: frozenset[str]) -> Iterator[str]:
     """The innermost of the active states, by path, in the order of the file."""
     for state in machine.states.values():
         if state.name in names and not any(machine.states[child].name in names for child in state.children):

@@ -4,7 +4,7 @@ from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Withi
 from lumen.language.actions import Action, If, Parallel, SayText, Step, Wait
 
 
-def goes_on(before: tuple[Step, ...], after: tuple[Step, ...], position: Within) -> bool:
+def can_continue(before: tuple[Step, ...], after: tuple[Step, ...], position: Within) -> bool:
     """Whether a `do` that stands there finds its place again.
 
     What has been done already must be of the same verbs, and what is being done the same but for its texts and the
@@ -21,7 +21,7 @@ def _same(before: Action, after: Action, position: Position | None) -> bool:
         case _, _, None:
             return True
         case If(), If(), Within(block):
-            return goes_on(_branch(before, block), _branch(after, block), position)
+            return can_continue(_branch(before, block), _branch(after, block), position)
         case Parallel(ours), Parallel(theirs), Fork(positions):
             if len(ours) != len(theirs):
                 return False

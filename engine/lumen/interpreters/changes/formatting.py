@@ -2,7 +2,7 @@
 
 from typing import Any
 
-LONGEST = 60
+MAX_SHOWN_CHARACTERS = 60
 """Characters of a text that are shown."""
 
 
@@ -18,13 +18,13 @@ def seconds(time: float | None) -> str:
 def quoted(text: str) -> str:
     """The text in one line, not too long."""
     line = " ".join(text.split())
-    return f"“{line if len(line) <= LONGEST else line[: LONGEST - 1] + '…'}”"
+    return f"“{line if len(line) <= MAX_SHOWN_CHARACTERS else line[: MAX_SHOWN_CHARACTERS - 1] + '…'}”"
 
 
 def code(value: Any) -> str:
     """A name, an expression or a value as it could stand in the file."""
     text = str(value).replace("\n", " ")
-    return f"`{text if len(text) <= LONGEST else text[: LONGEST - 1] + '…'}`"
+    return f"`{text if len(text) <= MAX_SHOWN_CHARACTERS else text[: MAX_SHOWN_CHARACTERS - 1] + '…'}`"
 
 
 def names(found: Any) -> str:

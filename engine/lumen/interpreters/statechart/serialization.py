@@ -4,28 +4,28 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 from lumen.errors import SnapshotError, UsageError
-from lumen.interpreters.statechart.parts import plain
-from lumen.interpreters.statechart.thawing import VERSION, invoked_by
+from lumen.interpreters.statechart.deserialization import SNAPSHOT_VERSION, invoked_by
+from lumen.interpreters.statechart.json_cursor import plain
 from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Snapshot, Timer, Within
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
-Timing = Literal["deadline", "remaining", "restart"]
+TimerPolicy = Literal["deadline", "remaining", "restart"]
 
 
-def freeze(machine: Machine, snapshot: Snapshot) -> dict[str, Any]:
+def serialize(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
     """The snapshot as JSON data that names the machine it belongs to.
 
     Raises SnapshotError where an event brought something into it that JSON can't hold.
     """
     try:
-        return _frozen(machine, snapshot)
+        return _data(machine, snapshot)
     except UsageError as error:
         raise SnapshotError(f"the snapshot of `{machine.id}` can't be written: {error}") from None
 
 
-def _frozen(machine: Machine, snapshot: Snapshot) -> dict[str, Any]:
+def _data(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
     return {
-        "version": VERSION,
+        "version": SNAPSHOT_VERSION,
         "machine": {
             "id": machine.id,
             "hash": machine.hash,
@@ -45,7 +45,7 @@ def _frozen(machine: Machine, snapshot: Snapshot) -> dict[str, Any]:
         "invoked": {
             id: {
                 "state": child.state,
-                "snapshot": _frozen(invoked_by(machine, child.state, id) or machine, child.snapshot),
+                "snapshot": _data(invoked_by(machine, child.state, id) or machine, child.snapshot),
                 "commands": child.commands,
             }
             for id, child in snapshot.invoked.items()
@@ -53,7 +53,7 @@ def _frozen(machine: Machine, snapshot: Snapshot) -> dict[str, Any]:
     }
 
 
-def retimed(snapshot: Snapshot, now: float, timing: Timing) -> Snapshot:
+def retimed(snapshot: Snapshot, now: float, timing: TimerPolicy) -> Snapshot:
     """The snapshot gone on with at `now` [s], the time of its new clock.
 
     `deadline` leaves every timer its due time: what is past comes at once, at `now`. `remaining` leaves it the time
@@ -64,18 +64,18 @@ def retimed(snapshot: Snapshot, now: float, timing: Timing) -> Snapshot:
         case "deadline":
             return snapshot._replace(at=now)
         case "remaining":
-            return _moved(snapshot, now, now - snapshot.at, lambda timer: timer.due + now - snapshot.at)
+            return _shifted(snapshot, now, now - snapshot.at, lambda timer: timer.due + now - snapshot.at)
         case "restart":
-            return _moved(snapshot, now, now - snapshot.at, lambda timer: now + timer.delay)
+            return _shifted(snapshot, now, now - snapshot.at, lambda timer: now + timer.delay)
 
 
-def _moved(snapshot: Snapshot, now: float, later: float, due: Callable[[Timer], float]) -> Snapshot:
+def _shifted(snapshot: Snapshot, now: float, later: float, due: Callable[[Timer], float]) -> Snapshot:
     return snapshot._replace(
         at=now,
         epoch=snapshot.epoch - later,
         timers=tuple(timer._replace(due=due(timer)) for timer in snapshot.timers),
         invoked={
-            id: child._replace(snapshot=_moved(child.snapshot, now, later, due))
+            id: child._replace(snapshot=_shifted(child.snapshot, now, later, due))
             for id, child in snapshot.invoked.items()
         },
     )

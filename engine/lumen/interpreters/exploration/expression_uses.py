@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 from lumen.interpreters.expressions import ExpressionError, Node, names, parse_expression
 from lumen.language.actions import Assign, Expression, If, Parallel, Raise, Send, Step, Value
-from lumen.language.machines import Machine, State, Transition
+from lumen.language.machines import MachineDefinition, State, Transition
 
 
-class Use(NamedTuple):
+class ExpressionUse(NamedTuple):
     """An expression, and the context key that its value goes to; no key where the way itself depends on it."""
 
     tree: Node
@@ -25,14 +25,14 @@ def tree_of(source: str) -> Node | None:
         return None
 
 
-def of_transition(transition: Transition) -> Iterator[Use]:
+def of_transition(transition: Transition) -> Iterator[ExpressionUse]:
     """What a transition reads: its guard, and what its actions do."""
     if transition.guard:
         yield from _of(transition.guard)
     yield from of_block(transition.actions)
 
 
-def of_state(state: State) -> Iterator[Use]:
+def of_state(state: State) -> Iterator[ExpressionUse]:
     """Everything that a state reads, its transitions included."""
     for block in (state.entry, state.do, state.exit):
         yield from of_block(block)
@@ -42,7 +42,7 @@ def of_state(state: State) -> Iterator[Use]:
         yield from _of(value)
 
 
-def of_block(block: tuple[Step, ...]) -> Iterator[Use]:
+def of_block(block: tuple[Step, ...]) -> Iterator[ExpressionUse]:
     """What actions read, except for texts and messages: those change nothing in the behaviour."""
     for step in block:
         match step.action:
@@ -58,7 +58,7 @@ def of_block(block: tuple[Step, ...]) -> Iterator[Use]:
                 yield from _of(data)
 
 
-def relevant(machine: Machine) -> frozenset[str]:
+def relevant(machine: MachineDefinition) -> frozenset[str]:
     """The context keys on which the behaviour's way depends, directly or through others."""
     uses = [use for state in machine.states.values() for use in of_state(state)]
     found: set[str] = set()
@@ -69,15 +69,15 @@ def relevant(machine: Machine) -> frozenset[str]:
         found |= read
 
 
-def behind(machine: Machine, state: str, id: str) -> str:
+def invoked_behavior(machine: MachineDefinition, state: str, id: str) -> str:
     """The behaviour that a state, by its path, invokes under that id."""
     return next(invoke.behavior for invoke in machine.states[state].invoke if invoke.id == id)
 
 
-def _of(value: Value, key: str = "") -> Iterator[Use]:
+def _of(value: Value, key: str = "") -> Iterator[ExpressionUse]:
     if isinstance(value, Expression):
         if (tree := tree_of(value.source)) is not None:
-            yield Use(tree, key)
+            yield ExpressionUse(tree, key)
     elif isinstance(value, Mapping):
         for item in value.values():
             yield from _of(item, key)

@@ -1,14 +1,14 @@
 """The `do` of active states, begun, moved on by answers, and ended."""
 
-from lumen.interpreters.statechart.chart import Node
-from lumen.interpreters.statechart.doing import DeedError, awaited, begin_block, resume
+from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.doing import ActivityError, awaited, begin_block, resume
+from lumen.interpreters.statechart.execution_context import ExecutionContext
 from lumen.interpreters.statechart.values import Within
-from lumen.interpreters.statechart.workbench import Workbench
 from lumen.language.commands import Cancel
 from lumen.language.events import Event
 
 
-class Foreman(Workbench):
+class ActivityRunner(ExecutionContext):
     """A workbench that knows how far each `do` has come."""
 
     def begin_waiting(self) -> None:
@@ -17,7 +17,7 @@ class Foreman(Workbench):
         for node in waiting:
             self.begin(node)
 
-    def begin(self, node: Node) -> None:
+    def begin(self, node: StateNode) -> None:
         """Begin what a state does while it is active."""
         if node.do:
             self.stand(node)
@@ -29,11 +29,11 @@ class Foreman(Workbench):
         self.stand(node)
         self.progress(node, id)
 
-    def progress(self, node: Node, id: str | None) -> None:
+    def progress(self, node: StateNode, id: str | None) -> None:
         self.begun = ()
         try:
             position = begin_block(self, node.do) if id is None else resume(self, node.do, self.doing[node.path], id)
-        except DeedError as error:
+        except ActivityError as error:
             self.fail(error.reason, error.where)
             self.collapse(node, id, error.reason)
             return
@@ -41,7 +41,7 @@ class Foreman(Workbench):
         if position is None:
             self.post(Event(f"done.do.{node.name}", None, self.at))
 
-    def collapse(self, node: Node, id: str | None, reason: str) -> None:
+    def collapse(self, node: StateNode, id: str | None, reason: str) -> None:
         """End a `do` that failed: its other commands are cancelled, and its state hears why."""
         self.release([i for i in (*awaited(self.doing.get(node.path)), *self.begun) if i != id])
         self.place(node.path, None)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from lumen.language.projects import Project
 
-FIXED: Mapping[str, str] = {
+RESTART_FIELDS: Mapping[str, str] = {
     "robot": "the robot's name",
     "body": "the robot's model",
     "hall": "the hall",
@@ -18,4 +18,4 @@ FIXED: Mapping[str, str] = {
 
 def live(old: Project, new: Project) -> Project:
     """The new bundle as far as it can be in force at once: what is `FIXED` is as in the old one."""
-    return replace(new, **{name: getattr(old, name) for name in FIXED})
+    return replace(new, **{name: getattr(old, name) for name in RESTART_FIELDS})

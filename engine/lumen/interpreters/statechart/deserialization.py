@@ -4,33 +4,41 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from lumen.errors import SnapshotError
-from lumen.interpreters.statechart.doing import Awaited, Choice, Deed, Pause, Together
-from lumen.interpreters.statechart.parts import Part
+from lumen.interpreters.statechart.doing import (
+    AwaitedCommand,
+    CompiledAction,
+    ConditionalAction,
+    ParallelActions,
+    TimedWait,
+)
+from lumen.interpreters.statechart.json_cursor import JsonCursor
 from lumen.interpreters.statechart.program import compiled
-from lumen.interpreters.statechart.types import Check, fits, refusal
+from lumen.interpreters.statechart.types import TypeCheck, fits, refusal
 from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Invoked, Position, Snapshot, Timer, Within
-from lumen.language.machines import Kind, Machine, State
+from lumen.language.machines import MachineDefinition, State, StateKind
 
-VERSION = 1
+SNAPSHOT_VERSION = 1
 
 
-def thaw(machine: Machine, data: Mapping[str, Any]) -> Snapshot:
-    """The snapshot that `freeze` made of this machine; raises SnapshotError naming what differs."""
+def deserialize(machine: MachineDefinition, data: Mapping[str, Any]) -> Snapshot:
+    """The snapshot that `serialize` made of this machine; raises SnapshotError naming what differs."""
     try:
-        return _thawed(machine, Part(data))
+        return _snapshot(machine, JsonCursor(data))
     except RecursionError:
         raise SnapshotError("the snapshot is damaged: it is nested too deeply") from None
 
 
-def invoked_by(machine: Machine, state: str, id: str) -> Machine | None:
+def invoked_by(machine: MachineDefinition, state: str, id: str) -> MachineDefinition | None:
     """The machine that a state invokes under that id, None where there is none."""
     invokes = machine.states[state].invoke if state in machine.states else ()
     return next((machine.invoked[invoke.behavior] for invoke in invokes if invoke.id == id), None)
 
 
-def _thawed(machine: Machine, data: Part) -> Snapshot:
-    if data["version"].data != VERSION:
-        raise SnapshotError(f"the snapshot is of version {data['version'].data}, and this Lumen reads {VERSION}")
+def _snapshot(machine: MachineDefinition, data: JsonCursor) -> Snapshot:
+    if data["version"].data != SNAPSHOT_VERSION:
+        raise SnapshotError(
+            f"the snapshot is of version {data['version'].data}, and this Lumen reads {SNAPSHOT_VERSION}"
+        )
     if difference := _difference(machine, data["machine"]):
         raise SnapshotError(f"the snapshot is not of `{machine.id}` as it is now: {difference}")
     return _Reader(machine, data["configuration"]).read(data)
@@ -39,7 +47,7 @@ def _thawed(machine: Machine, data: Part) -> Snapshot:
 class _Reader:
     """Reads what belongs to a machine of which these states are active."""
 
-    def __init__(self, machine: Machine, configuration: Part) -> None:
+    def __init__(self, machine: MachineDefinition, configuration: JsonCursor) -> None:
         self.machine = machine
         self.names = frozenset(configuration.texts())
         if unknown := self.names - {state.name for state in machine.states.values() if state.path}:
@@ -48,14 +56,14 @@ class _Reader:
             if fault := self.fault(state):
                 raise configuration.refused(f"can't be: {fault}")
 
-    def read(self, data: Part) -> Snapshot:
+    def read(self, data: JsonCursor) -> Snapshot:
         return Snapshot(
             configuration=self.names,
             context=self.context(data["context"]),
             at=data["at"].number(),
             language=data["language"].text(),
             timers=tuple(self.timer(row) for row in data["timers"].rows()),
-            doing={path: self.deed(path, part) for path, part in data["doing"].items()},
+            doing={path: self.position(path, part) for path, part in data["doing"].items()},
             history={path: self.remembered(path, part) for path, part in data["history"].items()},
             counters=Counters(**{key: data["counters"][key].count() for key in Counters._fields}),
             generator=data["generator"].count() % 2**32,
@@ -72,19 +80,19 @@ class _Reader:
         children = [self.machine.states[path] for path in state.children]
         active = [child for child in children if child.name in self.names]
         here = f"`{state.name}`"
-        if any(child.kind is Kind.HISTORY for child in active):
+        if any(child.kind is StateKind.HISTORY for child in active):
             return f"a history state of {here} is active"
         if not self.active(state.path):
             return f"`{active[0].name}` is active without {here} around it" if active else ""
-        if state.kind is Kind.COMPOUND and len(active) != 1:
+        if state.kind is StateKind.COMPOUND and len(active) != 1:
             return f"{len(active)} states of {here} are active, where one has to be"
-        regions = [child for child in children if child.kind is not Kind.HISTORY]
-        if state.kind is Kind.PARALLEL and len(active) < len(regions):
+        regions = [child for child in children if child.kind is not StateKind.HISTORY]
+        if state.kind is StateKind.PARALLEL and len(active) < len(regions):
             return f"only {len(active)} of the {len(regions)} regions of {here} are active"
         return ""
 
-    def context(self, data: Part) -> dict[str, Any]:
-        checks: Mapping[str, Check | None] = compiled(self.machine).chart.checks
+    def context(self, data: JsonCursor) -> dict[str, Any]:
+        checks: Mapping[str, TypeCheck | None] = compiled(self.machine).chart.checks
         found: dict[str, Any] = {key: data[key].plain() for key in self.machine.context}
         for key, part in data.items():
             if key not in found:
@@ -93,25 +101,25 @@ class _Reader:
                 raise part.refused(refusal(found[key], checks[key]))
         return found
 
-    def timer(self, data: Part) -> Timer:
+    def timer(self, data: JsonCursor) -> Timer:
         kind, state = data["kind"].text(), data["state"].text()
         if kind not in ("after", "send", "wait"):
             raise data["kind"].refused("should be `after`, `send` or `wait`")
         if kind != "send" and not self.active(state):
             raise data["state"].refused(f"names `{state}`, which is not active")
         due, delay = data["due"].number(), data["delay"].number()
-        event, told = data["event"].text(), data["data"].plain()
-        return Timer(data["id"].text(), due, delay, event, told, state, kind)  # type: ignore[arg-type]  # one of three
+        event, content = data["event"].text(), data["data"].plain()
+        return Timer(data["id"].text(), due, delay, event, content, state, kind)  # type: ignore[arg-type]  # one of three
 
-    def deed(self, path: str, data: Part) -> Within:
+    def position(self, path: str, data: JsonCursor) -> Within:
         node = compiled(self.machine).chart.nodes.get(path)
         if node is None or not node.do or not self.active(path):
             raise data.refused("stands for no active state with a `do`")
         return _within(data, node.do, ("do",))
 
-    def remembered(self, path: str, data: Part) -> tuple[str, ...]:
+    def remembered(self, path: str, data: JsonCursor) -> tuple[str, ...]:
         state, paths = self.machine.states.get(path), tuple(data.texts())
-        if state is None or state.kind is not Kind.HISTORY:
+        if state is None or state.kind is not StateKind.HISTORY:
             raise data.refused("stands for no history state")
         if not (paths and all(self.may_remember(state, each) for each in paths)) or self.exclude(paths):
             raise data.refused(f"remembers {', '.join(paths) or 'nothing'}, which was never active there")
@@ -120,7 +128,7 @@ class _Reader:
     def may_remember(self, history: State, path: str) -> bool:
         """Whether that is a state that the history state could stand for."""
         state = self.machine.states.get(path)
-        if state is None or state.kind is Kind.HISTORY:
+        if state is None or state.kind is StateKind.HISTORY:
             return False
         home = history.parent or ""
         below = path != "" and (not home or path.startswith(f"{home}."))
@@ -130,15 +138,15 @@ class _Reader:
         """Whether two of these states are never active at the same time."""
         states = self.machine.states
         around = {path for each in paths for path in _upwards(states, each)}
-        alone = (state.children for state in states.values() if state.kind is Kind.COMPOUND)
+        alone = (state.children for state in states.values() if state.kind is StateKind.COMPOUND)
         return any(len(around.intersection(children)) > 1 for children in alone)
 
-    def invoked(self, id: str, data: Part) -> Invoked:
+    def invoked(self, id: str, data: JsonCursor) -> Invoked:
         state = data["state"].text()
         machine = invoked_by(self.machine, state, id)
         if machine is None or not self.active(state):
             raise data.refused(f"was invoked by `{state}`, which is not active or invokes nothing of that id")
-        return Invoked(state, _thawed(machine, data["snapshot"]), data["commands"].count())
+        return Invoked(state, _snapshot(machine, data["snapshot"]), data["commands"].count())
 
 
 def _upwards(states: Mapping[str, State], path: str | None) -> Iterator[str]:
@@ -147,22 +155,22 @@ def _upwards(states: Mapping[str, State], path: str | None) -> Iterator[str]:
         path = states[path].parent
 
 
-def _within(data: Part, deeds: tuple[Deed, ...], blocks: tuple[str, ...]) -> Within:
+def _within(data: JsonCursor, actions: tuple[CompiledAction, ...], blocks: tuple[str, ...]) -> Within:
     block, place = data["block"].text(), data["place"].count()
     if block not in blocks:
         raise data["block"].refused(f"should be {' or '.join(f'`{name}`' for name in blocks)}")
-    if place >= len(deeds):
-        raise data["place"].refused(f"is {place}, where there are {len(deeds)} actions")
-    return Within(block, place, _position(data["inner"], deeds[place]))  # type: ignore[arg-type]  # one of the blocks
+    if place >= len(actions):
+        raise data["place"].refused(f"is {place}, where there are {len(actions)} actions")
+    return Within(block, place, _position(data["inner"], actions[place]))  # type: ignore[arg-type]  # one of the blocks
 
 
-def _position(data: Part, deed: Deed) -> Position:
-    match deed:
-        case Awaited() | Pause():
+def _position(data: JsonCursor, action: CompiledAction) -> Position:
+    match action:
+        case AwaitedCommand() | TimedWait():
             return Awaiting(data["awaiting"].text())
-        case Choice():
-            return _within(data, deed.block(data["block"].text()), ("then", "else"))
-        case Together(branches):
+        case ConditionalAction():
+            return _within(data, action.block(data["block"].text()), ("then", "else"))
+        case ParallelActions(branches):
             rows = data["branches"].rows()
             if len(rows) != len(branches) or all(row.data is None for row in rows):
                 raise data["branches"].refused(f"should say of {len(branches)} branches where they stand")
@@ -171,7 +179,7 @@ def _position(data: Part, deed: Deed) -> Position:
     raise data.refused("stands in an action that takes no time")
 
 
-def _difference(machine: Machine, other: Part) -> str:
+def _difference(machine: MachineDefinition, other: JsonCursor) -> str:
     id, hash = other["id"].text(), other["hash"].text()
     theirs, their_keys = set(other["states"].texts()), set(other["context"].texts())
     if hash == machine.hash and id == machine.id:

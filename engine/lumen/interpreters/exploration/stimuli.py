@@ -5,21 +5,21 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.exploration.reading import behind, of_transition
+from lumen.interpreters.exploration.expression_uses import invoked_behavior, of_transition
 from lumen.interpreters.exploration.samples import samples
 from lumen.interpreters.expressions import Node, Scope, compile_expression, names, unparse
 from lumen.interpreters.expressions.tree import children
 from lumen.interpreters.statechart import Awaiting, Fork, Position, Snapshot, Timer, Within
 from lumen.interpreters.statechart.answers import outside
-from lumen.interpreters.statechart.program import Program, compiled
+from lumen.interpreters.statechart.program import CompiledMachine, compiled
 from lumen.language.commands import BodyCommand
 from lumen.language.events import Event
-from lumen.language.machines import Machine, Transition
+from lumen.language.machines import MachineDefinition, Transition
 
-FAILURE = "it does not work"
+FAILURE_REASON = "it does not work"
 
 
-class Kind(StrEnum):
+class StimulusKind(StrEnum):
     """What a move is: an event from outside, a timer's end, a command's end, or its failure."""
 
     EVENT = "event"
@@ -28,21 +28,26 @@ class Kind(StrEnum):
     FAILED = "failed"
 
 
-COSTS: Mapping[Kind, int] = {Kind.DONE: 0, Kind.EVENT: 2, Kind.TIME: 2, Kind.FAILED: 7}
+STIMULUS_COSTS: Mapping[StimulusKind, int] = {
+    StimulusKind.DONE: 0,
+    StimulusKind.EVENT: 2,
+    StimulusKind.TIME: 2,
+    StimulusKind.FAILED: 7,
+}
 """What a move costs on the way to the shortest story: a robot that does what it should costs nothing."""
 
-IMPATIENCE = 5
+OVERTAKING_COST = 5
 """What it costs besides that a timer ends while a command is under way, or before an earlier one."""
 
 
-class Move(NamedTuple):
+class Stimulus(NamedTuple):
     """Something that can happen; `event` is what the behaviour steps with.
 
     `waited` [s] is how long it takes, `pending` what the robot is asked to do meanwhile; `command` is what is answered.
     `overtaking` is a timer that ends before one that is due earlier.
     """
 
-    kind: Kind
+    kind: StimulusKind
     event: Event
     waited: float = 0.0
     command: BodyCommand | None = None
@@ -51,34 +56,36 @@ class Move(NamedTuple):
 
     @property
     def cost(self) -> int:
-        return COSTS[self.kind] + IMPATIENCE * (bool(self.pending) + self.overtaking)
+        return STIMULUS_COSTS[self.kind] + OVERTAKING_COST * (bool(self.pending) + self.overtaking)
 
 
-class Moves:
+class StimulusFinder:
     """Finds the moves; `events` are those that may come from outside, each with the JSON Schema of its data."""
 
-    def __init__(self, machine: Machine, events: Mapping[str, Any]) -> None:
+    def __init__(self, machine: MachineDefinition, events: Mapping[str, Any]) -> None:
         self._machine, self._events = machine, events
         self._program = compiled(machine)
         self._known: dict[tuple[Any, ...], tuple[Any, ...]] = {}
 
-    def of(self, snapshot: Snapshot, commands: Mapping[str, BodyCommand]) -> Iterator[Move]:
+    def of(self, snapshot: Snapshot, commands: Mapping[str, BodyCommand]) -> Iterator[Stimulus]:
         """The moves of a snapshot; `commands` are those started so far, by id."""
         awaited = [id for id in _awaited(snapshot) if not _pause(id)]
         pending = tuple(commands[id] for id in awaited if id in commands)
         for id in awaited:
-            yield Move(Kind.DONE, Event(f"done.command.{id}", None, snapshot.at), 0.0, commands.get(id))
+            yield Stimulus(StimulusKind.DONE, Event(f"done.command.{id}", None, snapshot.at), 0.0, commands.get(id))
         for timer in _next(snapshot):
             at = max(timer.due, snapshot.at)
             event = Event(timer.event, timer.data, at, timer.id)
             hanging = () if _pause(timer.id) else pending
             overtaking = any(t.due < timer.due for t in snapshot.timers)
-            yield Move(Kind.TIME, event, at - snapshot.at, None, hanging, overtaking)
+            yield Stimulus(StimulusKind.TIME, event, at - snapshot.at, None, hanging, overtaking)
         for name in self._events:
-            yield from (Move(Kind.EVENT, Event(name, data, snapshot.at)) for data in self._data(name, snapshot))
+            yield from (
+                Stimulus(StimulusKind.EVENT, Event(name, data, snapshot.at)) for data in self._data(name, snapshot)
+            )
         for id in awaited:
-            event = Event(f"error.command.{id}", {"reason": FAILURE}, snapshot.at)
-            yield Move(Kind.FAILED, event, 0.0, commands.get(id))
+            event = Event(f"error.command.{id}", {"reason": FAILURE_REASON}, snapshot.at)
+            yield Stimulus(StimulusKind.FAILED, event, 0.0, commands.get(id))
 
     def _data(self, name: str, snapshot: Snapshot) -> tuple[Any, ...]:
         """Data of an event, one for each sort that the transitions that may hear it tell apart."""
@@ -90,7 +97,7 @@ class Moves:
             self._known[known] = tuple(self._sorts(name, heard))
         return self._known[known]
 
-    def _sorts(self, name: str, heard: tuple[tuple[Machine, Transition], ...]) -> Iterator[Any]:
+    def _sorts(self, name: str, heard: tuple[tuple[MachineDefinition, Transition], ...]) -> Iterator[Any]:
         trees = [(machine, use.tree) for machine, transition in heard for use in of_transition(transition)]
         atoms = [(machine, unparse(node)) for machine, tree in trees for node in _known_of_events(tree)]
         seen = set()
@@ -104,12 +111,12 @@ class Moves:
                     yield data
 
 
-def _heard(program: Program, snapshot: Snapshot, name: str) -> Iterator[tuple[Machine, Transition]]:
+def _heard(program: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[tuple[MachineDefinition, Transition]]:
     """The transitions that an event of that name may select, here or in what is invoked."""
     for group in program.planner.configuration(snapshot.configuration).candidates(name):
         yield from ((program.chart.machine, rule.transition) for rule in group)
     for id, child in snapshot.invoked.items():
-        behavior = behind(program.chart.machine, child.state, id)
+        behavior = invoked_behavior(program.chart.machine, child.state, id)
         yield from _heard(program.invoked[behavior], child.snapshot, name)
 
 
@@ -124,7 +131,7 @@ def _known_of_events(tree: Node) -> Iterator[Node]:
             yield from _known_of_events(child)
 
 
-def _sort(machine: Machine, source: str, name: str, data: Any) -> str:
+def _sort(machine: MachineDefinition, source: str, name: str, data: Any) -> str:
     """What a part of an expression says of an event, where that can be true, false, empty or something."""
     scope = Scope(event={"name": name, "data": data}, phrases=machine.phrases, answers=machine.answers)
     try:

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple, TypeVar
 from lumen.interpreters.expressions import ExpressionError, Scope, parse_expression
 from lumen.interpreters.expressions.tree import Call, Name, walk
 from lumen.interpreters.statechart.blocks import compile_value
-from lumen.interpreters.statechart.chart import Guard, Node, Rule
-from lumen.interpreters.statechart.plans import Configuration, Plan, Planner, bound
-from lumen.interpreters.statechart.types import Check
+from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
+from lumen.interpreters.statechart.plans import Configuration, MicrostepPlan, MicrostepPlanner, bound
+from lumen.interpreters.statechart.types import TypeCheck
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.actions import Assign, Expression, Value
 from lumen.language.actions import Step as ActionStep
@@ -27,26 +27,26 @@ T = TypeVar("T")
 _new = tuple.__new__  # a third of the price of Scope(…), Snapshot(…), Step(…)
 
 
-Groups = tuple[tuple[Rule, ...], ...]
+CandidateGroups = tuple[tuple[CompiledTransition, ...], ...]
 
 
-class Move(NamedTuple):
+class FastOutcome(NamedTuple):
     """What a step of some transitions comes to, if it is plain: the assignments, and the rest of the Step.
 
     `guard` is that of a single transition.
     """
 
-    guard: Guard | None
+    guard: CompiledGuard | None
     plain: bool
-    assigns: tuple[tuple[str, Callable[[Scope], Any], Check | None], ...]
+    assigns: tuple[tuple[str, Callable[[Scope], Any], TypeCheck | None], ...]
     target: frozenset[str]
     exited: tuple[str, ...]
     entered: tuple[str, ...]
     transitions: tuple[Transition, ...]
-    clocks: "Clocks | None" = None
+    clocks: "AfterTimers | None" = None
 
 
-class Clocks(NamedTuple):
+class AfterTimers(NamedTuple):
     """The `after` timers that a move ends, by the paths of their states, and those that it sets: event, delay, path."""
 
     ended: frozenset[str]
@@ -59,7 +59,7 @@ class Clocks(NamedTuple):
         return (*kept, *begun)
 
 
-class Way(NamedTuple):
+class FastPath(NamedTuple):
     """What can come of an event in a configuration: a move, and where its guard does not hold what `otherwise` finds.
 
     It is the move's own fields, in one object: with a thousand states it counts how much memory a step visits. `hears`
@@ -67,26 +67,26 @@ class Way(NamedTuple):
     """
 
     hears: bool
-    guard: Guard | None
+    guard: CompiledGuard | None
     plain: bool
-    assigns: tuple[tuple[str, Callable[[Scope], Any], Check | None], ...]
+    assigns: tuple[tuple[str, Callable[[Scope], Any], TypeCheck | None], ...]
     target: frozenset[str]
     exited: tuple[str, ...]
     entered: tuple[str, ...]
     transitions: tuple[Transition, ...]
-    clocks: Clocks | None
-    otherwise: Callable[[Scope], Move]
+    clocks: AfterTimers | None
+    otherwise: Callable[[Scope], FastOutcome]
 
 
-class Shortcuts:
+class FastPaths:
     """The ways of a chart found out so far, by event and configuration; None where an event is not plain.
 
     `pool` holds what several moves have in common.
     """
 
-    def __init__(self, planner: Planner) -> None:
+    def __init__(self, planner: MicrostepPlanner) -> None:
         self.planner, self.machine = planner, planner.chart.machine
-        self.ways: dict[str, dict[frozenset[str], Way | None]] = {}
+        self.ways: dict[str, dict[frozenset[str], FastPath | None]] = {}
         self.pool: dict[Any, Any] = {}
 
     def step(self, snapshot: Snapshot, event: Event) -> Step | None:
@@ -126,7 +126,7 @@ class Shortcuts:
         after = (target, context, at, language, timers, doing, history, counters, generator, epoch, invoked)
         return _new(Step, (event, exited, entered, (), _new(Snapshot, after), transitions, (), ()))
 
-    def find(self, names: frozenset[str], name: str) -> Way | None:
+    def find(self, names: frozenset[str], name: str) -> FastPath | None:
         """The way of an event in a configuration; kept, but for the robot's answers: each has a name of its own."""
         if ".command." in name:
             return None
@@ -136,27 +136,27 @@ class Shortcuts:
         ways[names] = self.way(self.planner.configuration(names), name)
         return ways[names]
 
-    def way(self, start: Configuration, name: str) -> Way | None:
+    def way(self, start: Configuration, name: str) -> FastPath | None:
         groups = start.candidates(name)
         asked = _asked(source for group in groups for rule in group for source in _sources(rule.transition))
         if start.eventless or self.planner.chart.has_history or asked & {"state", "In"}:
             return None
         hears = "event" in asked
         if len(groups) > 1:
-            return Way(hears, *self.move(start, (), _never), self.together(start, groups))
+            return FastPath(hears, *self.move(start, (), _never), self.together(start, groups))
         rules = groups[0] if groups else ()
         rows = [self.move(start, rule.alone, rule.guard) for rule in rules]
         if rows and not any(move.plain for move in rows):
             return None
         first, *others = [*rows, self.move(start, ())]
-        return Way(hears, *first, _first(others))
+        return FastPath(hears, *first, _first(others))
 
-    def together(self, start: Configuration, groups: Groups) -> Callable[[Scope], Move]:
+    def together(self, start: Configuration, groups: CandidateGroups) -> Callable[[Scope], FastOutcome]:
         """Finds the move where several atomic states are active, each with its first candidate that is enabled."""
-        moves: dict[tuple[Rule, ...], Move] = {}
+        moves: dict[tuple[CompiledTransition, ...], FastOutcome] = {}
 
-        def choose(scope: Scope) -> Move:
-            enabled: tuple[Rule, ...] = ()
+        def choose(scope: Scope) -> FastOutcome:
+            enabled: tuple[CompiledTransition, ...] = ()
             for group in groups:
                 for rule in group:
                     if rule.guard is None or rule.guard(scope):
@@ -170,7 +170,9 @@ class Shortcuts:
 
         return choose
 
-    def move(self, start: Configuration, enabled: tuple[Rule, ...], guard: Guard | None = None) -> Move:
+    def move(
+        self, start: Configuration, enabled: tuple[CompiledTransition, ...], guard: CompiledGuard | None = None
+    ) -> FastOutcome:
         plan = self.planner.plan(start, tuple(dict.fromkeys(enabled)), {})
         around = [stop for stop in (*plan.exits, *plan.entries) if stop.node.do or stop.node.invokes or stop.done]
         left = [step for stop in plan.exits for step in _of(stop.node).exit]
@@ -179,7 +181,7 @@ class Shortcuts:
         pairs = [pair for action in actions if isinstance(action, Assign) for pair in action.values.items()]
         asked = _asked(source for step in (*left, *entered) for source in _assigned(step))
         checks = self.planner.chart.checks
-        return Move(
+        return FastOutcome(
             guard,
             plain=not (around or asked & {"event", "state", "In"} or plan.target.eventless)
             and all(isinstance(action, Assign) for action in actions),
@@ -203,18 +205,18 @@ def _never(_: Scope) -> bool:
     return False
 
 
-def _first(moves: list[Move]) -> Callable[[Scope], Move]:
+def _first(moves: list[FastOutcome]) -> Callable[[Scope], FastOutcome]:
     """Finds the first of these moves whose guard holds; the last one has none."""
     return lambda scope: next(move for move in moves if move.guard is None or move.guard(scope))
 
 
-def _clocks(plan: Plan) -> Clocks | None:
+def _clocks(plan: MicrostepPlan) -> AfterTimers | None:
     ended = frozenset(stop.node.path for stop in plan.exits if stop.node.afters)
     begun = tuple((*after, stop.node.path) for stop in plan.entries for after in stop.node.afters)
-    return Clocks(ended, begun) if ended or begun else None
+    return AfterTimers(ended, begun) if ended or begun else None
 
 
-def _of(node: Node) -> State:
+def _of(node: StateNode) -> State:
     assert node.state is not None  # only the document has none, and it is never on the way
     return node.state
 

@@ -7,7 +7,7 @@ from typing import Any
 from lumen.errors import SnapshotError, UsageError
 
 
-class Part:
+class JsonCursor:
     """A piece of a snapshot; every reading raises SnapshotError where it is something else."""
 
     __slots__ = ("data", "place")
@@ -15,22 +15,22 @@ class Part:
     def __init__(self, data: Any, place: str = "") -> None:
         self.data, self.place = data, place
 
-    def __getitem__(self, key: str) -> "Part":
+    def __getitem__(self, key: str) -> "JsonCursor":
         """What stands under a key that has to be there."""
         self.items()
         if key not in self.data:
             raise self.refused(f"lacks `{key}`")
         return self.below(key)
 
-    def below(self, key: object) -> "Part":
-        return Part(self.data[key], f"{self.place}.{key}".lstrip("."))
+    def below(self, key: object) -> "JsonCursor":
+        return JsonCursor(self.data[key], f"{self.place}.{key}".lstrip("."))
 
-    def items(self) -> "list[tuple[str, Part]]":
+    def items(self) -> "list[tuple[str, JsonCursor]]":
         if not isinstance(self.data, Mapping) or not all(isinstance(key, str) for key in self.data):
             raise self.refused("should be a map with texts as keys")
         return [(key, self.below(key)) for key in self.data]
 
-    def rows(self) -> "list[Part]":
+    def rows(self) -> "list[JsonCursor]":
         if not isinstance(self.data, list | tuple):
             raise self.refused("should be a list")
         return [self.below(index) for index in range(len(self.data))]

@@ -3,29 +3,31 @@
 from collections.abc import Iterator
 
 from lumen.errors import LumenError, SnapshotError
-from lumen.interpreters.migration import carrying
-from lumen.interpreters.migration.continued import Continued, Fresh
-from lumen.interpreters.migration.placing import Homeless, Placement, is_legal
-from lumen.interpreters.migration.situation import How, Situation, behind
-from lumen.interpreters.migration.verdicts import Plan, Refusal, Verdict, Wait
+from lumen.interpreters.migration import carried_state as carrying
+from lumen.interpreters.migration.continued import Continued, NewWork
+from lumen.interpreters.migration.placing import Placement, Unplaced, is_legal
+from lumen.interpreters.migration.situation import MigrationOptions, Situation, invoked_behavior
+from lumen.interpreters.migration.verdicts import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal
 from lumen.interpreters.statechart.answers import labelled
-from lumen.interpreters.statechart.chart import Node
+from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.sessions import Session
 from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
-from lumen.language.machines import Machine
+from lumen.language.machines import MachineDefinition
 
-__all__ = ["How", "move"]
+__all__ = ["MigrationOptions", "move"]
 
 
-def move(old: Machine, new: Machine, snapshot: Snapshot, how: How, behavior: str = "") -> Verdict:
+def move(
+    old: MachineDefinition, new: MachineDefinition, snapshot: Snapshot, how: MigrationOptions, behavior: str = ""
+) -> MigrationVerdict:
     """How the snapshot goes on under the new machine, which stands in behaviors/BEHAVIOR.yaml."""
     if old == new and (not how.languages or snapshot.language in how.languages):
-        return Plan(snapshot)
+        return MigrationPlan(snapshot)
     try:
         moving = _Moving(old, new, snapshot, how)
     except KeyError as error:
         raise SnapshotError(f"`{old.id}` has no state {error}, which is active in the snapshot") from None
-    if isinstance(moving.placement, Homeless):
+    if isinstance(moving.placement, Unplaced):
         busy = None if how.now else moving.busy()
         return busy or moving.refusal(moving.placement, behavior)
     wait = next(moving.waits(moving.placement), None)
@@ -40,14 +42,14 @@ def move(old: Machine, new: Machine, snapshot: Snapshot, how: How, behavior: str
 class _Moving(Situation):
     """One snapshot on its way."""
 
-    def go(self, placement: Placement, behavior: str) -> Plan | Refusal | Wait:
+    def go(self, placement: Placement, behavior: str) -> MigrationPlan | Refusal | MigrationDelay:
         """The plan: exits of the old machine, what stays translated, entries of the new one, and what follows."""
         out = self.leave(placement)
         into, notes = self.arrive(placement, out)
         leaving = out.commands
         for id, child in out.invoked.items():
             verdict = self.follow(into, placement, id, child)
-            if not isinstance(verdict, Plan):
+            if not isinstance(verdict, MigrationPlan):
                 return verdict
             leaving += tuple(labelled(command, id) for command in verdict.leaving)
             notes += verdict.notes
@@ -57,7 +59,9 @@ class _Moving(Situation):
             return Refusal(f"{names} can't be active together in the new file", "restart the exhibition", "", behavior)
         step = into.settle()
         notes = (*self.whereto(placement, step), *notes)
-        return Plan(step.snapshot, leaving, step.commands, out.exited + step.exited, step.entered, notes, into.outcome)
+        return MigrationPlan(
+            step.snapshot, leaving, step.commands, out.exited + step.exited, step.entered, notes, into.outcome
+        )
 
     def leave(self, placement: Placement) -> Session:
         """Leave what does not stay, and end what can't go on, by the old machine."""
@@ -96,22 +100,22 @@ class _Moving(Situation):
         into.waiting = tuple(image for image, fresh in into.fresh.items() if any(fresh))
         return into, notes
 
-    def fresh(self, node: Node, image: Node, placement: Placement) -> Fresh:
+    def fresh(self, node: StateNode, image: StateNode, placement: Placement) -> NewWork:
         """What a state that stays did not have before."""
         had = [(invoke.id, invoke.behavior) for invoke, _ in node.invokes]
         new = frozenset(i.id for i, _ in image.invokes if (i.id, i.behavior) not in had)
-        return Fresh(new, bool(image.do) and (not node.do or node in self.changed(placement)))
+        return NewWork(new, bool(image.do) and (not node.do or node in self.changed(placement)))
 
-    def follow(self, into: Continued, placement: Placement, id: str, child: Invoked) -> Verdict:
+    def follow(self, into: Continued, placement: Placement, id: str, child: Invoked) -> MigrationVerdict:
         """Let an invoked behaviour go on under its new machine; what it enters is asked for by `into`."""
         owner = next(image for node, image in placement.kept.items() if node.path == child.state)
-        behavior = behind(self.new, owner.path, id)
+        behavior = invoked_behavior(self.new, owner.path, id)
         old, new = self.old.invoked[behavior].chart.machine, self.new.invoked[behavior].chart.machine
         lent = child.snapshot._replace(
             language=into.language, counters=into.counters, generator=into.generator, epoch=into.epoch
         )
         verdict = move(old, new, lent, self.how._replace(at=into.at, languages=()), behavior)
-        if isinstance(verdict, Plan):
+        if isinstance(verdict, MigrationPlan):
             into.adopt(id, Invoked(owner.path, verdict.snapshot, child.commands), verdict)
         return verdict
 

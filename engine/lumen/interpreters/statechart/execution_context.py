@@ -5,10 +5,10 @@ from collections.abc import Container, Mapping
 from typing import Any
 
 from lumen.interpreters.expressions import ExpressionError, Scope
-from lumen.interpreters.statechart.blocks import ActionError, Block
-from lumen.interpreters.statechart.chart import Node
+from lumen.interpreters.statechart.blocks import ActionError, CompiledBlock
+from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.program import Program
+from lumen.interpreters.statechart.program import CompiledMachine
 from lumen.interpreters.statechart.values import Counters, Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
@@ -16,7 +16,7 @@ from lumen.language.events import Event
 from lumen.language.machines import Transition
 
 
-class Workbench:
+class ExecutionContext:
     """A snapshot being moved on by one event, as actions and expressions see it.
 
     What most events leave empty is empty in the class, and made only where it is needed.
@@ -26,7 +26,7 @@ class Workbench:
     happened: Mapping[str, Any] | None = None
     commands: tuple[Command, ...] = ()
     queue: deque[Event] | tuple[()] = ()
-    waiting: tuple[Node, ...] = ()
+    waiting: tuple[StateNode, ...] = ()
     exited: tuple[str, ...] = ()
     entered: tuple[str, ...] = ()
     transitions: tuple[Transition, ...] = ()
@@ -36,7 +36,7 @@ class Workbench:
     steps: tuple[tuple[str, Step], ...] = ()
     turns = 0
 
-    def __init__(self, program: Program, before: Snapshot, event: Event | None, at: float) -> None:
+    def __init__(self, program: CompiledMachine, before: Snapshot, event: Event | None, at: float) -> None:
         self.program = program
         self.chart, self.planner, *_ = program
         self.trigger = self.event = event
@@ -49,7 +49,7 @@ class Workbench:
         self.active: Container[str] = self.configuration.known
         self.here = self.chart.root
 
-    def perform(self, block: Block, node: Node) -> None:
+    def perform(self, block: CompiledBlock, node: StateNode) -> None:
         """Do the actions of a block; the first that fails ends it."""
         if node is not self.here:
             self.stand(node)
@@ -119,7 +119,7 @@ class Workbench:
         self.generator = (self.generator * 1664525 + 1013904223) % 2**32
         return (self.generator >> 16) % count
 
-    def stand(self, node: Node) -> None:
+    def stand(self, node: StateNode) -> None:
         """Let `state` in expressions be this one."""
         if node is not self.here:
             self.here, self.scope = node, None

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 
-class Moment:
+class ActiveView:
     """What is active at one place of a way out or in, by name: `before` the way, and what was passed so far.
 
     It needs no set of its own: a way through a thousand regions has a thousand moments.
