@@ -8,7 +8,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, reduce
 from math import cos, exp, fabs, log, sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    """What a batch is worked on in: a float for each of its rows."""
 
 Number = Any
 """A float, or an array of floats: what one of the two arithmetics works on."""

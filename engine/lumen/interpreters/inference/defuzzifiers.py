@@ -12,10 +12,7 @@ from lumen.interpreters.inference.weighted import Weighted
 from lumen.language.controllers import WEIGHTED, Term, Variable
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from lumen.interpreters.inference.arithmetic import Array
 
 
 class Defuzzifier(Protocol):

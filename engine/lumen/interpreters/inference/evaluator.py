@@ -13,10 +13,9 @@ from lumen.language.controllers import ControllerDefinition, Variable
 from lumen.language.diagnostics import did_you_mean
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
-    Array = NDArray[np.float64]
+    from lumen.interpreters.inference.arithmetic import Array
 
 _CHUNK = 1 << 13  # rows of a batch that are worked on together: they stay in the cache
 

@@ -17,10 +17,7 @@ from math import nan
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from lumen.interpreters.inference.arithmetic import Array
 
 MOST_TERMS = 6
 """Layers are kept for every union of terms that occurs: at most 2^6."""

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from lumen.interpreters.inference.arithmetic import Array
 
 _ROOM = 1 << 18  # values of a chunk: small enough for the cache
 

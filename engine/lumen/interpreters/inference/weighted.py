@@ -11,10 +11,7 @@ from lumen.interpreters.inference.norms import norm
 from lumen.language.controllers import Term
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from lumen.interpreters.inference.arithmetic import Array
 
 TermValue = Callable[[Number, Sequence[Number]], Number]
 """What a term stands for at a degree, the controller's variables being as they are."""
