@@ -15,7 +15,6 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
@@ -27,6 +26,7 @@ import yaml
 ROOT = Path(__file__).parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "engine")]
 
+from tests.guarded import CompletedProcess, run_guarded  # noqa: E402
 from tests.lsp.client import Client  # noqa: E402
 
 from lumen.loading.files import FOLDERS, read_files  # noqa: E402
@@ -131,12 +131,10 @@ def esphome(mistake: Mistake, folder: Path, tool: Path) -> str | None:
     return "" if done.returncode == 0 else " ".join(said or lines)
 
 
-def run(words: list[object], folder: Path) -> subprocess.CompletedProcess[str]:
+def run(words: list[object], folder: Path) -> CompletedProcess[str]:
     environment = {**os.environ, "NO_COLOR": "1", "HOME": str(folder)}
     command = [str(word) for word in words]
-    return subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False
-    )
+    return run_guarded(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False)
 
 
 def cell(text: str | None, folder: Path) -> str:

@@ -3,13 +3,16 @@
 import os
 import random
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from tests.guarded import PIPE, Guarded, run_guarded
 
 from lumen.loading.files import fingerprint, read_files
 
@@ -123,7 +126,7 @@ class Colleague:
     def __init__(self, root: Path, seed: int, pause: float) -> None:
         self.good = {fingerprint(read_files(root))}
         words = [sys.executable, __file__, str(root), str(seed), str(pause)]
-        self._process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self._process = Guarded(words, stdin=PIPE, stdout=PIPE, text=True)
 
     def edit(self) -> tuple[str, bool]:
         """Have the next edit made; the hash of what the files are now, and whether they are good."""
@@ -173,7 +176,7 @@ def _git(folder: Path, *words: str) -> None:
         "-c",
         "init.defaultBranch=main",
     ]
-    subprocess.run(["git", *who, *words], cwd=folder, check=True, capture_output=True)
+    run_guarded(["git", *who, *words], cwd=folder, check=True, capture_output=True)
 
 
 def main() -> None:

@@ -15,12 +15,15 @@ import re
 import resource
 import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from tests.guarded import DEVNULL, PIPE, Guarded, run_guarded
 
 from lumen.loading.files import FOLDERS, read_files
 from lumen.loading.packaged import MAIN_FILE
@@ -99,7 +102,7 @@ def process(*words: str) -> float:
     """The CPU time of a process [s]."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(words, check=True, stdout=subprocess.DEVNULL, env=environment, cwd=tempfile.gettempdir())
+    run_guarded(words, check=True, stdout=DEVNULL, env=environment, cwd=tempfile.gettempdir())
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
@@ -141,7 +144,7 @@ def watched() -> list[float]:
             shutil.copytree(ROOT / folder, root / folder)
         command = [sys.executable, "-m", "lumen", "lint", "--watch", "--format", "concise", name]
         environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
+        with Guarded(command, stdout=PIPE, text=True, env=environment) as process:
             assert process.stdout
             try:
                 answered(process.stdout)

@@ -6,10 +6,15 @@ Each `work(count)` starts anew, sends that many events and returns the context v
 import json
 import shutil
 import subprocess
+import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from tests.guarded import run_guarded
 
 Work = Callable[[int], int]
 MOST = 1_000_000_000
@@ -181,9 +186,9 @@ def xstate(sizes: Sequence[int]) -> list[tuple[str, dict[str, float] | str]]:
         script.write_text(Path(__file__).with_name("xstate.mjs").read_text())
         try:
             for command in (["npm", "init", "-y"], ["npm", "install", "--no-audit", "--no-fund", "xstate@5"]):
-                subprocess.run(command, cwd=folder, check=True, capture_output=True, timeout=120)
+                run_guarded(command, cwd=folder, check=True, capture_output=True, timeout=120)
             arguments = ["node", script.name, *map(str, sizes)]
-            said = subprocess.run(arguments, cwd=folder, check=True, capture_output=True, timeout=600, text=True).stdout
+            said = run_guarded(arguments, cwd=folder, check=True, capture_output=True, timeout=600, text=True).stdout
         except (subprocess.SubprocessError, OSError) as error:
             reason = f"not measured: {type(error).__name__} of {error.cmd[0] if hasattr(error, 'cmd') else 'npm'}"
             return [(name, reason) for name in ways.values()]

@@ -10,7 +10,6 @@ files that the writer completed, and a good one; no event may be lost; nothing m
 import argparse
 import os
 import platform
-import subprocess
 import sys
 import threading
 import time
@@ -22,7 +21,10 @@ from pathlib import Path
 from statistics import quantiles
 from typing import NamedTuple
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
 from editing import Colleague, project
+from tests.guarded import PIPE, Guarded
 
 import lumen
 from lumen.bus import connect
@@ -113,7 +115,7 @@ print(missed)
 def metronome() -> Iterator[list[int]]:
     """Another process that does nothing but tick: how many ticks the machine itself lets miss, once it is over."""
     missed: list[int] = []
-    with subprocess.Popen([sys.executable, "-c", METRONOME], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+    with Guarded([sys.executable, "-c", METRONOME], stdin=PIPE, stdout=PIPE) as process:
         yield missed
         told, _ = process.communicate()
         missed.append(int(told))

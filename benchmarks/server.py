@@ -12,7 +12,6 @@ import argparse
 import os
 import platform
 import statistics
-import subprocess
 import sys
 import threading
 import time
@@ -21,6 +20,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from tests.guarded import DEVNULL, PIPE, Guarded
 
 import lumen
 from lumen.bus import Bus, Message, connect
@@ -142,7 +145,7 @@ def worst(times: list[float]) -> float:
 def robot(url: str, kind: str) -> Iterator[None]:
     """The robot in a process of its own, once it is there."""
     line = [sys.executable, "-m", "lumen", "run", str(ROOT), "--only", "robot", "--robot", kind, "--bus", url]
-    with subprocess.Popen(line, stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True) as process:
+    with Guarded(line, stdout=PIPE, stdin=DEVNULL, text=True) as process:
         assert process.stdout
         print(process.stdout.readline(), end="")
         try:

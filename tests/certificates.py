@@ -1,7 +1,8 @@
 """An authority of our own, and the certificate that it signs for a broker."""
 
-import subprocess
 from pathlib import Path
+
+from tests.guarded import run_guarded
 
 KEY = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2"]
 
@@ -17,4 +18,4 @@ def certify(folder: Path, name: str) -> Path:
 
 
 def _openssl(folder: Path, *arguments: str) -> None:
-    subprocess.run(["openssl", *arguments], cwd=folder, check=True, capture_output=True)
+    run_guarded(["openssl", *arguments], cwd=folder, check=True, capture_output=True)

@@ -1,10 +1,9 @@
-"""A private RabbitMQ for the tests: on loopback only, as whoever runs them, gone when they end.
+"""A private RabbitMQ for the tests: on loopback only, as whoever runs them, gone when they end, however they end.
 
 `broker` is one for the whole session; a test that kills its broker makes one of its own with `RabbitMQ()`. As a program
 (`make broker`) it is one for whoever develops a module, until Ctrl-C.
 """
 
-import atexit
 import base64
 import hashlib
 import json
@@ -12,16 +11,19 @@ import os
 import shutil
 import signal
 import socket
-import subprocess
-import tempfile
 import time
-from functools import cache
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.guarded import Guarded, TimeoutExpired, temporary_folder
+
 PREFIX = Path("/usr/lib/rabbitmq/lib")
-READY = 180.0
+START_TIMEOUT = 180.0
+"""How long a broker may take until it listens, on a crowded machine [s]."""
+STOP_TIMEOUT = 20.0
+"""How long it may take to end in order [s]."""
 HASHING = "rabbit_password_hashing_sha256"
 
 
@@ -52,10 +54,11 @@ class RabbitMQ:
 
     def __init__(self, certificate: Path | None = None) -> None:
         self._script, self.certificate = _script(), certificate
-        self.folder = Path(tempfile.mkdtemp(prefix="lumen-rabbitmq-"))
+        self.folder = temporary_folder("lumen-rabbitmq-")
         self.port, self.distribution, self.epmd, self.secure = _free_ports(4)
         self.url = self.url_of("guest")
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: Guarded[bytes] | None = None
+        self._names: Guarded[bytes] | None = None
 
     def url_of(self, user: str) -> str:
         """The address for one of `USERS`, whose password is the same as the name."""
@@ -66,15 +69,24 @@ class RabbitMQ:
         (self.folder / "plugins").write_text("[].")
         (self.folder / "rabbitmq.conf").write_text("\n".join(self._settings()))
         (self.folder / "definitions.json").write_text(json.dumps(_definitions(nowhere=self.certificate is not None)))
+        if self._names is None:
+            # Begun by us, since the one that Erlang begins for itself makes itself a daemon, which outlives everybody.
+            self._names = self._begin("epmd", "-address", "127.0.0.1", "-port", str(self.epmd))
+            self._await(self._names, lambda: _listens(self.epmd))
+        self._process = self._begin(self._script)
+        self._await(self._process, lambda: _speaks_amqp(self.port))
+
+    def _begin(self, *command: str) -> Guarded[bytes]:
         with (self.folder / "log").open("ab") as log:
-            self._process = subprocess.Popen(
-                [self._script], env=self._environment(), stdout=log, stderr=log, start_new_session=True
-            )
-        deadline = time.monotonic() + READY
-        while not _speaks_amqp(self.port):
-            if self._process.poll() is not None or time.monotonic() > deadline:
+            return Guarded(command, env=self._environment(), stdout=log, stderr=log)
+
+    def _await(self, process: Guarded[bytes], ready: Callable[[], bool]) -> None:
+        deadline = time.monotonic() + START_TIMEOUT
+        while not ready():
+            if process.poll() is not None or time.monotonic() > deadline:
+                said = self._said()
                 self.stop()
-                pytest.fail(f"RabbitMQ did not start; it said:\n{self._said()}", pytrace=False)
+                pytest.fail(f"RabbitMQ did not start; it said:\n{said}", pytrace=False)
             time.sleep(0.1)
 
     def _settings(self) -> list[str]:
@@ -88,26 +100,15 @@ class RabbitMQ:
 
     def kill(self) -> None:
         """End it as a power cut would."""
-        self._end(signal.SIGKILL)
+        _end(self._process, signal.SIGKILL)
+        self._process = None
 
     def stop(self) -> None:
-        """End it, and the name server that it started, and delete its folder."""
-        self._end(signal.SIGTERM)
-        subprocess.run(["epmd", "-port", str(self.epmd), "-kill"], env=self._environment(), capture_output=True)
+        """End it and its name server, and delete its folder."""
+        for process in (self._process, self._names):
+            _end(process, signal.SIGTERM)
+        self._process = self._names = None
         shutil.rmtree(self.folder, ignore_errors=True)
-
-    def _end(self, how: signal.Signals) -> None:
-        if self._process is None:
-            return
-        try:
-            os.killpg(self._process.pid, how)
-            self._process.wait(20)
-        except ProcessLookupError:
-            pass
-        except subprocess.TimeoutExpired:
-            os.killpg(self._process.pid, signal.SIGKILL)
-            self._process.wait()
-        self._process = None
 
     def _environment(self) -> dict[str, str]:
         folder = str(self.folder)
@@ -136,17 +137,26 @@ class RabbitMQ:
 
 
 @pytest.fixture(scope="session")
-def broker() -> RabbitMQ:
-    """The session's broker; however many folders ask for it, it is one."""
-    return _shared()
-
-
-@cache
-def _shared() -> RabbitMQ:
+def broker() -> Iterator[RabbitMQ]:
+    """The session's broker."""
     rabbitmq = RabbitMQ()
     rabbitmq.start()
-    atexit.register(rabbitmq.stop)
-    return rabbitmq
+    yield rabbitmq
+    rabbitmq.stop()
+
+
+def _end(process: Guarded[bytes] | None, how: signal.Signals) -> None:
+    """End a process and its children, by force where it takes too long."""
+    if process is None:
+        return
+    try:
+        os.killpg(process.pid, how)
+        process.wait(STOP_TIMEOUT)
+    except ProcessLookupError:
+        process.wait()
+    except TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
 
 
 def _definitions(*, nowhere: bool) -> dict[str, object]:
@@ -197,6 +207,14 @@ def _free_ports(count: int) -> list[int]:
     for s in sockets:
         s.close()
     return ports
+
+
+def _listens(port: int) -> bool:
+    try:
+        socket.create_connection(("127.0.0.1", port), timeout=1.0).close()
+    except OSError:
+        return False
+    return True
 
 
 def _speaks_amqp(port: int) -> bool:

@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +11,7 @@ import pytest
 
 from lumen.bus import Bus, connect
 from tests.exhibits import project
+from tests.guarded import PIPE, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector
 
@@ -22,10 +22,9 @@ MODULES = ROOT / "examples/modules"
 
 
 @contextmanager
-def running(*command: str, url: str) -> Iterator["subprocess.Popen[str]"]:
+def running(*command: str, url: str) -> Iterator[Guarded[str]]:
     environment = {**os.environ, "LUMEN_BUS": url}
-    pipe = subprocess.PIPE
-    process = subprocess.Popen(command, env=environment, text=True, stdin=pipe, stdout=pipe, stderr=subprocess.STDOUT)
+    process = Guarded(command, env=environment, text=True, stdin=PIPE, stdout=PIPE, stderr=STDOUT)
     try:
         yield process
     finally:

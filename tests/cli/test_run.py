@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 import sys
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from lumen.clocks.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.robots.recording import RecordingRobot
+from tests.guarded import PIPE, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
 
@@ -120,7 +120,7 @@ def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> N
 def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:
     """A person on a pipe: each line waits for what it answers."""
     run = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", "max"]
-    with subprocess.Popen(run, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+    with Guarded(run, stdin=PIPE, stdout=PIPE, text=True) as process:
         assert process.stdin
         assert process.stdout
         told = ""
@@ -145,7 +145,7 @@ def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) 
     run = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", "4", "--story", "long"]
     with (
         log.open("w") as told,
-        subprocess.Popen(run, stdout=told, env={**os.environ, "COLUMNS": "200"}) as process,
+        Guarded(run, stdout=told, env={**os.environ, "COLUMNS": "200"}) as process,
     ):
         until(lambda: "greet" in log.read_text())
         process.send_signal(signal.SIGINT)

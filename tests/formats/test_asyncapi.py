@@ -1,7 +1,6 @@
 """What we write as AsyncAPI is right by AsyncAPI's own parser, and says all that the routes do."""
 
 import json
-import subprocess
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from lumen.cli.main import main
 from lumen.formats.asyncapi import write_asyncapi
 from lumen.language.projects import Project
 from tests.exhibits import project
+from tests.guarded import run_guarded
 
 ROOT = Path(__file__).parents[2]
 
@@ -23,7 +23,7 @@ def parsed(*projects: Project) -> list[dict[str, Any]]:
     assert (ROOT / ".cache/asyncapi").is_dir(), "fetch it with `make .cache/asyncapi`"
     texts = json.dumps([write_asyncapi(project) for project in projects])
     script = ROOT / "tests/formats/asyncapi.cjs"
-    done = subprocess.run(["node", script], input=texts, capture_output=True, text=True, timeout=120, check=True)
+    done = run_guarded(["node", script], input=texts, capture_output=True, text=True, timeout=120, check=True)
     return list(json.loads(done.stdout))
 
 

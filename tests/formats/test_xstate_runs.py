@@ -1,13 +1,13 @@
 """XState itself, on Node, runs what we export: the same states and the same context after the same events."""
 
 import json
-import subprocess
 from pathlib import Path
 from typing import Any
 
 from lumen.formats.findings import dotted
 from lumen.formats.xstate import write_xstate
 from lumen.statechart import Interpreter, Machine, VirtualClock
+from tests.guarded import run_guarded
 
 ROOT = Path(__file__).parents[2]
 XSTATE = ROOT / ".cache" / "xstate" / "dist" / "xstate.esm.js"
@@ -121,7 +121,7 @@ CHARTS: list[tuple[dict[str, Any], list[Any]]] = [
 def by_xstate(rows: list[dict[str, Any]]) -> Any:
     script = Path(__file__).with_name("xstate.mjs")
     command = ["node", str(script), XSTATE.as_uri()]
-    run = subprocess.run(command, input=json.dumps(rows), capture_output=True, text=True, timeout=60, check=False)
+    run = run_guarded(command, input=json.dumps(rows), capture_output=True, text=True, timeout=60, check=False)
     assert run.returncode == 0, run.stderr
     return json.loads(run.stdout)
 

@@ -3,7 +3,6 @@
 import json
 import re
 import shutil
-import subprocess
 import sys
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
@@ -12,6 +11,7 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.rules.codes import CODES, FAMILIES
+from tests.guarded import CompletedProcess, run_guarded
 
 BASE = Path(__file__).parent / "base"
 ENGINE = Path(__file__).parents[2] / "engine"
@@ -205,7 +205,7 @@ def test_the_verdict_counts_though_nobody_reads_it(project: Path) -> None:
     edit(project / "lumen.yaml", "story: hello", "story: helo")
     command = f"set -o pipefail; {sys.executable} -m lumen lint {project} | true"
     environment = {"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin"}
-    done = subprocess.run(
+    done = run_guarded(
         ["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=60, check=False
     )
     assert (done.returncode, done.stderr) == (1, "")
@@ -214,7 +214,7 @@ def test_the_verdict_counts_though_nobody_reads_it(project: Path) -> None:
 def test_where_nothing_can_be_printed_that_is_said(project: Path) -> None:
     command = f"{sys.executable} -m lumen lint {project} > /dev/full"
     environment = {"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin"}
-    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=60)
+    done = run_guarded(["bash", "-c", command], capture_output=True, text=True, env=environment, timeout=60)
     assert (done.returncode, done.stderr) == (2, "lumen lint: can't print: no space left on device\n")
 
 
@@ -281,8 +281,8 @@ def test_every_code_that_is_used_is_registered() -> None:
     assert all(code.summary and not code.summary.endswith(".") for code in CODES.values())
 
 
-def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+def run(*arguments: str) -> CompletedProcess[str]:
     environment = {"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin"}
-    return subprocess.run(
+    return run_guarded(
         [sys.executable, *arguments], capture_output=True, text=True, env=environment, timeout=60, check=False
     )

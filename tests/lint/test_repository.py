@@ -2,7 +2,6 @@
 
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import pytest
 import yaml
 
 from lumen.loading.files import read_files
+from tests.guarded import CompletedProcess, run_guarded
 
 ROOT = Path(__file__).parents[2]
 BASE = Path(__file__).parent / "base"
@@ -27,7 +27,7 @@ def repository(tmp_path: Path) -> Path:
     lumen = bin_folder / "lumen"
     lumen.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT / "engine"}" exec "{sys.executable}" -m lumen "$@"\n')
     lumen.chmod(0o755)
-    subprocess.run(["git", "init", "-q", tmp_path / "repository"], check=True)
+    run_guarded(["git", "init", "-q", tmp_path / "repository"], check=True)
     return tmp_path / "repository"
 
 
@@ -36,11 +36,11 @@ def spoil(folder: Path) -> None:
     file.write_text(file.read_text().replace("onError: idle", "onError: idel"))
 
 
-def shell(command: str, folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+def shell(command: str, folder: Path, **environment: str) -> CompletedProcess[str]:
     tools = next(parent / "bin" for parent in folder.parents if (parent / "bin" / "lumen").is_file())
     environment["PATH"] = f"{tools}:/usr/bin:/bin"
     words = ["bash", "-c", command]
-    return subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    return run_guarded(words, cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False)
 
 
 def test_the_hook_has_what_pre_commit_asks_for() -> None:

@@ -3,13 +3,14 @@
 import os
 import shutil
 import signal
-import subprocess
 import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+from tests.guarded import PIPE, Guarded
 
 HERE = Path(__file__).parent
 ENGINE = HERE.parents[1] / "engine"
@@ -23,12 +24,10 @@ def project(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def watching(project: Path) -> Iterator["subprocess.Popen[str]"]:
+def watching(project: Path) -> Iterator[Guarded[str]]:
     command = [sys.executable, "-m", "lumen", "lint", "--watch", "--format", "concise", str(project)]
     environment = {**os.environ, "PYTHONPATH": str(ENGINE)}
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
-    ) as process:
+    with Guarded(command, stdout=PIPE, stderr=PIPE, text=True, env=environment) as process:
         deadline = threading.Timer(60, process.kill)
         deadline.start()
         yield process
@@ -36,7 +35,7 @@ def watching(project: Path) -> Iterator["subprocess.Popen[str]"]:
         process.kill()
 
 
-def answer(process: "subprocess.Popen[str]") -> str:
+def answer(process: Guarded[str]) -> str:
     """What it says until it waits; where it does not, the deadline ends it, and with it the pipe."""
     assert process.stdout
     said = ""
@@ -47,7 +46,7 @@ def answer(process: "subprocess.Popen[str]") -> str:
     raise AssertionError(f"it ended: {said}")
 
 
-def test_a_saved_file_is_answered(project: Path, watching: "subprocess.Popen[str]") -> None:
+def test_a_saved_file_is_answered(project: Path, watching: Guarded[str]) -> None:
     assert "nothing wrong; " in answer(watching)
     tour = project / "behaviors/tour.yaml"
     text = tour.read_text()

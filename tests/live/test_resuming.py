@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
@@ -23,6 +22,7 @@ from lumen.runtime.home import DOOR, Home, home_of
 from lumen.runtime.journal import BYTES, Journal
 from lumen.runtime.keeping import SNAPSHOT, Keeper
 from lumen.runtime.resuming import REASON, Resumption, resume
+from tests.guarded import PIPE, Guarded
 from tests.live.shows import Live
 from tests.waiting import until
 
@@ -156,10 +156,10 @@ def test_the_journal_is_bounded_and_whole(tmp_path: Path) -> None:
 
 
 @contextmanager
-def running(folder: Path, *words: str) -> Iterator["subprocess.Popen[str]"]:
+def running(folder: Path, *words: str) -> Iterator[Guarded[str]]:
     """`lumen run` with an open standard input, once it can be reached."""
     run = [sys.executable, "-m", "lumen", "run", str(folder), "--robot", "recording", "--speed", "4", *words]
-    with subprocess.Popen(run, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+    with Guarded(run, stdin=PIPE, stdout=PIPE, text=True) as process:
         try:
             until(lambda: (home_of(folder) / DOOR).exists() and Home(home_of(folder)).held())
             yield process

@@ -1,12 +1,13 @@
 """A language client over standard input and output, JSON-RPC by hand: the server as an editor sees it."""
 
 import json
-import subprocess
 import sys
 import threading
 from pathlib import Path
 from queue import Queue
 from typing import Any, Self
+
+from tests.guarded import PIPE, Guarded
 
 ENGINE = Path(__file__).parents[2] / "engine"
 DEADLINE = 60.0
@@ -17,11 +18,11 @@ class Client:
 
     def __init__(self, root: Path, command: list[str] | None = None, encoding: str = "utf-16") -> None:
         self.root = root
-        self.process = subprocess.Popen(
+        self.process = Guarded(
             command or [sys.executable, "-m", "lumen", "lsp", "--stdio"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stdin=PIPE,
+            stdout=PIPE,
+            stderr=PIPE,
             env={"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin:/usr/local/bin"},
             cwd=root,
         )

@@ -1,7 +1,6 @@
 """Modules as processes of their own on RabbitMQ: announced, one of each, missed when they are gone, replaceable."""
 
 import os
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -12,6 +11,7 @@ import pytest
 from lumen.bus import Bus, connect
 from lumen.language.projects import Project
 from lumen.runtime.presence import Peer, Presence
+from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded, run_guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 
@@ -45,14 +45,14 @@ class Started:
     def __init__(self, stack: ExitStack, url: str, home: Path) -> None:
         self._stack, self._environment = stack, {**os.environ, "LUMEN_BUS": url, "XDG_STATE_HOME": str(home)}
 
-    def __call__(self, *words: str) -> "subprocess.Popen[str]":
-        process = subprocess.Popen(
+    def __call__(self, *words: str) -> Guarded[str]:
+        process = Guarded(
             [sys.executable, *words],
             env=self._environment,
             text=True,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
+            stdin=DEVNULL,
+            stdout=PIPE,
+            stderr=STDOUT,
         )
         self._stack.callback(process.communicate)
         self._stack.callback(process.kill)
@@ -77,7 +77,7 @@ def test_a_module_is_announced_does_its_work_is_one_and_is_missed(
     bus: Bus, brain: Presence, start: Started, tmp_path: Path
 ) -> None:
     copy = tmp_path / "project"
-    subprocess.run([sys.executable, "-m", "lumen", "new", str(copy)], check=True, capture_output=True)
+    run_guarded([sys.executable, "-m", "lumen", "new", str(copy)], check=True, capture_output=True)
     first = start("-m", "lumen", "run", str(copy), "--only", "memory")
     assert here(brain, "memory").said["process"] == first.pid
     answers = Collector()

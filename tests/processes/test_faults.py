@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -17,6 +16,7 @@ from lumen.cli.main import main
 from lumen.language.commands import Rest
 from lumen.ports import Perform
 from lumen.runtime.keeping import SNAPSHOT
+from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded
 from tests.processes.troupe import SPEED, Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
@@ -24,7 +24,7 @@ from tests.waiting import Collector, until
 pytestmark = pytest.mark.xdist_group("rabbitmq")
 
 SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
-Start = Callable[..., "subprocess.Popen[str]"]
+Start = Callable[..., Guarded[str]]
 
 
 @pytest.fixture
@@ -32,14 +32,13 @@ def start(copy: Path, broker: RabbitMQ) -> Iterator[Start]:
     """Starts `lumen run --only …` in a process of its own."""
     with ExitStack() as stack:
 
-        def run(only: str, *words: str, speed: str = SPEED) -> "subprocess.Popen[str]":
+        def run(only: str, *words: str, speed: str = SPEED) -> Guarded[str]:
             line = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", speed]
             line += ["--bus", broker.url, "--only", only, *words]
-            pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
-            process = subprocess.Popen(line, text=True, **pipes)  # type: ignore[call-overload]
+            process: Guarded[str] = Guarded(line, text=True, stdin=DEVNULL, stdout=PIPE, stderr=STDOUT)
             stack.callback(process.wait, 30)
             stack.callback(process.kill)
-            return process  # type: ignore[no-any-return]
+            return process
 
         yield run
 
@@ -107,7 +106,7 @@ def test_a_robot_that_is_killed_between_performing_and_saying_so_performs_once(
     reports, bus = Collector(), connect(broker.url, lumen.load(copy))
     bus.subscribe("avatar.NAO.event.command", reports)
     line = ["run", str(copy), "--robot", "recording", "--bus", broker.url, "--only", "robot"]
-    dying = subprocess.Popen([sys.executable, "-c", DYING, *line], stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+    dying = Guarded([sys.executable, "-c", DYING, *line], stdout=DEVNULL, stdin=DEVNULL)
 
     def send() -> None:
         """As a brain does that hears nothing: again and again, under one id."""

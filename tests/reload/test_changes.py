@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -18,6 +17,7 @@ from lumen.loading.project import read_files
 from lumen.rules import check_files, load
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.keeping import Keeper
+from tests.guarded import run_guarded
 from tests.tour.names import ROOT
 
 FILES = read_files(ROOT)
@@ -163,7 +163,7 @@ def repository(copy: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch
     states = "idle: {on: {touched: talk}}, talk: {states: {ask: {on: {released: dance}}, dance: }}"
     (root / TOUR).write_text(f"id: tour\nstates: {{{states}}}\n", "utf-8")
     for command in ("init -q", "add ours", "-c user.name=x -c user.email=x@x commit -qm one"):
-        subprocess.run(["git", "-C", str(root.parent), *command.split()], check=True)
+        run_guarded(["git", "-C", str(root.parent), *command.split()], check=True)
     monkeypatch.chdir(root)
     return root
 

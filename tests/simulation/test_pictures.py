@@ -1,7 +1,6 @@
 """What is drawn: camera images, films, shells. Needs an OpenGL library, which the tests' packages bring."""
 
 import os
-import subprocess
 import sys
 import threading
 from pathlib import Path
@@ -19,6 +18,7 @@ from lumen.ports import Image, Sense
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.film import RATE, Film
 from lumen.robots.simulation.shells import write
+from tests.guarded import run_guarded
 from tests.simulation.conftest import MODELS, Do, look_at_face
 
 Pixels = NDArray[np.uint8]
@@ -99,7 +99,7 @@ robot.advance(0.1)
 print(robot.read(Sense.IMAGE), available())
 """
     environment = {**os.environ, "MUJOCO_GL": "disable"}
-    run = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
+    run = run_guarded([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
     assert run.stdout.startswith("None there is no OpenGL library")
     assert "libegl1 and libgl1" in run.stdout
     assert not run.stderr

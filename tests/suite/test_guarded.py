@@ -1,0 +1,138 @@
+"""What a test starts ends with the process that started it, also where that is killed."""
+
+import os
+import signal
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.guarded import PIPE, CalledProcessError, Guarded, TimeoutExpired, run_guarded
+from tests.waiting import until
+
+ROOT = Path(__file__).parents[2]
+GONE_TIMEOUT = 60.0
+"""Within what time all is gone [s]; a worker of xdist takes 15 s to see that nobody listens to it any more."""
+
+FAMILY = """
+import sys
+from tests.guarded import Guarded, temporary_folder
+(temporary_folder("family-") / "file").write_text("")
+Guarded(["sh", "-c", "trap '' INT TERM HUP; sleep 1000 & sleep 1000"])
+Guarded([sys.executable, "-c", "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(1000)"])
+print("started", flush=True)
+"""
+BROKER = """
+from tests.rabbitmq import RabbitMQ
+RabbitMQ().start()
+print("started", flush=True)
+"""
+FOREVER = "import time\nwhile True: time.sleep(1)\n"
+STUBBORN = f"""
+import time
+from pathlib import Path
+def test_that_does_not_end():
+    exec({FAMILY!r})
+    Path("started").touch()
+    while True:
+        try:
+            time.sleep(1000)
+        except KeyboardInterrupt:
+            if WILLING:
+                raise
+"""
+"""A test that starts programs and goes on for ever; where it is not WILLING also when it is interrupted."""
+
+Start = Callable[..., Guarded[str]]
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Start:
+    """Starts Python in `tmp_path`, which stands in the environment of all that comes of it."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
+
+    def begin(*words: str, folder: Path = tmp_path) -> Guarded[str]:
+        return Guarded([sys.executable, *words], cwd=folder, env=environment, stdout=PIPE, text=True)
+
+    return begin
+
+
+def left(folder: Path) -> list[str]:
+    """The processes in whose environment the folder stands, and its folders in which they worked."""
+    mark = str(folder)
+    if Path("/proc").is_dir():
+        processes = [str(process) for process in Path("/proc").glob("[0-9]*") if mark in environment(process)]
+    else:
+        said = run_guarded(["ps", "axeww"], stdout=PIPE, text=True).stdout
+        processes = [line for line in said.splitlines() if mark in line]
+    return processes + [path.name for prefix in ("family-*", "lumen-*") for path in folder.glob(prefix)]
+
+
+def environment(process: Path) -> str:
+    try:
+        return (process / "environ").read_text(errors="replace")
+    except OSError:
+        return ""
+
+
+def gone(folder: Path) -> None:
+    until(lambda: not left(folder), GONE_TIMEOUT)
+
+
+@pytest.mark.parametrize("program", [FAMILY, pytest.param(BROKER, marks=pytest.mark.broker)], ids=["family", "broker"])
+def test_what_a_process_started_ends_when_it_is_killed(program: str, start: Start, tmp_path: Path) -> None:
+    process = start("-c", program + FOREVER)
+    assert process.stdout
+    assert process.stdout.readline() == "started\n"
+    assert len(left(tmp_path)) > 4
+    process.kill()
+    process.communicate()
+    gone(tmp_path)
+
+
+@pytest.mark.parametrize("end", ["quit()", "1 / 0", "import os; os._exit(1)"])
+def test_or_ends_otherwise(end: str, start: Start, tmp_path: Path) -> None:
+    start("-c", FAMILY + end).communicate()
+    gone(tmp_path)
+
+
+def test_sessions_that_are_killed_or_interrupted_leave_nothing(start: Start, tmp_path: Path) -> None:
+    """Side by side, since each takes as long as xdist waits for its worker."""
+    sessions = [begun(start, tmp_path / name, willing) for name, willing in (("a", False), ("b", True), ("c", False))]
+    for session in sessions:
+        until((session.folder / "started").exists, GONE_TIMEOUT)
+    assert len(left(tmp_path)) > 3 * 4
+    killed, interrupted, stubborn = (session.process for session in sessions)
+    killed.kill()
+    os.killpg(interrupted.pid, signal.SIGINT)
+    os.killpg(stubborn.pid, signal.SIGINT)
+    interrupted.wait(GONE_TIMEOUT)
+    stubborn.kill()
+    for process in (killed, interrupted, stubborn):
+        process.communicate()
+    gone(tmp_path)
+
+
+class Session(NamedTuple):
+    folder: Path
+    process: Guarded[str]
+
+
+def begun(start: Start, folder: Path, willing: bool) -> Session:
+    """A session of pytest with one worker, in which a test does not end."""
+    folder.mkdir()
+    (folder / "test_inner.py").write_text(f"WILLING = {willing}\n" + STUBBORN)
+    words = ["-m", "pytest", "-n", "1", "-p", "no:cacheprovider", "-c", os.devnull, "test_inner.py"]
+    return Session(folder, start(*words, folder=folder))
+
+
+def test_programs_end_in_time_and_say_how() -> None:
+    """As those of the library do, which it stands for."""
+    done = run_guarded(["cat"], input="hello", capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "hello", "")
+    with pytest.raises(TimeoutExpired):
+        run_guarded(["sleep", "1000"], timeout=0.1)
+    with pytest.raises(CalledProcessError, match="non-zero exit status 3"):
+        run_guarded(["sh", "-c", "exit 3"], check=True)
