@@ -11,6 +11,7 @@ import pytest
 
 from lumen.bus import Bus, connect
 from tests.exhibits import project
+from tests.fetched import fetched
 from tests.guarded import PIPE, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector
@@ -54,9 +55,8 @@ def test_the_greeter_greets_once_for_each_who_comes_near(broker: RabbitMQ, bus: 
 
 
 def test_the_listener_in_javascript_says_and_hears(broker: RabbitMQ, bus: Bus, tmp_path: Path) -> None:
-    assert (ROOT / ".cache/node_modules/amqplib").is_dir(), "fetch it with `make .cache/node_modules/amqplib`"
     shutil.copy(MODULES / "listener.mjs", tmp_path)
-    (tmp_path / "node_modules").symlink_to(ROOT / ".cache/node_modules")
+    (tmp_path / "node_modules").symlink_to(fetched("node_modules"))
     heard = Collector()
     bus.subscribe("lumen.audio.speech.recognition", heard)
     with running("node", str(tmp_path / "listener.mjs"), url=broker.url) as process:

@@ -1,7 +1,7 @@
 """The cases of the SCION test framework, and what our importer and interpreter make of them.
 
 A case is a statechart in SCXML and, mostly, a driver: which states have to be active at first, and after each of some
-events. `scripts/fetch.sh` fetches them.
+events. `scripts/fetch.py` fetches them.
 """
 
 import json
@@ -16,9 +16,9 @@ from lumen.formats.scxml import read_scxml
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.loading.source import parse
 from lumen.statechart import Event, Machine, Snapshot, Step, due, initial, step
+from tests.fetched import fetched
 
-ROOT = Path(__file__).parents[2]
-FOLDER = ROOT / ".cache" / "scion" / "test"
+FOLDER = fetched("scion") / "test"
 TABLE = Path(__file__).parent / "unsupported.yaml"
 
 

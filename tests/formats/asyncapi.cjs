@@ -1,6 +1,7 @@
-// Parses AsyncAPI documents with AsyncAPI's own parser: a JSON list of texts on standard input, a list of findings out.
+// Parses AsyncAPI documents with AsyncAPI's own parser, whose folder is the argument: a JSON list of texts on standard
+// input, a list of findings out.
 globalThis.window = globalThis.self = globalThis;
-const Parser = require("../../.cache/asyncapi/browser/index.js");
+const Parser = require(process.argv[2] + "/browser/index.js");
 const parser = new Parser();
 
 async function parse(text) {

@@ -13,6 +13,7 @@ from lumen.cli.main import main
 from lumen.formats.asyncapi import write_asyncapi
 from lumen.language.projects import Project
 from tests.exhibits import project
+from tests.fetched import fetched
 from tests.guarded import run_guarded
 
 ROOT = Path(__file__).parents[2]
@@ -20,10 +21,11 @@ ROOT = Path(__file__).parents[2]
 
 def parsed(*projects: Project) -> list[dict[str, Any]]:
     """What the parser makes of their documents."""
-    assert (ROOT / ".cache/asyncapi").is_dir(), "fetch it with `make .cache/asyncapi`"
     texts = json.dumps([write_asyncapi(project) for project in projects])
     script = ROOT / "tests/formats/asyncapi.cjs"
-    done = run_guarded(["node", script], input=texts, capture_output=True, text=True, timeout=120, check=True)
+    done = run_guarded(
+        ["node", script, fetched("asyncapi")], input=texts, capture_output=True, text=True, timeout=120, check=True
+    )
     return list(json.loads(done.stdout))
 
 

@@ -7,10 +7,10 @@ from typing import Any
 from lumen.formats.findings import dotted
 from lumen.formats.xstate import write_xstate
 from lumen.statechart import Interpreter, Machine, VirtualClock
+from tests.fetched import fetched
 from tests.guarded import run_guarded
 
 ROOT = Path(__file__).parents[2]
-XSTATE = ROOT / ".cache" / "xstate" / "dist" / "xstate.esm.js"
 
 CHARTS: list[tuple[dict[str, Any], list[Any]]] = [
     (  # nested states, the first child's way, an inner one before an outer one
@@ -120,7 +120,7 @@ CHARTS: list[tuple[dict[str, Any], list[Any]]] = [
 
 def by_xstate(rows: list[dict[str, Any]]) -> Any:
     script = Path(__file__).with_name("xstate.mjs")
-    command = ["node", str(script), XSTATE.as_uri()]
+    command = ["node", str(script), (fetched("xstate") / "dist" / "xstate.esm.js").as_uri()]
     run = run_guarded(command, input=json.dumps(rows), capture_output=True, text=True, timeout=60, check=False)
     assert run.returncode == 0, run.stderr
     return json.loads(run.stdout)
@@ -145,7 +145,6 @@ def by_lumen(machine: Machine, events: list[Any]) -> Any:
 
 
 def test_xstate_goes_the_same_way() -> None:
-    assert XSTATE.is_file(), "fetch it: sh scripts/fetch.sh .cache/xstate"
     machines = [Machine.from_dict(chart) for chart, _ in CHARTS]
     rows = [
         {"config": exported(machine), "events": [e * 1000 if isinstance(e, float) else e for e in events]}

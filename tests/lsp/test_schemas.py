@@ -7,10 +7,11 @@ from pathlib import Path
 import pytest
 
 from lumen.loading.files import FOLDERS
+from tests.fetched import fetched
 from tests.lsp.client import Client
 
 ROOT = Path(__file__).parents[2]
-SERVER = ROOT / ".cache/yaml/node_modules/yaml-language-server/bin/yaml-language-server"
+SERVER = "node_modules/yaml-language-server/bin/yaml-language-server"
 FILES = [
     "lumen.yaml", "behaviors/tour.yaml", "behaviors/stories/visitor.yaml", "fuzzy/head.yaml", "models/nao.yaml",
     "models/v6.yaml", "models/passages/sit-straddle.yaml", "motions/dance.yaml", "motions/goodbye.yaml",
@@ -53,8 +54,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def server(root: Path) -> Client:
     node = shutil.which("node")
     assert node, "install Node"
-    assert SERVER.is_file(), "fetch it: sh scripts/fetch.sh .cache/yaml"
-    return Client(root, [node, str(SERVER), "--stdio"])
+    return Client(root, [node, str(fetched("yaml") / SERVER), "--stdio"])
 
 
 @pytest.fixture(scope="module")

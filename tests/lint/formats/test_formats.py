@@ -12,9 +12,9 @@ from lumen.cli.findings import Findings
 from lumen.cli.render import FORMATS, render
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
 from lumen.loading.files import Unreadable
+from tests.fetched import fetched
 
 HERE = Path(__file__).parent
-ROOT = HERE.parents[2]
 
 TOUR = """states:
   idle:
@@ -91,7 +91,7 @@ def test_of_a_long_line_the_part_around_the_word_is_shown(column: int) -> None:
 
 
 def test_sarif_is_what_its_schema_wants() -> None:
-    schema = json.loads((ROOT / ".cache/sarif/lib/schemas/sarif-2.1.0-rtm.5.json").read_text())
+    schema = json.loads((fetched("sarif") / "lib/schemas/sarif-2.1.0-rtm.5.json").read_text())
     for found in ([FOUND], [], [Findings((), {})], [FOUND, Findings(FOUND.diagnostics, FILES, "/some where/ü")]):
         log = json.loads(render("sarif", found))
         assert not [error.message for error in Draft4Validator(schema).iter_errors(log)]

@@ -1,0 +1,78 @@
+"""Fetch the folders of scripts/fetched.txt that are not there yet: `python scripts/fetch.py [FOLDER …]`. Needs npm.
+
+Whoever comes second, in another terminal or another worker of pytest, waits until the first is done.
+"""
+
+import fcntl
+import hashlib
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[1]
+CACHE = ROOT / ".cache"
+
+
+class Package(NamedTuple):
+    """A row of the table; `sum` is the SHA-256 of its archive."""
+
+    folder: str
+    name: str
+    version: str
+    sum: str
+
+    @property
+    def stamp(self) -> Path:
+        """The file that is there once it has been fetched."""
+        return ROOT / self.folder / self.version
+
+
+def main() -> str | None:
+    """Fetch what is missing; what to say where that cannot be done."""
+    wanted = tuple(sys.argv[1:]) or (".cache/",)
+    rows = [line.split() for line in (ROOT / "scripts/fetched.txt").read_text().splitlines()]
+    packages = [Package(*row) for row in rows if row and row[0].startswith(wanted)]
+    if all(package.stamp.exists() for package in packages):
+        return None
+    CACHE.mkdir(exist_ok=True)
+    with (CACHE / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        return fetch([package for package in packages if not package.stamp.exists()])
+
+
+def fetch(packages: list[Package]) -> str | None:
+    """Have npm download their archives, and unpack them; what to say where that fails."""
+    if not packages:
+        return None
+    if not shutil.which("npm"):
+        return "npm is not installed, with which the tests fetch what they ask others with: `make setup` installs it"
+    with tempfile.TemporaryDirectory(dir=CACHE) as folder:
+        names = [f"{package.name}@{package.version}" for package in packages]
+        done = subprocess.run(["npm", "pack", "--silent", *names], cwd=folder, stdout=subprocess.DEVNULL, check=False)
+        if done.returncode:
+            return f"npm could not download {', '.join(names)}"
+        archives = {hashlib.sha256(archive.read_bytes()).hexdigest(): archive for archive in Path(folder).iterdir()}
+        for package in packages:
+            if package.sum not in archives:
+                return f"{package.name} {package.version} is not the archive that scripts/fetched.txt names"
+            unpack(archives[package.sum], package)
+    return None
+
+
+def unpack(archive: Path, package: Package) -> None:
+    """Put what the archive's only folder holds where the package belongs."""
+    unpacked = archive.with_suffix("")
+    shutil.unpack_archive(archive, unpacked)
+    (content,) = unpacked.iterdir()
+    (content / package.version).touch()
+    target = ROOT / package.folder
+    shutil.rmtree(target, ignore_errors=True)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    content.rename(target)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
