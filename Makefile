@@ -4,25 +4,29 @@ PYTHON ?= python3
 BIN := .venv/bin
 STORY ?= visitor
 SPEED ?= 4
-FETCHED := .cache/scion .cache/sarif .cache/xstate .cache/asyncapi .cache/yaml .cache/node_modules/amqplib
 
-.PHONY: help run test soak broker check packages clean
+.PHONY: help run setup test soak broker check packages clean
 
 help:
 	@echo "make run      a visitor meets the simulated robot (STORY=visitor, SPEED=1|4|max)"
+	@echo "make setup    what the tests need: .venv, Debian packages, what npm has"
 	@echo "make test     everything, under 10 minutes"
 	@echo "make broker   a private RabbitMQ on loopback, installed where it is missing"
 	@echo "make check    style, types and floors only"
 	@echo "make soak     the long tests in full"
+	@echo "make clean    delete what all these made"
 
 run: .venv/run
 	@$(BIN)/lumen run --story $(STORY) --speed $(SPEED)
 
-test: packages check $(FETCHED)
+setup: .venv/test packages
+	@$(BIN)/python scripts/fetch.py
+
+test: setup check
 	@$(BIN)/lumen lint --strict
 	@$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not soak"
 
-soak: packages check
+soak: setup check
 	@$(BIN)/python -m pytest -m soak -s
 
 broker: .venv/test
@@ -37,11 +41,7 @@ check: .venv/test
 
 packages:
 	@sh scripts/packages.sh packages.txt
-
-$(FETCHED): scripts/fetch.sh scripts/fetched.txt
 	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
-	@sh scripts/fetch.sh $@
-	@touch $@
 
 .venv/run: requirements.txt pyproject.toml
 	@echo "setting up .venv (once, a minute or two) …"

@@ -1,12 +1,13 @@
 """The figures of a small house of which everything can be counted by hand."""
 
 import json
-import subprocess
 from pathlib import Path
 
 import pytest
 from scripts import shape
 from scripts.shape import Floor, Size, When
+
+from tests.guarded import run_guarded
 
 ORDER = """
 [tool.importlinter]
@@ -180,6 +181,6 @@ def test_all_of_it_is_data_too(root, capsys):
 def test_a_commit_tells_the_files_that_it_touched(root, capsys):
     git = ["git", "-c", "user.name=a", "-c", "user.email=a@b.c", "-C", str(root)]
     for command in (["init", "-q"], ["add", "."], ["commit", "-q", "-m", "Builds"]):
-        subprocess.run([*git, *command], check=True, timeout=60)
+        run_guarded([*git, *command], check=True, timeout=60)
     shape.main(["--root", str(root), "--commit", "HEAD"])
     assert capsys.readouterr().out.startswith("Python files of the package in HEAD: 12\n  __init__.py\n")
