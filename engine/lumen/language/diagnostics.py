@@ -7,13 +7,13 @@ from difflib import get_close_matches
 from enum import StrEnum
 from typing import Any, NamedTuple, Protocol
 
-MANY = 8
+MIN_FINDINGS_FOR_ROOT = 8
 """Findings from which on what they have in common is wrong, and not each of them."""
 
 MAX_RELATED = 5
 """How many places of one cause are shown beside the first."""
 
-COMPARED = 200
+MAX_COMPARED_NAMES = 200
 """Names that a misspelt one is compared with, letter by letter."""
 
 NodePath = tuple[str | int, ...]
@@ -102,16 +102,18 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 def gathered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     """The findings sorted by file and line; of those with the same cause only the first, the others related to it.
 
-    A story tells of what a behaviour has: what is wrong in both is wrong in the behaviour. And where MANY findings have
-    the same root, or one of them has it for its cause, the root is wrong, and not each of them.
+    A story tells of what a behaviour has: what is wrong in both is wrong in the behaviour. And where at least
+    MIN_FINDINGS_FOR_ROOT have the same root, or one of them has it for its cause, the root is wrong, and not each.
     """
     several = list(dict.fromkeys(diagnostics))
     causes, roots = {d.cause for d in several}, Counter(d.root for d in several)
     found: dict[str, list[Diagnostic]] = {}
     for diagnostic in several:
-        rooted = diagnostic.root if diagnostic.root in causes or roots[diagnostic.root] >= MANY else ""
+        rooted = diagnostic.root if diagnostic.root in causes or roots[diagnostic.root] >= MIN_FINDINGS_FOR_ROOT else ""
         found.setdefault(rooted or diagnostic.cause or f"{len(found)}:", []).append(diagnostic)
-    return sorted((_joined(group, cause, len(group) >= MANY) for cause, group in found.items()), key=_order)
+    return sorted(
+        (_joined(group, cause, len(group) >= MIN_FINDINGS_FOR_ROOT) for cause, group in found.items()), key=_order
+    )
 
 
 def _order(diagnostic: Diagnostic) -> tuple[Place, str, str]:
@@ -141,7 +143,7 @@ def nearest(word: object, candidates: Iterable[str]) -> str:
 
 def _alike(word: str, names: set[str]) -> set[str]:
     """These names; of very many those that begin or end as the word does, and are about as long."""
-    if len(names) <= COMPARED:
+    if len(names) <= MAX_COMPARED_NAMES:
         return names
     ends = {word[:1].lower(), word[-1:].lower()}
     return {n for n in names if abs(len(n) - len(word)) < 3 and not ends.isdisjoint((n[:1].lower(), n[-1:].lower()))}

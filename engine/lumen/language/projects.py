@@ -12,7 +12,8 @@ from lumen.language.robots import Body
 from lumen.language.routes import Route
 from lumen.language.stories import Story
 
-PATIENCE = 60.0
+DEFAULT_PATIENCE = 60.0
+"""How long saved files wait for what is under way [s] where the project does not say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ class Project:
     story: str = ""
     stage: Stage | None = None
     bus: str = "memory://"
-    patience: float = PATIENCE
+    patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)

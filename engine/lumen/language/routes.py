@@ -44,9 +44,9 @@ class Carried(StrEnum):
     JOURNAL = "journal"
 
 
-SOON = 5.0
+DEFAULT_COMMAND_TTL = 5.0
 """How long a command may wait [s] where its route does not say."""
-STALE = 10.0
+LONGEST_COMMAND_TTL = 10.0
 """How long no command should wait [s]: the people around the robot have moved by then."""
 
 
@@ -63,7 +63,7 @@ class Size(NamedTuple):
 SIZES = tuple(Size(320 * n // 2, 240 * n // 2) for n in (1, 2, 4, 8))
 """What NAO's cameras give: NAOqi's kQQVGA to k4VGA."""
 
-FASTEST = 0.033
+SHORTEST_IMAGE_INTERVAL = 0.033
 """The time between two images of NAO's cameras [s]: 30 a second."""
 
 
@@ -99,4 +99,4 @@ class Route:
     @property
     def lifetime(self) -> float | None:
         """How long a message may wait [s], None for as long as it takes."""
-        return SOON if self.ttl is None and self.carried in (Carried.COMMAND, Carried.STOP) else self.ttl
+        return DEFAULT_COMMAND_TTL if self.ttl is None and self.carried in (Carried.COMMAND, Carried.STOP) else self.ttl

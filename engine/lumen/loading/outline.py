@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.language.diagnostics import COMPARED, NodePath, did_you_mean, nearest
+from lumen.language.diagnostics import MAX_COMPARED_NAMES, NodePath, did_you_mean, nearest
 from lumen.language.machines import StateKind
 from lumen.loading.source import DocumentReport
 
@@ -69,7 +69,7 @@ class BehaviorOutline:
     def _unknown(self, source: OutlinedState, target: str, where: NodePath, written: str) -> None:
         self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
         message = f"there is no state `{written}` to go to from {source.title}"
-        if len(self.report.missed) > COMPARED:  # what was meant by each would take long to find out
+        if len(self.report.missed) > MAX_COMPARED_NAMES:  # what was meant by each would take long to find out
             self.report("unknown-state", where, message, hint="it has to be a state of this file")
             return
         known = self._known(source, target)

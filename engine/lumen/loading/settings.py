@@ -6,7 +6,7 @@ from math import isfinite
 from typing import Any
 
 from lumen.language.modules import ModuleSettings
-from lumen.language.projects import PATIENCE, Stage
+from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
 from lumen.loading.routes import build_routes, duration
 from lumen.loading.source import DocumentReport
@@ -27,7 +27,7 @@ class Settings:
     routes: Mapping[str, Route] = field(default_factory=dict)
     stage: Stage | None = None
     bus: str = "memory://"
-    patience: float = PATIENCE
+    patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
 
 
@@ -58,7 +58,7 @@ def _module(row: Mapping[str, Any]) -> ModuleSettings:
 
 def _patience(data: Mapping[str, Any], report: DocumentReport) -> float:
     length = duration(data.get("reload", {}), "patience", report, ("reload",))
-    return PATIENCE if length is None else length
+    return DEFAULT_PATIENCE if length is None else length
 
 
 def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:

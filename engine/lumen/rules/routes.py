@@ -8,12 +8,12 @@ from lumen.language.commands import Track
 from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.routes import (
     COMMAND,
-    FASTEST,
     HEARD,
     IMAGE,
     JOINT,
+    LONGEST_COMMAND_TTL,
     MEANINGS,
-    STALE,
+    SHORTEST_IMAGE_INTERVAL,
     Carried,
     Direction,
     Route,
@@ -72,9 +72,9 @@ def _password(bus: str, report: DocumentReport) -> None:
 def _carried(report: DocumentReport, route: Route) -> None:
     """What the options of a route promise must go together."""
     where = route.where
-    if route.carried in (Carried.COMMAND, Carried.STOP) and (route.ttl or 0.0) > STALE:
+    if route.carried in (Carried.COMMAND, Carried.STOP) and (route.ttl or 0.0) > LONGEST_COMMAND_TTL:
         message = f"a {route.carried} may be done {route.ttl:g} s late, when nobody counts on it any more"
-        find(report, "long-ttl", (*where, "ttl"), message, f"2s to {STALE:g}s outlast a broker's hiccup")
+        find(report, "long-ttl", (*where, "ttl"), message, f"2s to {LONGEST_COMMAND_TTL:g}s outlast a broker's hiccup")
     if route.carried is Carried.JOURNAL:
         for key, value in (("ttl", route.ttl), ("keep", route.keep)):
             if value is not None:
@@ -89,9 +89,10 @@ def _pictures(report: DocumentReport, route: Route) -> None:
     if route.size and route.name != IMAGE:
         message = f"`{route.name}` has no size: only the images on the route `{IMAGE}` have"
         find(report, "beyond-camera", (*route.where, "size"), message, "delete `size`", key=True)
-    if route.name == IMAGE and route.every and route.every < FASTEST:
+    if route.name == IMAGE and route.every and route.every < SHORTEST_IMAGE_INTERVAL:
         message = f"an image every {1000 * route.every:g} ms is more than the camera takes, 30 a second"
-        find(report, "beyond-camera", (*route.where, "every"), message, f"{1000 * FASTEST:g}ms is the shortest")
+        hint = f"{1000 * SHORTEST_IMAGE_INTERVAL:g}ms is the shortest"
+        find(report, "beyond-camera", (*route.where, "every"), message, hint)
 
 
 def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentReport) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from lumen.language.actions import Assign, Step
-from lumen.language.diagnostics import COMPARED, nearest
+from lumen.language.diagnostics import MAX_COMPARED_NAMES, nearest
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
@@ -62,7 +62,7 @@ def _next(state: State) -> Iterator[str]:
 def _unreachable(machine: MachineDefinition, report: DocumentReport) -> None:
     """States that nothing leads to, unless something broken may have meant them."""
     meant = {text.rpartition(".")[2].lstrip("#") for text in report.lost | report.missed}
-    missed = meant & report.missed if len(report.missed) <= COMPARED else set()
+    missed = meant & report.missed if len(report.missed) <= MAX_COMPARED_NAMES else set()
     found = reachable(machine)
     for path, state in machine.states.items():
         key = path.rpartition(".")[2]
