@@ -27,12 +27,12 @@ from tests.fuzzy.test_physics import cases, within_reach  # noqa: E402
 
 import lumen  # noqa: E402
 from lumen.formats.plots import Axis, Line, Mark, Panel, Sheet, draw  # noqa: E402
-from lumen.interpreters.projection import Vector, centring  # noqa: E402
+from lumen.interpreters.projection import Vector3, centring  # noqa: E402
 from lumen.language.projects import Project  # noqa: E402
 from lumen.language.stories import Visitor  # noqa: E402
 
 LATENCIES, TICKS, OFF = (0.0, 0.1, 0.2), (0.033, 0.1), (15.0, 8.0)
-FACE: Vector = (1.5, 0.2, 0.5)
+FACE: Vector3 = (1.5, 0.2, 0.5)
 DURATION = 4.0
 Loop = Callable[[float, float], tuple[Run, Run]]
 """By latency and tick: the run to a face that stands, with poses relative to the goal, and the one past a walker."""
@@ -50,7 +50,7 @@ def kinematic(project: Project) -> Loop:
     return loop
 
 
-def _passing(now: float) -> Vector:
+def _passing(now: float) -> Vector3:
     return 1.5, -1.0 + 0.5 * now, 0.5
 
 

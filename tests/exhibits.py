@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from lumen.language.machines import MachineDefinition, State, StateKind
-from lumen.language.motions import Key, Motion
+from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body, Camera, Joint
 from lumen.language.routes import Direction, Route
@@ -50,10 +50,11 @@ def project(**changes: object) -> Project:
     out = {n: Route(n, f"avatar.{{robot}}.data.{n}", Direction.OUT, n, every=every) for n, every in SENSES.items()}
     face = Route("face", "lumen.visual.face.detection", Direction.IN, "face.detection", event="face")
     command = Route("command", "avatar.{robot}.command", Direction.IN, "command")
+    nod = {"HeadYaw": (Keyframe(1.0, 0.1),)}
     fields: dict[str, object] = {
         "root": "", "name": "test", "robot": "NAO", "body": BODY, "hall": "", "behavior": "tour",
         "behaviors": {"tour": MachineDefinition("tour", {"": State("", StateKind.ATOMIC)})},
-        "motions": {n: Motion(n, 1.0, {"HeadYaw": (Key(1.0, 0.1),)}) for n in ("goodbye", "dance", "sing", "photo")},
+        "motions": {n: MotionDefinition(n, 1.0, nod) for n in ("goodbye", "dance", "sing", "photo")},
         "routes": {**out, "face": face, "command": command},
         "messages": messages(),
         "languages": ("en", "id"),

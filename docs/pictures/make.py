@@ -30,7 +30,7 @@ from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_
 from lumen.fuzzy import Controller
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Posture, Walk
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.ports import Image as Frame
 from lumen.ports import Perform, Sense
@@ -148,7 +148,7 @@ def sides(project: Project) -> None:
     robot.close()
 
 
-def moments(project: Project, motion: Motion, count: int) -> list[float]:
+def moments(project: Project, motion: MotionDefinition, count: int) -> list[float]:
     """The times [s] of the poses of a motion that differ most from each other."""
     course = Trajectory(motion, project.body.postures[motion.start or "Stand"])
     times = np.arange(0.1, motion.duration, 0.1)

@@ -21,7 +21,7 @@ from lumen.loading.source import Document, DocumentReport, parse
 __all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]
 
 
-class Motion(motions.Motion):
+class Motion(motions.MotionDefinition):
     """A gesture that can be asked where its joints are; compiled when it first is."""
 
     @classmethod

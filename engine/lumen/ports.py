@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.events import Event
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.routes import Route, Size
 from lumen.language.stories import Visitor
 
@@ -26,7 +26,7 @@ class Sense(StrEnum):
     BATTERY = "battery"
 
 
-class Pixels(Protocol):
+class PixelSource(Protocol):
     """Renders or fetches a frame: Shape (height, width, 3), uint8 RGB.
 
     `size` [px] is that of the images wanted now, None for the camera's own. A robot that can't give it for a frame that
@@ -41,7 +41,7 @@ class Image:
     """A frame that is made only when `pixels` is called."""
 
     time: float
-    pixels: Pixels
+    pixels: PixelSource
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ Reading = Image | Joints | Sonar | Tactile | Battery
 class Perform:
     """Play this motion; it is the value itself, so that a reload can't change it while it runs."""
 
-    motion: Motion
+    motion: MotionDefinition
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,7 +219,7 @@ class Message(NamedTuple):
     correlation_id: str = ""
 
 
-Handler = Callable[[Message], None]
+MessageHandler = Callable[[Message], None]
 
 
 class Refused(Exception):  # noqa: N818  not an error of whoever hands the message over
@@ -244,7 +244,7 @@ class Bus(Protocol):
         """
         ...
 
-    def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
+    def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         """Hand every matching message to `handler`, one at a time, in the order published; returns the undoing.
 
         An exception in a handler is logged and ends neither the bus nor the publisher.

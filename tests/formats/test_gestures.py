@@ -15,7 +15,7 @@ from lumen.formats.findings import ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.diagnostics import Diagnostic
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.loading.motions import build_motion
 from lumen.loading.packaged import shipped_root
 from lumen.loading.schema import check_schema
@@ -70,7 +70,7 @@ def read(file: str, text: str, timeline: str = "") -> tuple[dict[str, Any], list
     return read_gesture(file, text.encode(), BODY, timeline=timeline)
 
 
-def built(data: dict[str, Any]) -> Motion:
+def built(data: dict[str, Any]) -> MotionDefinition:
     """The motion of a file with that data, which has nothing wrong with it."""
     document, found = parse("motion.yaml", document_yaml(data, "motion").encode())
     assert document is not None

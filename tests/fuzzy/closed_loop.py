@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import copysign, inf, radians
 
-from lumen.interpreters.projection import Vector, centring, seen
+from lumen.interpreters.projection import Vector3, centring, seen
 from lumen.interpreters.tracking import Tracker
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Camera
@@ -46,7 +46,7 @@ class Run:
 
 def run(
     controller: ControllerDefinition,
-    face: Callable[[float], Vector],
+    face: Callable[[float], Vector3],
     start: Pose,
     *,
     latency: float = 0.0,
@@ -83,7 +83,7 @@ def run(
     return result
 
 
-def off_by(face: Vector, yaw: float, pitch: float) -> Pose:
+def off_by(face: Vector3, yaw: float, pitch: float) -> Pose:
     """The head's pose [rad] that is so far [deg] beside the one that centres the face."""
     goal = centring(face, TOP)
     return goal[0] + radians(yaw), goal[1] + radians(pitch)

@@ -13,7 +13,7 @@ from lumen.language.stories import Visitor
 from lumen.robots.server import Server
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.perception import FaceDetector
-from lumen.runtime.tracking import Tracking
+from lumen.runtime.tracking import LocalTracking
 from tests.fuzzy.closed_loop import Pose, Run
 
 TICK = 0.02
@@ -48,7 +48,7 @@ def run(
     robot.start("look", Look(*within(goal[0] + radians(off[0]), goal[1] + radians(off[1]))))
     robot.advance(SETTLING)
     robot.poll()
-    tracking, faces = Tracking(few, robot, bus), FaceDetector(few, robot, bus, period=tick, latency=latency)
+    tracking, faces = LocalTracking(few, robot, bus), FaceDetector(few, robot, bus, period=tick, latency=latency)
     tracking.switch(Track("head"))
     began, result = robot.time, Run([], [])
     while (now := robot.time) < began + duration:

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from lumen.fuzzy import Controller
 from lumen.interpreters.limits import coupled_range
-from lumen.interpreters.projection import Vector, centring, seen
+from lumen.interpreters.projection import Vector3, centring, seen
 from lumen.interpreters.tracking import Tracker
 from tests.fuzzy.closed_loop import off_by, run
 from tests.fuzzy.nao import COUPLED, HEAD, TOP
 
 HERE = {"HeadYaw": 0.0, "HeadPitch": 0.0}
-ADULT: Vector = (1.5, 0.2, 0.5)
+ADULT: Vector3 = (1.5, 0.2, 0.5)
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +103,7 @@ def test_the_loop_settles_without_overshoot(
 @pytest.mark.parametrize("face", [(1.5, 0.0, 0.9), (1.5, 0.6, 0.3), (2.5, -1.0, 0.9), (0.8, 0.3, 0.2), (3.0, 0.0, 1.0)])
 @pytest.mark.parametrize("latency", [0.0, 0.2])
 def test_a_face_within_reach_ends_within_ten_pixels_of_the_centre(
-    head: Controller, face: Vector, latency: float
+    head: Controller, face: Vector3, latency: float
 ) -> None:
     outcome = run(head, lambda now: face, off_by(face, 12, 6), latency=latency, tick=0.1, duration=5.0)
     u, v = outcome.pixels[-1] or (0.0, 0.0)
@@ -131,7 +131,7 @@ def test_a_capture_time_that_is_50_ms_wrong_does_not_shake_the_head(
 
 
 def test_a_walking_visitor_stays_in_the_image(head: Controller) -> None:
-    def walking(now: float) -> Vector:
+    def walking(now: float) -> Vector3:
         return 1.5, -1.0 + 0.5 * now, 0.5
 
     start = centring(walking(0.0), TOP)
@@ -141,7 +141,7 @@ def test_a_walking_visitor_stays_in_the_image(head: Controller) -> None:
 
 
 def test_a_head_at_its_limit_rests(head: Controller) -> None:
-    tall: Vector = (1.0, 0.0, 1.1)
+    tall: Vector3 = (1.0, 0.0, 1.1)
     outcome = run(head, lambda now: tall, (0.0, radians(-30)), latency=0.1, tick=0.033, duration=3.0)
     late = [pose[2] for pose in outcome.poses if pose[0] > 2.0]
     assert min(late) == max(late) == pytest.approx(radians(-38.5), abs=1e-5)

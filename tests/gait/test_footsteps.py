@@ -15,10 +15,10 @@ from lumen.interpreters.gait.footsteps import (
     middle,
 )
 from lumen.interpreters.gait.legs import other, sign
-from lumen.interpreters.gait.pace import Pace
+from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.poses import Pose
 
-PACE = Pace()
+PACE = GaitParameters()
 HERE = Pose(1.0, -2.0, 0.7)
 FEET: Feet = {"L": beside(HERE, "L", PACE), "R": beside(HERE, "R", PACE)}
 ways = st.builds(Pose, st.floats(-1, 1), st.floats(-1, 1), st.floats(-3, 3))

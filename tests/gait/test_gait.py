@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from lumen.interpreters.gait import Feet, Gait, Pose, middle
 from lumen.interpreters.gait.footsteps import beside
-from lumen.interpreters.gait.pace import Pace
+from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.pendulum import Pendulum
 from tests.motions.making import nao
 
-START: Feet = {"L": beside(Pose(), "L", Pace()), "R": beside(Pose(), "R", Pace())}
+START: Feet = {"L": beside(Pose(), "L", GaitParameters()), "R": beside(Pose(), "R", GaitParameters())}
 JOINTS = nao().joints
 LIMIT = 6000
 

@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait import GENTLE, Gait, Pace, Pose, Velocity, fastest, middle
+from lumen.interpreters.gait import GENTLE_GAIT, Gait, GaitParameters, Pose, Velocity, fastest, middle
 from lumen.interpreters.gait.footsteps import NARROWEST, WIDEST
 from lumen.interpreters.gait.legs import other, sign
 from lumen.interpreters.gait.velocity import strides
 from tests.gait.test_gait import JOINTS, LIMIT, START
 
-PACE = Pace()
+PACE = GaitParameters()
 STEP = PACE.double + PACE.single
 
 
@@ -93,9 +93,9 @@ def test_stopped_at_any_moment_it_ends_within_a_second(moment: int) -> None:
 speeds = st.floats(-100, 100)
 
 
-@given(speeds, speeds, speeds, st.sampled_from("LR"), st.sampled_from([PACE, GENTLE]))
+@given(speeds, speeds, speeds, st.sampled_from("LR"), st.sampled_from([PACE, GENTLE_GAIT]))
 def test_whatever_is_asked_feet_neither_touch_nor_stride_too_far(
-    x: float, y: float, theta: float, first: str, pace: Pace
+    x: float, y: float, theta: float, first: str, pace: GaitParameters
 ) -> None:
     bearing = START
     for side, pose in strides(START, Velocity(x, y, theta), first, pace, 8):

@@ -13,9 +13,9 @@ from lumen.cli.reloading.premises import Premises
 from lumen.cli.show import Show
 from lumen.errors import BusError
 from lumen.loading.files import read_files
+from lumen.runtime.crash_counter import DEATHS, MOST, CrashCounter
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.journal import Journal
-from lumen.runtime.trials import DEATHS, MOST, Trials
 from tests.live.shows import Live
 
 TOUR = "behaviors/tour.yaml"
@@ -94,7 +94,7 @@ def test_a_fault_of_the_world_is_no_fault_of_the_files(
     fail_with(monkeypatch, hash, BusError("the broker is gone"))
     for _ in range(DEATHS):
         assert main(run) == 2
-    assert Trials(Home(home_of(copy))).count(hash) == 0
+    assert CrashCounter(Home(home_of(copy))).count(hash) == 0
 
 
 def test_bad_files_and_last_good_are_journaled(copy: Path, run: list[str], capsys: pytest.CaptureFixture[str]) -> None:
@@ -127,7 +127,7 @@ def test_a_start_on_newer_files_is_a_reload_and_journaled(copy: Path, run: list[
 
 def test_how_often_files_did_not_last_is_remembered_of_the_latest(tmp_path: Path) -> None:
     home = Home(tmp_path)
-    trials = Trials(home)
+    trials = CrashCounter(home)
     for number in range(2 * MOST):
         trials.begin(f"bundle {number}")
     assert [trials.count(f"bundle {number}") for number in (0, MOST - 1, MOST, 2 * MOST - 1)] == [0, 0, 1, 1]

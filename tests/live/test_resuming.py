@@ -20,8 +20,8 @@ from lumen.language.commands import Track
 from lumen.loading.files import read_files
 from lumen.runtime.home import DOOR, Home, home_of
 from lumen.runtime.journal import BYTES, Journal
-from lumen.runtime.keeping import SNAPSHOT, Keeper
 from lumen.runtime.resuming import REASON, Resumption, resume
+from lumen.runtime.snapshot_store import SNAPSHOT, SnapshotStore
 from tests.guarded import PIPE, Guarded
 from tests.live.shows import Live
 from tests.waiting import until
@@ -106,7 +106,7 @@ def test_what_is_too_old_or_damaged_is_begun_anew(copy: Path) -> None:
 def test_a_bundle_that_was_changed_is_not_taken(copy: Path) -> None:
     home = Home(home_of(copy))
     assert home.hold()
-    keeper = Keeper(home)
+    keeper = SnapshotStore(home)
     hash = keeper.store(read_files(copy))
     assert keeper.files(hash) == read_files(copy)
     [packed] = home.folder.glob("bundle-*.zip")

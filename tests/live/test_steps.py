@@ -16,7 +16,7 @@ from lumen.cli.reloading.judging import Judge, Judged
 from lumen.cli.reloading.jury import Here
 from lumen.cli.reloading.reloading import Reloading
 from lumen.loading.files import read_files
-from lumen.runtime.watcher import Saved
+from lumen.runtime.watcher import SavedFiles
 from tests.live.faults import failing, name, steps
 from tests.live.shows import Live
 
@@ -43,7 +43,7 @@ class Bench:
         self._first = read_files(folder)
         self._number = 0
 
-    def saved(self, more: bool = False) -> Saved:
+    def saved(self, more: bool = False) -> SavedFiles:
         """All kinds of files as nobody has saved them before; with `more`, a route and a region are new."""
         self._number += 1
         mark = f"\n# {self._number}\n".encode()
@@ -52,9 +52,9 @@ class Bench:
         if more:
             files["lumen.yaml"] = files["lumen.yaml"].replace(b"routes:\n", ROUTE.encode(), 1)
             files["behaviors/tour.yaml"] += REGION.encode()
-        return Saved(files, (), 0.0, 0.0)
+        return SavedFiles(files, (), 0.0, 0.0)
 
-    def judged(self, saved: Saved) -> Judged:
+    def judged(self, saved: SavedFiles) -> Judged:
         return self.reloading._judge(self._judge, saved)
 
     def take(self, judged: Judged) -> None:

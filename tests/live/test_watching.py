@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from lumen.loading.files import Unreadable, fingerprint, read_files
-from lumen.runtime.watcher import Saved, Watcher
+from lumen.runtime.watcher import FileWatcher, SavedFiles
 
 QUIET = 0.1
 TOUR, DANCE = "behaviors/tour.yaml", "motions/dance.yaml"
@@ -26,13 +26,13 @@ class Watched:
 
     def __init__(self, root: Path) -> None:
         self.root = root
-        self.watcher: Watcher[Saved] = Watcher(root, read_files(root), lambda saved: saved, quiet=QUIET)
+        self.watcher: FileWatcher[SavedFiles] = FileWatcher(root, read_files(root), lambda saved: saved, quiet=QUIET)
         self.watcher.start()
 
-    def next(self) -> Saved:
+    def next(self) -> SavedFiles:
         return self.watcher.results.get(timeout=20.0)
 
-    def last(self, text: str = "the last word") -> list[Saved]:
+    def last(self, text: str = "the last word") -> list[SavedFiles]:
         """All verdicts up to that of a file written now."""
         (self.root / "lumen.yaml").write_text(text, "utf-8")
         found = [self.next()]
@@ -191,13 +191,13 @@ def test_a_judge_that_fails_ends_nothing(tmp_path: Path, caplog: pytest.LogCaptu
 
     failed = threading.Event()
 
-    def judge(saved: Saved) -> bytes:
+    def judge(saved: SavedFiles) -> bytes:
         if saved.files[TOUR] == b"bad":
             failed.set()
             raise ValueError("a fault of ours")
         return saved.files[TOUR]
 
-    watcher: Watcher[bytes] = Watcher(root, read_files(root), judge, quiet=QUIET)
+    watcher: FileWatcher[bytes] = FileWatcher(root, read_files(root), judge, quiet=QUIET)
     watcher.start()
     (root / TOUR).write_text("bad", "utf-8")
     assert failed.wait(20.0)
@@ -210,11 +210,11 @@ def test_a_judge_that_fails_ends_nothing(tmp_path: Path, caplog: pytest.LogCaptu
 def test_what_takes_long_is_begun_while_the_files_settle(tmp_path: Path) -> None:
     root, order = fill(tmp_path / "show"), list[str]()
 
-    def judge(saved: Saved) -> Saved:
+    def judge(saved: SavedFiles) -> SavedFiles:
         order.append("judged")
         return saved
 
-    watcher = Watcher(root, read_files(root), judge, quiet=QUIET, noticed=lambda: order.append("noticed"))
+    watcher = FileWatcher(root, read_files(root), judge, quiet=QUIET, noticed=lambda: order.append("noticed"))
     watcher.start()
     (root / TOUR).write_text("new", "utf-8")
     watcher.results.get(timeout=20.0)

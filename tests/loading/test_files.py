@@ -40,7 +40,7 @@ def test_a_project_is_loaded_with_all_its_parts(project: Path) -> None:
     assert set(loaded.controllers) == {"head"}
     assert set(loaded.messages) == {"face", "heard"}
     assert loaded.stories["hello"].clock == "09:30"
-    assert len(loaded.stories["hello"].scenes) == 8
+    assert len(loaded.stories["hello"].steps) == 8
     assert loaded.body.name == "tiny"
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from hypothesis import strategies as st
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.language.motions import Interpolation, Key, Motion
+from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
 from lumen.loading.bodies import build_body
 from lumen.loading.motions import build_motion
@@ -27,8 +27,8 @@ def nao() -> Body:
 
 
 def read(
-    text: str, name: str = "test", motions: dict[str, Motion] | None = None
-) -> tuple[Motion | None, list[Diagnostic]]:
+    text: str, name: str = "test", motions: dict[str, MotionDefinition] | None = None
+) -> tuple[MotionDefinition | None, list[Diagnostic]]:
     """The motion in the text of a file, and everything that is wrong with it."""
     document, diagnostics = parse(f"motions/{name}.yaml", text.encode())
     assert document is not None
@@ -37,7 +37,7 @@ def read(
     return build_motion(data, report, name=name, body=nao(), motions=motions), [*diagnostics, *report.diagnostics]
 
 
-def made(text: str, **motions: Motion) -> Motion:
+def made(text: str, **motions: MotionDefinition) -> MotionDefinition:
     """The motion in the text of a file that has to be right."""
     motion, diagnostics = read(text, motions=motions)
     assert diagnostics == []
@@ -49,7 +49,7 @@ TURNING = [name for name in nao().joints if name not in nao().hands]
 
 
 @st.composite
-def motions(draw: st.DrawFn, how: tuple[Interpolation, ...] = tuple(Interpolation)) -> Motion:
+def motions(draw: st.DrawFn, how: tuple[Interpolation, ...] = tuple(Interpolation)) -> MotionDefinition:
     """Any motion of a few joints inside their limits, without handles, starting in Stand."""
     tracks, longest = {}, 0.0
     for joint in draw(st.lists(st.sampled_from(TURNING), min_size=1, max_size=4, unique=True)):
@@ -57,7 +57,7 @@ def motions(draw: st.DrawFn, how: tuple[Interpolation, ...] = tuple(Interpolatio
         steps = draw(st.lists(st.floats(0.05, 3.0), min_size=1, max_size=6))
         times = [sum(steps[: i + 1]) for i in range(len(steps))]
         angles = st.floats(limits.minimum, limits.maximum)
-        tracks[joint] = tuple(Key(t, draw(angles), draw(st.sampled_from(how))) for t in times)
+        tracks[joint] = tuple(Keyframe(t, draw(angles), draw(st.sampled_from(how))) for t in times)
         longest = max(longest, times[-1])
     stand = nao().postures["Stand"]
-    return Motion("any", longest, tracks, start="Stand", origin={joint: stand[joint] for joint in tracks})
+    return MotionDefinition("any", longest, tracks, start="Stand", origin={joint: stand[joint] for joint in tracks})

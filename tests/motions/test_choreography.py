@@ -6,17 +6,17 @@ from hypothesis import strategies as st
 
 from lumen.interpreters.choreography import at_speed, joined, mirrored, mirrored_joint
 from lumen.interpreters.trajectory import Trajectory
-from lumen.language.motions import Cue, Motion
+from lumen.language.motions import Cue, MotionDefinition
 from tests.motions.making import made, motions, nao
 
 
 @given(motions())
-def test_mirrored_twice_is_the_motion_itself(motion: Motion) -> None:
+def test_mirrored_twice_is_the_motion_itself(motion: MotionDefinition) -> None:
     assert mirrored(mirrored(motion)) == motion
 
 
 @given(motions())
-def test_a_mirrored_motion_moves_the_other_side(motion: Motion) -> None:
+def test_a_mirrored_motion_moves_the_other_side(motion: MotionDefinition) -> None:
     there, here = Trajectory(mirrored(motion)).sample(0.7), Trajectory(motion).sample(0.7)
     for joint, angle in here.items():
         other, sign = mirrored_joint(joint)
@@ -40,19 +40,21 @@ def test_the_robot_s_limits_are_those_of_its_mirror_image() -> None:
 
 
 def test_lights_change_sides_too() -> None:
-    motion = Motion("m", 1.0, {}, (Cue(0.0, "leds", {"left_eye": "red", "eyes": "blue", "right_ear": "off"}),))
+    motion = MotionDefinition(
+        "m", 1.0, {}, (Cue(0.0, "leds", {"left_eye": "red", "eyes": "blue", "right_ear": "off"}),)
+    )
     assert mirrored(motion).cues[0].value == {"right_eye": "red", "eyes": "blue", "left_ear": "off"}
 
 
 @given(motions(), st.floats(0.2, 5.0), st.floats(0.0, 1.0))
-def test_speed_changes_when_and_not_where(motion: Motion, speed: float, part: float) -> None:
+def test_speed_changes_when_and_not_where(motion: MotionDefinition, speed: float, part: float) -> None:
     t, faster = part * motion.duration, at_speed(motion, speed)
     assert faster.duration == pytest.approx(motion.duration / speed)
     assert Trajectory(faster).sample(t / speed) == pytest.approx(Trajectory(motion).sample(t), abs=1e-6)
 
 
 @given(motions())
-def test_joined_motions_follow_one_another(motion: Motion) -> None:
+def test_joined_motions_follow_one_another(motion: MotionDefinition) -> None:
     twice = joined([(0.0, motion), (motion.duration, motion)], 2 * motion.duration)
     for joint, keys in motion.tracks.items():
         assert [key.angle for key in twice.tracks[joint]] == 2 * [key.angle for key in keys]

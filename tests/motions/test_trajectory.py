@@ -8,18 +8,18 @@ from hypothesis import strategies as st
 
 from lumen.interpreters.limits import beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory, sample
-from lumen.language.motions import Interpolation, Key, Motion
+from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from tests.motions.making import motions, nao
 
 BEZIER, LINEAR = Interpolation.BEZIER, Interpolation.LINEAR
 
 
-def moments(motion: Motion, count: int = 200) -> list[float]:
+def moments(motion: MotionDefinition, count: int = 200) -> list[float]:
     return [motion.duration * i / count for i in range(count + 1)]
 
 
 @given(motions())
-def test_passes_through_its_keys(motion: Motion) -> None:
+def test_passes_through_its_keys(motion: MotionDefinition) -> None:
     trajectory = Trajectory(motion)
     for joint, keys in motion.tracks.items():
         for key in keys:
@@ -27,14 +27,14 @@ def test_passes_through_its_keys(motion: Motion) -> None:
 
 
 @given(motions(), st.floats(-0.5, 0.5))
-def test_begins_where_the_robot_is(motion: Motion, angle: float) -> None:
+def test_begins_where_the_robot_is(motion: MotionDefinition, angle: float) -> None:
     start = dict.fromkeys(motion.tracks, angle)
     assert sample(motion, 0.0, start) == start
     assert sample(motion, -1.0, start) == start
 
 
 @given(motions())
-def test_stays_inside_the_limits_between_keys(motion: Motion) -> None:
+def test_stays_inside_the_limits_between_keys(motion: MotionDefinition) -> None:
     trajectory = Trajectory(motion)
     for t in moments(motion):
         for joint, angle in trajectory.sample(t).items():
@@ -43,7 +43,7 @@ def test_stays_inside_the_limits_between_keys(motion: Motion) -> None:
 
 
 @given(motions())
-def test_never_leaves_the_range_of_neighbouring_keys(motion: Motion) -> None:
+def test_never_leaves_the_range_of_neighbouring_keys(motion: MotionDefinition) -> None:
     """Whatever the interpolation: only Bezier handles can lead beyond."""
     trajectory = Trajectory(motion)
     for joint, keys in motion.tracks.items():
@@ -56,7 +56,7 @@ def test_never_leaves_the_range_of_neighbouring_keys(motion: Motion) -> None:
 
 
 @given(motions())
-def test_never_jumps(motion: Motion) -> None:
+def test_never_jumps(motion: MotionDefinition) -> None:
     """Between two moments no joint goes farther than its peak speed allows."""
     trajectory = Trajectory(motion)
     peak = {track.joint: max(s.peak_speed() for s in track.segments) for track in trajectory.tracks}
@@ -68,7 +68,7 @@ def test_never_jumps(motion: Motion) -> None:
 
 
 @given(motions((Interpolation.MINIMUM_JERK, Interpolation.CUBIC, BEZIER)))
-def test_speed_has_no_jump_where_the_kind_is_one_kind(motion: Motion) -> None:
+def test_speed_has_no_jump_where_the_kind_is_one_kind(motion: MotionDefinition) -> None:
     """A smooth interpolation arrives at a key as fast as it leaves it."""
     eps = 1e-6
     for joint, keys in motion.tracks.items():
@@ -81,7 +81,7 @@ def test_speed_has_no_jump_where_the_kind_is_one_kind(motion: Motion) -> None:
 
 
 @given(motions())
-def test_what_it_says_of_speeds_is_what_samples_show(motion: Motion) -> None:
+def test_what_it_says_of_speeds_is_what_samples_show(motion: MotionDefinition) -> None:
     """`overspeed` names a joint exactly where dense samples are too fast."""
     found = {e.joint for e in overspeed(motion, nao())}
     trajectory = Trajectory(motion)
@@ -100,8 +100,8 @@ def test_what_it_says_of_speeds_is_what_samples_show(motion: Motion) -> None:
 
 def test_a_bezier_handle_can_lead_beyond_the_limits_and_that_is_said() -> None:
     top = nao().joints["HeadYaw"].maximum
-    key = Key(1.0, top, BEZIER, handle_in=(-0.5, 1.5))
-    motion = Motion("m", 1.0, {"HeadYaw": (key,)}, origin={"HeadYaw": 0.0})
+    key = Keyframe(1.0, top, BEZIER, handle_in=(-0.5, 1.5))
+    motion = MotionDefinition("m", 1.0, {"HeadYaw": (key,)}, origin={"HeadYaw": 0.0})
     (excess,) = beyond_limits(motion, nao())
     assert (excess.joint, excess.key, excess.limit) == ("HeadYaw", key, top)
     assert excess.value > top + 0.1
@@ -109,16 +109,16 @@ def test_a_bezier_handle_can_lead_beyond_the_limits_and_that_is_said() -> None:
 
 def test_bezier_handles_shape_the_way_between_keys() -> None:
     """With both handles level and at half time the curve is S-shaped; in the middle it is half way."""
-    keys = (Key(1.0, 0.0, BEZIER, handle_out=(0.5, 0.0)), Key(2.0, 1.0, BEZIER, handle_in=(-0.5, 0.0)))
-    motion = Motion("m", 2.0, {"HeadYaw": keys}, origin={"HeadYaw": 0.0})
+    keys = (Keyframe(1.0, 0.0, BEZIER, handle_out=(0.5, 0.0)), Keyframe(2.0, 1.0, BEZIER, handle_in=(-0.5, 0.0)))
+    motion = MotionDefinition("m", 2.0, {"HeadYaw": keys}, origin={"HeadYaw": 0.0})
     assert sample(motion, 1.5)["HeadYaw"] == pytest.approx(0.5)
     assert sample(motion, 1.25)["HeadYaw"] < 0.25
 
 
 @given(st.floats(0.0, 5.0), st.floats(-2, 2), st.floats(0.0, 5.0), st.floats(-2, 2))
 def test_any_handle_leaves_time_running_forward(out: float, up: float, inward: float, down: float) -> None:
-    keys = (Key(1.0, 0.0, BEZIER, handle_out=(out, up)), Key(2.0, 1.0, BEZIER, handle_in=(-inward, down)))
-    track = Trajectory(Motion("m", 2.0, {"HeadYaw": keys}, origin={"HeadYaw": 0.0})).tracks[0]
+    keys = (Keyframe(1.0, 0.0, BEZIER, handle_out=(out, up)), Keyframe(2.0, 1.0, BEZIER, handle_in=(-inward, down)))
+    track = Trajectory(MotionDefinition("m", 2.0, {"HeadYaw": keys}, origin={"HeadYaw": 0.0})).tracks[0]
     angles = [track.at(1.0 + i / 100) for i in range(101)]
     assert angles[0] == pytest.approx(0.0, abs=1e-9)
     assert angles[-1] == pytest.approx(1.0, abs=1e-9)
@@ -127,13 +127,13 @@ def test_any_handle_leaves_time_running_forward(out: float, up: float, inward: f
 
 def test_coupled_limits_are_judged_by_where_the_other_joint_is() -> None:
     """Far to the side, the head can't be lowered as deep as in the middle."""
-    tracks = {"HeadYaw": (Key(1.0, 1.5, LINEAR),), "HeadPitch": (Key(1.0, 0.45, LINEAR),)}
-    (excess,) = beyond_limits(Motion("m", 1.0, tracks), nao())
+    tracks = {"HeadYaw": (Keyframe(1.0, 1.5, LINEAR),), "HeadPitch": (Keyframe(1.0, 0.45, LINEAR),)}
+    (excess,) = beyond_limits(MotionDefinition("m", 1.0, tracks), nao())
     assert excess.joint == "HeadPitch"
     assert excess.limit == pytest.approx(0.2061, abs=1e-3)
-    assert not beyond_limits(Motion("m", 1.0, {"HeadPitch": tracks["HeadPitch"]}), nao())
+    assert not beyond_limits(MotionDefinition("m", 1.0, {"HeadPitch": tracks["HeadPitch"]}), nao())
 
 
 def test_without_a_start_a_joint_waits_at_its_first_key() -> None:
-    motion = Motion("m", 2.0, {"HeadYaw": (Key(1.0, 0.4), Key(2.0, 0.0))})
+    motion = MotionDefinition("m", 2.0, {"HeadYaw": (Keyframe(1.0, 0.4), Keyframe(2.0, 0.0))})
     assert sample(motion, 0.3) == {"HeadYaw": 0.4}

@@ -7,7 +7,7 @@ from math import hypot, nan
 import pytest
 
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
-from lumen.language.motions import Cue, Interpolation, Key, Motion
+from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, Sense, Sonar
 from tests.naoqi.conftest import Live
@@ -45,7 +45,7 @@ def test_a_motion_is_one_call(robot: Lockstep, live: Live, project: Project) -> 
 
 
 def test_a_first_key_that_is_too_soon_comes_later(robot: Lockstep, live: Live) -> None:
-    motion = Motion("hasty", 0.1, {"HeadYaw": (Key(0.1, 2.0, Interpolation.LINEAR),)})
+    motion = MotionDefinition("hasty", 0.1, {"HeadYaw": (Keyframe(0.1, 2.0, Interpolation.LINEAR),)})
     robot.start("a", Perform(motion))
     assert answers(live(1.0)) == ["done.command.a"]
     [(_, [times], _)] = robot.nao.world.called("angleInterpolationBezier")
@@ -55,15 +55,15 @@ def test_a_first_key_that_is_too_soon_comes_later(robot: Lockstep, live: Live) -
 @pytest.mark.parametrize(
     ("keys", "why"),
     [
-        ((Key(1.0, 3.0),), "HeadYaw to 3.000 rad"),
-        ((Key(1.0, 1.0), Key(1.05, -1.0)), "turns HeadYaw at"),
-        ((Key(1.0, nan),), "no number"),
+        ((Keyframe(1.0, 3.0),), "HeadYaw to 3.000 rad"),
+        ((Keyframe(1.0, 1.0), Keyframe(1.05, -1.0)), "turns HeadYaw at"),
+        ((Keyframe(1.0, nan),), "no number"),
     ],
 )
 def test_what_a_joint_can_not_do_is_never_sent(robot: Lockstep, live: Live, keys: tuple, why: str) -> None:  # type: ignore[type-arg]
-    robot.start("a", Perform(Motion("wild", 2.0, {"HeadYaw": keys})))
+    robot.start("a", Perform(MotionDefinition("wild", 2.0, {"HeadYaw": keys})))
     assert why in reason(live(0.2))
-    robot.start("b", Perform(Motion("wild", 2.0, {"HaedYaw": (Key(1.0, 0.1),)})))
+    robot.start("b", Perform(MotionDefinition("wild", 2.0, {"HaedYaw": (Keyframe(1.0, 0.1),)})))
     assert "HeadYaw" in reason(live(0.2))
     assert robot.nao.world.called("angleInterpolationBezier") == []
 
@@ -81,7 +81,7 @@ def test_cancelled_motions_end_and_go_back_to_where_they_began(robot: Lockstep, 
 def test_lights_and_sounds(robot: Lockstep, live: Live, caplog: pytest.LogCaptureFixture) -> None:
     robot.nao.world.sounds = {"/home/nao/lumen/sounds/beat.wav"}
     cues = (Cue(0.0, "leds", {"eyes": "red", "left_ear": "#0000ff"}), Cue(0.1, "sound", "sounds/beat.wav"))
-    motion = Motion("show", 0.5, {}, (*cues, Cue(0.2, "sound", "sounds/none.wav")))
+    motion = MotionDefinition("show", 0.5, {}, (*cues, Cue(0.2, "sound", "sounds/none.wav")))
     robot.start("a", Perform(motion))
     with caplog.at_level(logging.WARNING):
         events = live(1.0)

@@ -7,13 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.interpreters.trajectory import Trajectory
-from lumen.language.motions import Interpolation, Key, Motion
+from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.robots.naoqi.curves import ERROR, curves
 from tests.naoqi.joints import bezier
 
 
-def worst(motion: Motion, start: dict[str, float]) -> float:
+def worst(motion: MotionDefinition, start: dict[str, float]) -> float:
     """The farthest that NAOqi's joints are from the motion's, at every third of its cycles [rad]."""
     trajectory = Trajectory(motion, start)
     way = curves(trajectory.tracks)
@@ -27,7 +27,7 @@ def test_the_shipped_motions_are_carried_over(project: Project, name: str) -> No
     motion = project.motions[name]
     start = {joint: motion.origin.get(joint, keys[0].angle) for joint, keys in motion.tracks.items()}
     few = dict(list(motion.tracks.items())[::9])
-    assert worst(Motion(name, motion.duration, few), start) < ERROR
+    assert worst(MotionDefinition(name, motion.duration, few), start) < ERROR
 
 
 angles = st.floats(-pi / 2, pi / 2)
@@ -44,18 +44,18 @@ def test_any_motion_is_carried_over(rows: list[tuple], start: float) -> None:  #
     time, keys = 0.0, []
     for gap, angle, kind, (dt_in, da_in), out in rows:
         time += gap
-        keys.append(Key(time, angle, kind, (-dt_in, da_in), out))
-    found = worst(Motion("any", time, {"HeadYaw": tuple(keys)}), {"HeadYaw": start})
+        keys.append(Keyframe(time, angle, kind, (-dt_in, da_in), out))
+    found = worst(MotionDefinition("any", time, {"HeadYaw": tuple(keys)}), {"HeadYaw": start})
     assert found < ERROR
 
 
 def test_minimum_jerk_is_as_near_as_stated() -> None:
-    motion = Motion("far", 2.0, {"HeadYaw": (Key(2.0, 1.5, Interpolation.MINIMUM_JERK),)})
+    motion = MotionDefinition("far", 2.0, {"HeadYaw": (Keyframe(2.0, 1.5, Interpolation.MINIMUM_JERK),)})
     assert 1e-5 < worst(motion, {"HeadYaw": -1.5}) < ERROR
 
 
 def test_a_line_is_one_piece_and_its_first_cycle() -> None:
-    motion = Motion("line", 1.0, {"HeadYaw": (Key(1.0, 0.5, Interpolation.LINEAR),)})
+    motion = MotionDefinition("line", 1.0, {"HeadYaw": (Keyframe(1.0, 0.5, Interpolation.LINEAR),)})
     way = curves(Trajectory(motion, {"HeadYaw": 0.0}).tracks)
     assert way.names == ["HeadYaw"]
     assert way.times[0] == pytest.approx([0.02, 1.0])

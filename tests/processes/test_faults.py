@@ -15,7 +15,7 @@ from lumen.bus import connect
 from lumen.cli.main import main
 from lumen.language.commands import Rest
 from lumen.ports import Perform
-from lumen.runtime.keeping import SNAPSHOT
+from lumen.runtime.snapshot_store import SNAPSHOT
 from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded
 from tests.processes.troupe import SPEED, Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ

@@ -12,7 +12,7 @@ from lumen.language.events import Event
 from lumen.ports import Aim, Message, Perform
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RemoteRobot
-from lumen.runtime.delegating import Delegating
+from lumen.runtime.delegated_tracking import DelegatedTracking
 from lumen.runtime.presence import MOST, Presence
 from tests.exhibits import BODY, JOINTS, messages, project
 
@@ -284,7 +284,7 @@ def test_the_motion_module_does_what_it_can_and_the_brain_the_rest(line: Line) -
     own = Own()
     controllers = {"head": object()}
     here = project(messages=messages(), controllers=controllers)
-    shared = Delegating(own, here, bus, lambda: able[0], lambda: 1.0)  # type: ignore[arg-type]
+    shared = DelegatedTracking(own, here, bus, lambda: able[0], lambda: 1.0)  # type: ignore[arg-type]
     shared.switch(Track("head"))
     shared.tick(0.0)
     assert (own.on, own.ticks, shared.play("d1", Perform(here.motions["dance"]))) == (("head",), 1, False)

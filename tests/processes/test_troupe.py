@@ -4,7 +4,7 @@ import pytest
 
 from lumen.errors import UsageError
 from lumen.language.commands import Posture, Rest, Say
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.ports import Perform
 from tests.processes.troupe import Troupe, alone, deeds
 from tests.relay import Relay
@@ -42,7 +42,7 @@ def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
     assert [cues_of(m) for m in played] == [cues_of(project.motions[m.name]) for m in played]
 
 
-def cues_of(motion: Motion) -> list[tuple[float, str, object]]:
+def cues_of(motion: MotionDefinition) -> list[tuple[float, str, object]]:
     return [(cue.time, cue.kind, cue.value) for cue in motion.cues]
 
 

@@ -16,7 +16,7 @@ from lumen.language.projects import Project
 from lumen.loading.project import read_files
 from lumen.rules import check_files, load
 from lumen.runtime.home import Home, home_of
-from lumen.runtime.keeping import Keeper
+from lumen.runtime.snapshot_store import SnapshotStore
 from tests.guarded import run_guarded
 from tests.tour.names import ROOT
 
@@ -212,7 +212,7 @@ def test_lint_finds_what_a_reload_would_refuse_or_move(repository: Path, capsys:
 def test_what_runs_is_compared_with_what_is_saved(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
     project, home = load(repository), Home(home_of(repository))
     assert home.hold()
-    keeper = Keeper(home)
+    keeper = SnapshotStore(home)
     keeper.store(read_files(repository))
     first = initial(project.machine).snapshot
     keeper.keep(project, step(project.machine, first, Event("touched", {"sensor": "x"})).snapshot, ())

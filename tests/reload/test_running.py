@@ -12,7 +12,7 @@ from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan
 from lumen.interpreters.statechart import Step
 from lumen.language.events import Event
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.routes import Direction, Route
 from lumen.language.stories import Visitor
@@ -97,7 +97,7 @@ def test_a_motion_that_plays_ends_as_it_began_and_is_the_new_one_the_next_time()
     project = exhibits.project(behaviors={"tour": DANCING})
     exhibition, seen = running(project)
     exhibition.tick()
-    longer = {**project.motions, "dance": Motion("dance", 3.0, project.motions["dance"].tracks)}
+    longer = {**project.motions, "dance": MotionDefinition("dance", 3.0, project.motions["dance"].tracks)}
     swap(exhibition, replace(project, motions=longer))
     while len(seen.answers) < 2:
         exhibition.tick()

@@ -10,7 +10,7 @@ from lumen.buses.validated import validated
 from lumen.errors import BusError
 from lumen.language.commands import Posture, Rest, Say
 from lumen.language.events import Event
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.modules.sound import Sound, sound_of
 from lumen.ports import Aim, Message, Perform
 from lumen.robots.recording import RecordingRobot
@@ -204,7 +204,7 @@ def test_another_bundle_brings_its_own_periods_and_motions() -> None:
     stand.live(0.6)
     routes = {**PROJECT.routes, "joint": replace(PROJECT.routes["joint"], every=0.3)}
     del routes["image"], routes["tactile"], routes["battery"]
-    wave = Motion("wave", 1.0, {})
+    wave = MotionDefinition("wave", 1.0, {})
     stand.server.use(project(routes=routes, motions={"wave": wave}))
     for i in range(30, 60):
         stand.server.sample(i * 0.02)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from lumen.errors import RobotError
 from lumen.language.commands import Language, Move, Posture, Rest, Say, Stop, Wake, Walk
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.ports import Aim, Perform, Record
 from lumen.robots.dialect import command_from
 from tests.exhibits import project
@@ -65,7 +65,7 @@ def test_the_papers_names_and_the_sources_names_play_the_motion(method: str, mot
 
 def test_a_motion_hides_no_method_and_an_alias_hides_no_motion() -> None:
     names = ("rest", "StopMove", "dancing", "dance", "Wave", "PhotoPose")
-    motions = {name: Motion(name, 1.0, {}) for name in names}
+    motions = {name: MotionDefinition(name, 1.0, {}) for name in names}
     other = project(motions=motions)
     assert command_from({"method": "rest"}, other) == Rest()
     assert command_from({"method": "stopmove"}, other) == Stop()

@@ -8,20 +8,20 @@ import pytest
 
 from lumen.errors import RobotError
 from lumen.language.commands import Look, Posture, Say, Stop, Walk
-from lumen.language.motions import Cue, Interpolation, Key, Motion
+from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, RobotCommand
 from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import MODELS, Do, answer, until_answered
 
-WAVE = Motion(
+WAVE = MotionDefinition(
     "wave",
     2.0,
     {
-        "RShoulderPitch": (Key(0.8, -1.0), Key(2.0, 1.44)),
-        "RHand": (Key(0.8, 1.0), Key(2.0, 0.3)),
-        "LHipPitch": (Key(1.0, 0.0), Key(2.0, 0.127)),
-        "RHipPitch": (Key(1.0, 0.0), Key(2.0, 0.127)),
+        "RShoulderPitch": (Keyframe(0.8, -1.0), Keyframe(2.0, 1.44)),
+        "RHand": (Keyframe(0.8, 1.0), Keyframe(2.0, 0.3)),
+        "LHipPitch": (Keyframe(1.0, 0.0), Keyframe(2.0, 0.127)),
+        "RHipPitch": (Keyframe(1.0, 0.0), Keyframe(2.0, 0.127)),
     },
     (Cue(0.5, "leds", {"eyes": "red"}), Cue(0.5, "hold", "microphone")),
     start="Stand",
@@ -94,10 +94,13 @@ def test_stop_halts_a_change_of_posture_on_its_feet(robot: SimulatedRobot) -> No
         (Posture("Stand", 0.0), "a speed lies above 0"),
         (Walk(nan), "there is no way to (nan, 0.0, 0.0)"),
         (Look(nan, 0.0), "`HeadYaw` can't be moved to nan"),
-        (Perform(Motion("m", 1.0, {"Nose": (Key(1.0, 0.0),)})), "`Nose` is not a joint"),
-        (Perform(Motion("m", 1.0, {"HeadYaw": (Key(1.0, nan),)})), "no number"),
-        (Perform(Motion("m", inf, {"HeadYaw": (Key(1.0, 0.0),)})), "no number"),
-        (Perform(Motion("m", 1.0, {"HeadYaw": (Key(1.0, 0.0),)}, start="Sit")), "begins in Sit; the robot is in Stand"),
+        (Perform(MotionDefinition("m", 1.0, {"Nose": (Keyframe(1.0, 0.0),)})), "`Nose` is not a joint"),
+        (Perform(MotionDefinition("m", 1.0, {"HeadYaw": (Keyframe(1.0, nan),)})), "no number"),
+        (Perform(MotionDefinition("m", inf, {"HeadYaw": (Keyframe(1.0, 0.0),)})), "no number"),
+        (
+            Perform(MotionDefinition("m", 1.0, {"HeadYaw": (Keyframe(1.0, 0.0),)}, start="Sit")),
+            "begins in Sit; the robot is in Stand",
+        ),
     ],
 )
 def test_what_it_can_t_do_is_an_answer_and_leaves_it_unmoved(
@@ -189,6 +192,6 @@ def test_a_model_that_can_t_be_used_is_said_to_be(
 
 
 def test_interpolation_is_the_motion_s_business(robot: SimulatedRobot, do: Do) -> None:
-    keys = tuple(Key(0.2 * k, 0.2 * (-1) ** k, Interpolation.LINEAR) for k in range(1, 6))
-    assert do(Perform(Motion("nod", 1.0, {"HeadYaw": keys}))) == "done"
+    keys = tuple(Keyframe(0.2 * k, 0.2 * (-1) ** k, Interpolation.LINEAR) for k in range(1, 6))
+    assert do(Perform(MotionDefinition("nod", 1.0, {"HeadYaw": keys}))) == "done"
     assert robot.greatest_tilt < 5

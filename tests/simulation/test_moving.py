@@ -5,7 +5,7 @@ from math import nan
 import numpy as np
 import pytest
 
-from lumen.interpreters.gait import GENTLE, Pace, Step, corners, fastest
+from lumen.interpreters.gait import GENTLE_GAIT, Footstep, GaitParameters, corners, fastest
 from lumen.language.commands import Move, Posture, Stop, Walk
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
@@ -14,7 +14,7 @@ from tests.simulation.conftest import MODELS, answer, until_answered
 from tests.simulation.walks import Push, any_robot, feet, on_the_floor, truth
 
 STAGE = Stage((-0.4, 0.4), (-0.6, 0.6))
-FASTEST = fastest(Pace())
+FASTEST = fastest(GaitParameters())
 GRACE = 0.01
 """How far beyond the stage a foot may land [m]: as far as encoders err."""
 
@@ -106,7 +106,7 @@ def test_it_ends_at_the_edge_of_the_stage_with_both_feet_on_it(staged: Simulated
         staged.advance(0.05)
         assert staged.time < 60, events
     for side, pose in feet(staged).items():
-        for corner in corners(Step(side, pose)):
+        for corner in corners(Footstep(side, pose)):
             farthest = max(farthest, abs(corner.real) - 0.4, abs(corner.imag) - 0.6)
     assert "foot would leave the stage" in result
     assert result.endswith("the walk was ended")
@@ -161,4 +161,4 @@ def test_hot_motors_move_slowly(body: Body) -> None:
     robot.advance(0.2)
     robot.start("m", Move(FASTEST.x))
     robot.advance(4.0)
-    assert robot.world.data.qpos[0] < 4.0 * fastest(GENTLE).x
+    assert robot.world.data.qpos[0] < 4.0 * fastest(GENTLE_GAIT).x

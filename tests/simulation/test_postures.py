@@ -10,7 +10,7 @@ import pytest
 
 from lumen.interpreters.postures import RESTFUL, UPRIGHT, route
 from lumen.language.commands import Posture, Rest, Stop, Wake, Walk
-from lumen.language.motions import Key, Motion
+from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.robots import Body
 from lumen.ports import Perform
 from lumen.robots.simulation import SimulatedRobot
@@ -151,7 +151,7 @@ def test_stop_halts_it_on_the_way_and_it_goes_on_from_there(robot: SimulatedRobo
 
 
 def test_what_needs_feet_is_refused_on_the_floor(robot: SimulatedRobot, do: Do) -> None:
-    wave = Motion("wave", 1.0, {"HeadYaw": (Key(1.0, 0.1),)}, start="Stand")
+    wave = MotionDefinition("wave", 1.0, {"HeadYaw": (Keyframe(1.0, 0.1),)}, start="Stand")
     assert do(Posture("Sit")) == "done"
     assert do(Walk(0.1)) == "error: the robot is in Sit: send it to Stand first"
     assert do(Perform(wave)) == "error: `wave` begins in Stand; the robot is in Sit: send it there first"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Walk
-from lumen.language.motions import Key, Motion
+from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
@@ -142,7 +142,7 @@ def test_arms_swing_against_the_legs(body: Body) -> None:
 
 
 def test_a_gesture_is_kept_and_the_head_stays_free(body: Body) -> None:
-    raised = Motion("raise", 1.0, {"RShoulderPitch": (Key(1.0, -1.0),)})
+    raised = MotionDefinition("raise", 1.0, {"RShoulderPitch": (Keyframe(1.0, -1.0),)})
     robot = on_the_floor(body)
     robot.start("m", Perform(raised))
     until_answered(robot, "m")

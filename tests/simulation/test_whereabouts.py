@@ -5,7 +5,7 @@ from math import degrees, pi
 import pytest
 
 from lumen.errors import RobotError
-from lumen.interpreters.gait import Pose, Step, middle
+from lumen.interpreters.gait import Footstep, Pose, middle
 from lumen.interpreters.gait.poses import wrap
 from lumen.language.commands import Posture, Wake, Walk
 from lumen.language.projects import Stage
@@ -25,17 +25,17 @@ STANDING = dict.fromkeys(
 def test_once_down_the_stage_is_smaller_by_as_much_as_nobody_knows() -> None:
     whereabouts = Whereabouts(WIDE)
     whereabouts.feel(STANDING)
-    whereabouts.check([Step("L", Pose(0.85, 0.05))])
+    whereabouts.check([Footstep("L", Pose(0.85, 0.05))])
     for posture in ("Crouch", "Straddle", "LyingBack", "Straddle"):
         whereabouts.lose(posture)
     whereabouts.keep(0.0)
     whereabouts.feel(STANDING)
     assert whereabouts.doubt == ON_ITS_BACK
-    whereabouts.check([Step("L", Pose(0.6, 0.05))])
+    whereabouts.check([Footstep("L", Pose(0.6, 0.05))])
     with pytest.raises(
         RobotError, match=r"might leave the stage: .* to 1 m; the robot has been down since, and may be 0\.25"
     ):
-        whereabouts.check([Step("L", Pose(0.7, 0.05))])
+        whereabouts.check([Footstep("L", Pose(0.7, 0.05))])
     whereabouts.lose("Sit")
     whereabouts.keep(0.0)
     whereabouts.lose("")
@@ -48,9 +48,9 @@ def test_feet_in_doubt_may_stay_where_they_stand() -> None:
     whereabouts.lose("Sit")
     whereabouts.feel(STANDING)
     for side, pose in whereabouts.feet.items():
-        whereabouts.check([Step(side, pose)])
+        whereabouts.check([Footstep(side, pose)])
     with pytest.raises(RobotError):
-        whereabouts.check([Step("L", Pose(0.05, 0.05))])
+        whereabouts.check([Footstep("L", Pose(0.05, 0.05))])
 
 
 def test_what_it_turned_while_it_was_down_counts_and_what_it_drifts_while_it_stands_does_not() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from lumen.language.projects import Project
-from lumen.language.stories import Arrive, Deed, Expect, Pause, Scene, Story, Visitor
+from lumen.language.stories import Arrive, Expect, Story, StoryPause, StoryStep, Visitor, VisitorAction
 from lumen.robots.simulation import SimulatedRobot
 from tests.tour.playing import play
 
@@ -44,14 +44,14 @@ def test_who_is_pushed_over_gets_up_and_goes_on(blind: Project, robot: Simulated
     def push(now: float) -> None:
         robot.world.data.xfrc_applied[robot.world.torso][0] = 70.0 if 7.0 < now < 7.15 else 0.0
 
-    deeds: list[Deed] = [
-        Pause(3.0),
+    deeds: list[VisitorAction] = [
+        StoryPause(3.0),
         Arrive(Visitor()),
         Expect(("greet",)),
         Expect(("fallen", "interrupted"), said="I fell"),
         Expect(("watching",), said="on my feet again", within=60.0),
     ]
-    run = play(blind, Story("pushed", "Pushed over", tuple(Scene(d) for d in deeds)), robot, part=push)
+    run = play(blind, Story("pushed", "Pushed over", tuple(StoryStep(d) for d in deeds)), robot, part=push)
     assert run.failure == ""
     assert not robot.fallen
     assert robot.world.tilt < 0.1

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from lumen.interpreters.expressions import Scope, compile_expression
-from lumen.language.actions import If, Parallel, SayText, Step
+from lumen.language.actions import If, Parallel, PlacedAction, SayText
 from lumen.language.machines import MachineDefinition, State
 from lumen.language.projects import Project
 from tests.tour.names import GUIDE, SAFETY
@@ -29,7 +29,7 @@ def heard(tour: MachineDefinition, text: str, name: str) -> object:
     return compile_expression(f"heard(event.data.result, '{name}')")(scope)
 
 
-def flattened(steps: tuple[Step, ...]) -> Iterator[object]:
+def flattened(steps: tuple[PlacedAction, ...]) -> Iterator[object]:
     for step in steps:
         match step.action:
             case If(_, then, otherwise):

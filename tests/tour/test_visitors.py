@@ -6,17 +6,28 @@ from dataclasses import replace
 import pytest
 
 from lumen.language.projects import Project
-from lumen.language.stories import Arrive, Deed, Expect, Happen, Leave, Pause, Scene, Speak, Story, Visitor
+from lumen.language.stories import (
+    Arrive,
+    Expect,
+    Happen,
+    Leave,
+    Speak,
+    Story,
+    StoryPause,
+    StoryStep,
+    Visitor,
+    VisitorAction,
+)
 from tests.tour.playing import Run, play
 
 
-def visit(project: Project, deeds: Iterable[Deed], **changes: object) -> Run:
-    story = Story("made", "made for a test", tuple(Scene(deed) for deed in deeds))
+def visit(project: Project, deeds: Iterable[VisitorAction], **changes: object) -> Run:
+    story = Story("made", "made for a test", tuple(StoryStep(deed) for deed in deeds))
     return play(project, replace(story, **changes))  # type: ignore[arg-type]
 
 
 def test_who_stays_is_not_greeted_again_at_once(project: Project) -> None:
-    run = visit(project, [Arrive(Visitor()), Expect(("goodbye",), within=60.0), Expect(("greet",)), Pause(1.0)])
+    run = visit(project, [Arrive(Visitor()), Expect(("goodbye",), within=60.0), Expect(("greet",)), StoryPause(1.0)])
     assert run.failure == ""
     farewell = next(at for at, text in run.said if "Goodbye" in text)
     again = next(at for at, text in run.said if at > farewell)
@@ -24,7 +35,7 @@ def test_who_stays_is_not_greeted_again_at_once(project: Project) -> None:
 
 
 def test_faces_by_the_dozen_begin_one_conversation(project: Project) -> None:
-    run = visit(project, [Arrive(Visitor()), Expect(("ask_name",)), Pause(20.0)])
+    run = visit(project, [Arrive(Visitor()), Expect(("ask_name",)), StoryPause(20.0)])
     assert run.guide() == ["idle", "greet", "ask_name"]
     assert len(run.said) == 3
 
@@ -37,7 +48,7 @@ def test_what_is_said_during_the_greeting_does_not_cut_it(project: Project) -> N
 
 def test_another_trouble_during_the_first_is_not_forgotten_by_the_guide(project: Project) -> None:
     """A fall while the battery's call is on: the guide stays out of it until the robot stands."""
-    deeds: list[Deed] = [
+    deeds: list[VisitorAction] = [
         Arrive(Visitor()),
         Expect(("ask_name",)),
         Happen("battery.low", {"percentage": 9}),
@@ -52,16 +63,16 @@ def test_another_trouble_during_the_first_is_not_forgotten_by_the_guide(project:
 @pytest.mark.parametrize("state", ["stopped", "resting", "helpless"])
 def test_a_robot_with_its_motors_off_does_not_get_up_by_itself(project: Project, state: str) -> None:
     """`fallen` there is noted, and nothing moves until a hand holds its head."""
-    begin: dict[str, Deed] = {
+    begin: dict[str, VisitorAction] = {
         "stopped": Happen("stop"), "resting": Happen("head.held"), "helpless": Happen("fallen"),
     }  # fmt: skip
     robot = {"posture": "fails"} if state == "helpless" else {}
-    deeds: list[Deed] = [
-        Pause(1.0),
+    deeds: list[VisitorAction] = [
+        StoryPause(1.0),
         begin[state],
         Expect((state,)),
         Happen("fallen"),
-        Pause(5.0),
+        StoryPause(5.0),
         Expect((state, "paused")),
     ]
     run = visit(project, deeds, robot=robot)
@@ -72,7 +83,7 @@ def test_a_robot_with_its_motors_off_does_not_get_up_by_itself(project: Project,
 @pytest.mark.parametrize("verb", ["say", "play", "posture", "wake", "rest"])
 @pytest.mark.parametrize("how", ["fails", "hangs"])
 def test_whatever_of_the_robot_is_broken_it_is_idle_again(project: Project, verb: str, how: str) -> None:
-    deeds: list[Deed] = [
+    deeds: list[VisitorAction] = [
         Arrive(Visitor()),
         Expect(("talking",)),
         Expect(("goodbye",), within=90.0),
@@ -83,7 +94,12 @@ def test_whatever_of_the_robot_is_broken_it_is_idle_again(project: Project, verb
 
 
 def test_a_stop_is_announced_even_where_the_robot_can_not_crouch(project: Project) -> None:
-    deeds: list[Deed] = [Pause(1.0), Happen("stop"), Expect(("stopped", "paused"), said="I have stopped"), Pause(3.0)]
+    deeds: list[VisitorAction] = [
+        StoryPause(1.0),
+        Happen("stop"),
+        Expect(("stopped", "paused"), said="I have stopped"),
+        StoryPause(3.0),
+    ]
     run = visit(project, deeds, robot={"rest": "fails"})
     assert run.failure == ""
     assert run.errors == ["error.communication"]

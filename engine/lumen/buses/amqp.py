@@ -24,7 +24,7 @@ from lumen.buses.queues import DEAD, EXCHANGE, NEWEST, journal_of
 from lumen.buses.subscriptions import Delivery
 from lumen.errors import BusError
 from lumen.language.routes import Carried, Direction, Route
-from lumen.ports import Handler, Message
+from lumen.ports import Message, MessageHandler
 
 CLOSING = 5.0
 PREFIXES = ("avatar", "lumen")
@@ -149,7 +149,7 @@ class AmqpBus:
             coming = {k: r for k, r in routes.items() if r.direction is Direction.IN and self._way_of(r) is way}
             way.consuming.prepare(coming)
 
-    def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
+    def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
             raise BusError("the bus is closed: nobody can subscribe any more")
         check_key(pattern)

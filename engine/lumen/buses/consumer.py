@@ -17,7 +17,7 @@ from lumen.buses.queues import NOWHERE, queue_of
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import BusError
 from lumen.language.routes import Route
-from lumen.ports import Handler
+from lumen.ports import MessageHandler
 
 PREFETCH = 64
 PATIENCE = 5.0
@@ -70,7 +70,7 @@ class Consumer(BrokerConnection):
         with self._changing:
             return list(self._subscriptions)
 
-    def add(self, pattern: str, handler: Handler, route: Route | None = None) -> Subscription:
+    def add(self, pattern: str, handler: MessageHandler, route: Route | None = None) -> Subscription:
         """Subscribe; returns when the binding is in force, at once where the broker is away (it is made on its return).
 
         Raises BusError where the broker refuses it. Whoever has ever prepared can't wait: what was prepared is in force
@@ -127,7 +127,7 @@ class Consumer(BrokerConnection):
             self._subscriptions.remove(subscription)
         self._later(lambda: self._drop(subscription))
 
-    def _claimed(self, pattern: str, handler: Handler) -> Subscription | None:
+    def _claimed(self, pattern: str, handler: MessageHandler) -> Subscription | None:
         with self._changing:
             subscription = self._prepared.pop(pattern, None)
             if subscription is None or not subscription.bound.is_set() or subscription.refusal:
@@ -137,7 +137,7 @@ class Consumer(BrokerConnection):
         self._later(lambda: self._consume(subscription))
         return subscription
 
-    def _subscribed(self, pattern: str, handler: Handler, route: Route | None) -> Subscription:
+    def _subscribed(self, pattern: str, handler: MessageHandler, route: Route | None) -> Subscription:
         with self._changing:
             numbers = {s.number for s in self._subscriptions if s.pattern == pattern}
             number = next(n for n in range(len(numbers) + 1) if n not in numbers)

@@ -19,7 +19,7 @@ from lumen.buses.bodies import check_key, copied
 from lumen.errors import BusError
 from lumen.interpreters.routing import matches
 from lumen.language.routes import Route
-from lumen.ports import Handler, Message, Refused
+from lumen.ports import Message, MessageHandler, Refused
 
 CLOSING = 5.0
 REMEMBERED = 4_096
@@ -31,7 +31,7 @@ _log = logging.getLogger(__name__)
 class _Subscription:
     __slots__ = ("active", "handler", "pattern")
 
-    def __init__(self, pattern: str, handler: Handler) -> None:
+    def __init__(self, pattern: str, handler: MessageHandler) -> None:
         self.pattern, self.handler = pattern, handler
         self.active = True
 
@@ -147,7 +147,7 @@ class MemoryBus:
     def prepare(self, routes: Mapping[str, Route]) -> None:
         """There is nothing to wait for."""
 
-    def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
+    def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
             raise BusError("the bus is closed: nobody can subscribe any more")
         subscription = _Subscription(pattern, handler)

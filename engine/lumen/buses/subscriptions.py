@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from lumen.buses.queues import EXCHANGE
 from lumen.language.routes import Route
-from lumen.ports import Handler
+from lumen.ports import MessageHandler
 
 
 @dataclass(eq=False)
@@ -17,7 +17,7 @@ class Subscription:
     """
 
     pattern: str
-    handler: Handler | None
+    handler: MessageHandler | None
     route: Route | None = None
     number: int = 0
     exchange: str = EXCHANGE

@@ -8,7 +8,7 @@ from lumen.buses.checking import BodyCheck, checks
 from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.language.routes import Route
-from lumen.ports import Bus, Handler, Message, Refused
+from lumen.ports import Bus, Message, MessageHandler, Refused
 
 PREFIXES = ("avatar", "lumen")
 
@@ -48,7 +48,7 @@ class ValidatedBus:
     def prepare(self, routes: Mapping[str, Route]) -> None:
         self._bus.prepare(routes)
 
-    def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
+    def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         def checked(message: Message) -> None:
             if reason := self._wrong(message.key, message.body):
                 self._on_refused(message.key, reason)

@@ -9,7 +9,7 @@ from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock, Hall, Robot
-from lumen.runtime.tracking import Following
+from lumen.runtime.tracking import TrackingService
 
 ROBOTS = ("simulation", "naoqi", "recording", "remote", "none")
 SPEEDS = ("1", "4", "max")
@@ -30,7 +30,7 @@ class Cast:
     hall: Hall | None
     blind: str = ""
     remote: bool = False
-    tracking: Following | None = None
+    tracking: TrackingService | None = None
 
 
 def cast(kind: str, project: Project, speed: str, story: Story | None = None, url: str | None = None) -> Cast:

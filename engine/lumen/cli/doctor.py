@@ -24,7 +24,7 @@ from lumen.loading.packaged import find_project
 from lumen.ports import Bus
 from lumen.robots.ways import COMMAND, key_of
 from lumen.rules import check_files
-from lumen.runtime.delegating import ROUTE as MOTION
+from lumen.runtime.delegated_tracking import ROUTE as MOTION
 
 LISTENING = 2.0
 SKEW = 1.0

@@ -20,7 +20,7 @@ from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.modules import EYES, MODULES
 from lumen.language.projects import Project
-from lumen.language.stories import Arrive, Deed, Leave, Story, Visitor
+from lumen.language.stories import Arrive, Leave, Story, Visitor, VisitorAction
 from lumen.loading.packaged import shipped_root
 from lumen.robots.broadcast import Count
 from lumen.robots.ledger import FILE, Ledger
@@ -35,7 +35,7 @@ class Performance:
     """Runs once; `run` returns the exit code."""
 
     def __init__(self, project: Project, chosen: Cast, bus_url: str, story: Story | None, premises: Premises) -> None:
-        self._show = Show(project, chosen, bus_url, story, self._deed)
+        self._show = Show(project, chosen, bus_url, story, self._visitor_action)
         self._premises, self._url = premises, bus_url
         self._leaving = False
         self._transcript = Transcript(chosen.clock.now, lambda: self._show.exhibition.project.machine)
@@ -166,14 +166,14 @@ class Performance:
         elif self._show.walker:
             print("You are the visitor: type what you say. Ctrl-D walks away; Ctrl-C rests the robot, twice ends.\n")
             self._show.walker.arrive(Visitor())
-            self._deed(Arrive(Visitor()))
-            self._typed = TypedSpeech(self._show.walker, self._deed)
+            self._visitor_action(Arrive(Visitor()))
+            self._typed = TypedSpeech(self._show.walker, self._visitor_action)
             self._show.exhibition.parts.append(self._typed.tick)
 
-    def _deed(self, deed: Deed) -> None:
-        self._transcript.deed(deed)
+    def _visitor_action(self, action: VisitorAction) -> None:
+        self._transcript.visitor_action(action)
         faces = self._show.faces
-        if isinstance(deed, Leave) and faces and faces.last and faces.camera:
+        if isinstance(action, Leave) and faces and faces.last and faces.camera:
             self._face = math.dist(faces.last, (faces.camera.width / 2, faces.camera.height / 2))
 
     def _over(self, now: float, period: float | None) -> bool:

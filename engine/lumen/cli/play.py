@@ -15,7 +15,7 @@ from lumen.interpreters.limits import overspeed
 from lumen.language.commands import Posture
 from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.events import Event
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.loading.motions import build_motion
@@ -83,7 +83,7 @@ class _Player:
         self.robot.close()
 
 
-def _slowed(motion: Motion, body: Body) -> list[str]:
+def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
     """Where the joints of a motion, one line each, come late at worst: no joint moves faster than it can."""
     worst = {excess.joint: excess for excess in sorted(overspeed(motion, body), key=lambda e: e.value / e.limit)}
     return [
@@ -97,7 +97,7 @@ def _reason(event: Event) -> str:
     return "the robot fell" if event.name == "fallen" else str(event.data["reason"])
 
 
-def _motion(project: Project, name: str, timeline: str) -> Motion:
+def _motion(project: Project, name: str, timeline: str) -> MotionDefinition:
     path = Path(name)
     if path.suffix.lower() in ENDINGS:
         return _foreign(project, path, timeline)
@@ -114,7 +114,7 @@ def _motion(project: Project, name: str, timeline: str) -> Motion:
     return project.motions[name]
 
 
-def _foreign(project: Project, path: Path, timeline: str) -> Motion:
+def _foreign(project: Project, path: Path, timeline: str) -> MotionDefinition:
     """The motion in another tool's file; what of it is left out is told."""
     try:
         data, diagnostics = read_gesture(str(path), foreign_content(path), project.body, timeline=timeline)

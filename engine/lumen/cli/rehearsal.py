@@ -16,7 +16,7 @@ from lumen.language.diagnostics import Place
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.runtime.loop import Observer, TickHook
-from lumen.runtime.story import Failure, Lack, StoryPlayer
+from lumen.runtime.story import StoryFailure, StoryPlayer, UnmetExpectation
 
 REMEMBERED = 12
 """How many lines of what happened last are told with a failure."""
@@ -33,7 +33,7 @@ class Rehearsal:
     story: Story
     time: float
     took: float
-    failed: Failure | None = None
+    failed: StoryFailure | None = None
     place: Place | None = None
     trace: tuple[tuple[float, str, str], ...] = ()
 
@@ -66,7 +66,9 @@ def rehearse(
     else the engine logs as an error; its warnings stand in the trace, which begins where the story does with `whole`.
     """
     robot = chosen or cast("recording", project, "max", story)
-    show = Show(project, robot, story=story, tell=lambda deed: trace.deed(deed), sensing=chosen is not None)
+    show = Show(
+        project, robot, story=story, tell=lambda action: trace.visitor_action(action), sensing=chosen is not None
+    )
     trace = Trace(show, None if whole else REMEMBERED)
     show.exhibition.observers += [trace, *observers]
     show.exhibition.parts += parts
@@ -78,7 +80,7 @@ def rehearse(
             while not player.finished:
                 now = show.tick()
     except LumenError as error:
-        player.fail(Lack("", str(error)))
+        player.fail(UnmetExpectation("", str(error)))
     finally:
         show.close()
     took, failed = time.perf_counter() - began, player.failed
@@ -109,7 +111,7 @@ class _Log(logging.Handler):
         said = record.getMessage()
         self._trace.line("trouble", said)
         if record.levelno >= logging.ERROR:
-            self._player.fail(Lack("", said))
+            self._player.fail(UnmetExpectation("", said))
 
 
 @contextmanager

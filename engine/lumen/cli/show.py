@@ -13,14 +13,14 @@ from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.language.commands import Command, Say, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.language.stories import Deed, Story
+from lumen.language.stories import Story, VisitorAction
 from lumen.ports import Sense
 from lumen.robots.server import Server
 from lumen.runtime.loop import BehaviorLoop, Observer, TickHook
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.story import StoryPlayer, staged
-from lumen.runtime.trace import Trace
-from lumen.runtime.visitor import Walker
+from lumen.runtime.trace_publisher import TracePublisher
+from lumen.runtime.visitor import VisitorActor
 
 MORNING = "10:00"
 """The time of day at which a story begins that does not say."""
@@ -42,7 +42,7 @@ class Show(Observer):
         chosen: Cast,
         bus: str | ValidatedBus = "memory://",
         story: Story | None = None,
-        tell: Callable[[Deed], None] = lambda _: None,
+        tell: Callable[[VisitorAction], None] = lambda _: None,
         *,
         sensing: bool = True,
     ) -> None:
@@ -52,9 +52,9 @@ class Show(Observer):
         self.exhibition = BehaviorLoop(project, chosen.robot, self.bus, chosen.clock, chosen.tracking)
         self._sensed: Callable[[Project], Project] = _all if sensing else _quiet
         self.server = None if chosen.remote else Server(self._sensed(project), chosen.robot, self.bus)
-        self.trace = Trace(self.bus, lambda: self.exhibition.project, chosen.clock.now)
+        self.trace = TracePublisher(self.bus, lambda: self.exhibition.project, chosen.clock.now)
         self.using: list[Callable[[Project], None]] = []
-        self.walker: Walker | None = None
+        self.walker: VisitorActor | None = None
         self.faces: FaceDetector | None = None
         self.player: StoryPlayer | None = None
         self.closing: list[Callable[[], None]] = [chosen.robot.close]
@@ -68,7 +68,7 @@ class Show(Observer):
             self.closing.insert(0, self.server.close)
             self.exhibition.parts.append(self._sense)
         if chosen.hall:
-            self.walker = Walker(project, chosen.hall, self.bus)
+            self.walker = VisitorActor(project, chosen.hall, self.bus)
             self.faces = FaceDetector(project, chosen.hall, self.bus)
             self.exhibition.parts += [self.walker.tick, self.faces.tick]
             if story:

@@ -29,7 +29,7 @@ from lumen.language.commands import (
 )
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import MachineDefinition
-from lumen.language.stories import Arrive, Deed, Happen, Leave, Send, Speak, Touch
+from lumen.language.stories import Arrive, Happen, Leave, SendMessage, Speak, TouchSensor, VisitorAction
 from lumen.runtime.loop import Observer
 
 INDENT = 18
@@ -102,20 +102,20 @@ class Transcript(Observer):
             details = ", ".join(f"{k} {v}" for k, v in (event.data or {}).items())
             self.line("robot", f"notices {event.name}" + (f": {details}" if details else ""))
 
-    def deed(self, deed: Deed) -> None:
+    def visitor_action(self, action: VisitorAction) -> None:
         """The visitor does something."""
-        match deed:
+        match action:
             case Arrive():
                 self.line("visitor", "walks up")
             case Leave():
                 self.line("visitor", "walks away")
             case Speak(text):
                 self.line("visitor", f"“{text}”")
-            case Touch(sensor, pressed):
+            case TouchSensor(sensor, pressed):
                 self.line("visitor", f"{'presses' if pressed else 'lets go of'} {sensor}")
             case Happen(name):
                 self.line("story", f"lets `{name}` happen")
-            case Send(route):
+            case SendMessage(route):
                 self.line("story", f"a module sends `{route}`")
 
 

@@ -6,8 +6,8 @@ import threading
 from collections.abc import Callable
 from io import TextIOWrapper
 
-from lumen.language.stories import Deed, Leave, Speak
-from lumen.runtime.visitor import Walker
+from lumen.language.stories import Leave, Speak, VisitorAction
+from lumen.runtime.visitor import VisitorActor
 
 
 class TypedSpeech:
@@ -16,7 +16,7 @@ class TypedSpeech:
     Where there is no terminal and nothing ever comes, nobody types: the visitor stays, and the show goes on.
     """
 
-    def __init__(self, walker: Walker, tell: Callable[[Deed], None]) -> None:
+    def __init__(self, walker: VisitorActor, tell: Callable[[VisitorAction], None]) -> None:
         self._walker, self._tell = walker, tell
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._gone: float | None = None

@@ -12,7 +12,7 @@ from lumen.cli.linting import Asked, Judge
 from lumen.cli.render import render
 from lumen.cli.sweeping import Sweeper, unswept
 from lumen.cli.terminal import coloured, paint
-from lumen.runtime.watcher import Saved, Watcher
+from lumen.runtime.watcher import FileWatcher, SavedFiles
 
 QUIET = 0.01
 """How long files have to be left alone [s]: nothing runs on them, so half a file is a finding for a moment only."""
@@ -22,11 +22,11 @@ _CLEAR = "\x1b[2J\x1b[H"
 
 def watch(projects: Sequence[Asked], judge: Judge, format: str, ended: Callable[[], bool] = lambda: False) -> int:
     """Show what is wrong, and again after every change, until `ended` or Ctrl-C; always 0."""
-    changes: queue.SimpleQueue[tuple[int, Saved]] = queue.SimpleQueue()
+    changes: queue.SimpleQueue[tuple[int, SavedFiles]] = queue.SimpleQueue()
     found = [judge(what) for what in projects]
     with ExitStack() as stack:
         for i, what in enumerate(projects):
-            watcher = Watcher(what.root, found[i].files, _into(changes, i), quiet=QUIET)
+            watcher = FileWatcher(what.root, found[i].files, _into(changes, i), quiet=QUIET)
             stack.callback(watcher.close)
             watcher.start()
         try:
@@ -48,7 +48,7 @@ def watch(projects: Sequence[Asked], judge: Judge, format: str, ended: Callable[
     return 0
 
 
-def _into(changes: "queue.SimpleQueue[tuple[int, Saved]]", project: int) -> Callable[[Saved], None]:
+def _into(changes: "queue.SimpleQueue[tuple[int, SavedFiles]]", project: int) -> Callable[[SavedFiles], None]:
     """What a watcher does with the saved files of a project: hand them to the thread that shows."""
     return lambda saved: changes.put((project, saved))
 

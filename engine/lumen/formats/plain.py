@@ -8,27 +8,27 @@ from lumen.language.actions import (
     Action,
     Assign,
     CancelSend,
+    ComputedValue,
     Expression,
     If,
     LogText,
     Parallel,
+    PlacedAction,
     PublishBody,
     Raise,
     SayText,
     Send,
-    Step,
-    Value,
     Wait,
 )
 from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
 
 
-def plain_block(steps: Iterable[Step]) -> list[dict[str, Any]]:
+def plain_block(steps: Iterable[PlacedAction]) -> list[dict[str, Any]]:
     """A list of actions."""
     return [plain_action(step.action) for step in steps]
 
 
-def plain_value(value: Value) -> Any:
+def plain_value(value: ComputedValue) -> Any:
     """A value: its expressions are texts."""
     match value:
         case Expression(source):
@@ -85,7 +85,7 @@ def plain_action(action: Action) -> dict[str, Any]:
     assert_never(action)
 
 
-def _event(event: str, data: Value) -> Any:
+def _event(event: str, data: ComputedValue) -> Any:
     return event if data is None else {"event": event, "data": plain_value(data)}
 
 

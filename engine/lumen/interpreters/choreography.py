@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from lumen.language.diagnostics import NodePath
-from lumen.language.motions import Cue, Key, Motion
+from lumen.language.motions import Cue, Keyframe, MotionDefinition
 
 _SOON = 1e-9
 """[s] that two keys of a joint have to lie apart."""
@@ -22,7 +22,7 @@ def mirrored_joint(joint: str) -> tuple[str, float]:
     return (_OTHER[match[1]] + joint[1:] if match else joint), sign
 
 
-def mirrored(motion: Motion) -> Motion:
+def mirrored(motion: MotionDefinition) -> MotionDefinition:
     """The motion as a mirror shows it, left and right exchanged; twice is the motion itself."""
     tracks, origin = {}, {}
     for joint, keys in motion.tracks.items():
@@ -34,57 +34,61 @@ def mirrored(motion: Motion) -> Motion:
     return replace(motion, tracks=tracks, origin=origin, cues=cues)
 
 
-def at_speed(motion: Motion, speed: float) -> Motion:
+def at_speed(motion: MotionDefinition, speed: float) -> MotionDefinition:
     """The motion `speed` times as fast; `speed` > 0."""
     tracks = {joint: tuple(_faster(key, speed) for key in keys) for joint, keys in motion.tracks.items()}
     cues = tuple(replace(cue, time=cue.time / speed) for cue in motion.cues)
     return replace(motion, duration=motion.duration / speed, tracks=tracks, cues=cues)
 
 
-def placed(motion: Motion, where: NodePath) -> Motion:
+def placed(motion: MotionDefinition, where: NodePath) -> MotionDefinition:
     """The motion with every key and cue said to stand at `where`: for one that another file plays."""
     tracks = {joint: tuple(replace(key, where=where) for key in keys) for joint, keys in motion.tracks.items()}
     return replace(motion, tracks=tracks, cues=tuple(replace(cue, where=where) for cue in motion.cues))
 
 
-def joined(parts: Iterable[tuple[float, Motion]], duration: float) -> Motion:
+def joined(parts: Iterable[tuple[float, MotionDefinition]], duration: float) -> MotionDefinition:
     """One motion of parts, each with the time [s] that it begins at, in that order and not overlapping."""
-    tracks: dict[str, list[Key]] = {}
+    tracks: dict[str, list[Keyframe]] = {}
     cues: list[Cue] = []
     for begin, part in parts:
         for joint, keys in part.tracks.items():
             tracks.setdefault(joint, []).extend(_later(key, begin) for key in keys)
         cues.extend(replace(cue, time=begin + cue.time) for cue in part.cues)
-    return Motion("", duration, {joint: tuple(keys) for joint, keys in tracks.items()}, tuple(cues))
+    return MotionDefinition("", duration, {joint: tuple(keys) for joint, keys in tracks.items()}, tuple(cues))
 
 
-def returning(part: Motion, angles: Mapping[str, float], pause: float, where: NodePath) -> Motion:
+def returning(part: MotionDefinition, angles: Mapping[str, float], pause: float, where: NodePath) -> MotionDefinition:
     """The motion with a way of `pause` [s] back to `angles` behind it, where it does not stand there already."""
     away = [j for j, keys in part.tracks.items() if j in angles and abs(keys[-1].angle - angles[j]) > 1e-3]
     if not away:
         return part
     last = {joint: part.tracks[joint][-1] for joint in away}
     hold = {joint: (replace(key, time=0.0),) for joint, key in last.items() if key.time < part.duration - _SOON}
-    back = {joint: (Key(pause, angles[joint], where=where),) for joint in away}
+    back = {joint: (Keyframe(pause, angles[joint], where=where),) for joint in away}
     return joined(
-        [(0.0, part), (part.duration, Motion("", 0.0, hold)), (part.duration, Motion("", pause, back))],
+        [
+            (0.0, part),
+            (part.duration, MotionDefinition("", 0.0, hold)),
+            (part.duration, MotionDefinition("", pause, back)),
+        ],
         part.duration + pause,
     )
 
 
-def _later(key: Key, begin: float) -> Key:
+def _later(key: Keyframe, begin: float) -> Keyframe:
     """The key so much later; written out, for a motion has thousands and `replace` takes three times as long."""
     if not begin:
         return key
-    return Key(begin + key.time, key.angle, key.interpolation, key.handle_in, key.handle_out, key.where)
+    return Keyframe(begin + key.time, key.angle, key.interpolation, key.handle_in, key.handle_out, key.where)
 
 
-def _turned(key: Key, sign: float) -> Key:
+def _turned(key: Keyframe, sign: float) -> Keyframe:
     (dt_in, da_in), (dt_out, da_out) = key.handle_in, key.handle_out
     return replace(key, angle=sign * key.angle, handle_in=(dt_in, sign * da_in), handle_out=(dt_out, sign * da_out))
 
 
-def _faster(key: Key, speed: float) -> Key:
+def _faster(key: Keyframe, speed: float) -> Keyframe:
     (dt_in, da_in), (dt_out, da_out) = key.handle_in, key.handle_out
     return replace(key, time=key.time / speed, handle_in=(dt_in / speed, da_in), handle_out=(dt_out / speed, da_out))
 

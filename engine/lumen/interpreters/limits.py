@@ -5,8 +5,8 @@ from itertools import pairwise
 from math import inf
 from typing import NamedTuple
 
-from lumen.interpreters.trajectory import Track, Trajectory
-from lumen.language.motions import Key, Motion
+from lumen.interpreters.trajectory import JointTrack, Trajectory
+from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.robots import Body, CoupledLimit
 
 TOLERANCE = 1e-6
@@ -20,29 +20,29 @@ class Excess(NamedTuple):
     """On the way to `key` the joint would reach `value` where `limit` is the most: [rad], or [rad/s] of a speed."""
 
     joint: str
-    key: Key
+    key: Keyframe
     value: float
     limit: float
 
 
-def beyond_limits(motion: Motion, body: Body, course: Trajectory | None = None) -> list[Excess]:
+def beyond_limits(motion: MotionDefinition, body: Body, trajectory: Trajectory | None = None) -> list[Excess]:
     """Where a joint leaves its limits [rad], coupled ones included: in its keys, or on a Bezier curve between them.
 
-    `course` is `Trajectory(motion)`, for who has it already.
+    `trajectory` is `Trajectory(motion)`, for who has it already.
     """
-    tracks = {track.joint: track for track in (course or Trajectory(motion)).tracks}
+    tracks = {track.joint: track for track in (trajectory or Trajectory(motion)).tracks}
     coupled = (excess for limit in body.coupled for excess in _beyond_coupled(motion, limit, tracks))
     return [*_beyond(motion, body, tracks), *coupled]
 
 
-def overspeed(motion: Motion, body: Body, course: Trajectory | None = None) -> list[Excess]:
+def overspeed(motion: MotionDefinition, body: Body, trajectory: Trajectory | None = None) -> list[Excess]:
     """Where a joint would move faster than it can [rad/s], begun in the motion's start posture.
 
     One for each key that can't be reached in time; without a start posture the way to the first key is not judged.
-    `course` is `Trajectory(motion)`, for who has it already.
+    `trajectory` is `Trajectory(motion)`, for who has it already.
     """
     found = []
-    for track in (course or Trajectory(motion)).tracks:
+    for track in (trajectory or Trajectory(motion)).tracks:
         limit = body.joints[track.joint].speed if track.joint in body.joints else inf
         for key, segment in zip(motion.tracks[track.joint], track.segments, strict=True):
             if (speed := segment.peak_speed()) > limit * (1 + TOLERANCE):
@@ -62,7 +62,7 @@ def coupled_range(limit: CoupledLimit, on: float) -> tuple[float, float]:
     return rows[-1][1:]
 
 
-def _beyond(motion: Motion, body: Body, tracks: Mapping[str, Track]) -> Iterator[Excess]:
+def _beyond(motion: MotionDefinition, body: Body, tracks: Mapping[str, JointTrack]) -> Iterator[Excess]:
     for track in tracks.values():
         if joint := body.joints.get(track.joint):
             for key, segment in zip(motion.tracks[track.joint], track.segments, strict=True):
@@ -73,7 +73,9 @@ def _beyond(motion: Motion, body: Body, tracks: Mapping[str, Track]) -> Iterator
                     yield Excess(track.joint, key, max(high, key.angle), joint.maximum)
 
 
-def _beyond_coupled(motion: Motion, limit: CoupledLimit, tracks: Mapping[str, Track]) -> Iterator[Excess]:
+def _beyond_coupled(
+    motion: MotionDefinition, limit: CoupledLimit, tracks: Mapping[str, JointTrack]
+) -> Iterator[Excess]:
     """Judged at the keys of both joints: moving either may close the range of the other."""
     if limit.on not in motion.tracks or limit.joint not in motion.tracks:
         return

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 
 UPRIGHT = ("Stand", "StandInit", "StandZero", "Crouch")
@@ -20,7 +20,7 @@ def lies(posture: str) -> bool:
     return posture.startswith("Lying")
 
 
-def passage(body: Body, start: str, end: str) -> Motion | None:
+def passage(body: Body, start: str, end: str) -> MotionDefinition | None:
     """The motion from one posture to its neighbour; None for a straight way."""
     return next((p for p in body.passages if (p.start, p.end) == (start, end)), None)
 

@@ -8,14 +8,14 @@ from math import asin, atan2, cos, hypot, sin, tan
 
 from lumen.language.robots import Camera
 
-Vector = tuple[float, float, float]
-Matrix = tuple[Vector, Vector, Vector]
+Vector3 = tuple[float, float, float]
+Matrix3 = tuple[Vector3, Vector3, Vector3]
 
-NECK: Vector = (0.0, 0.0, 0.1265)
+NECK: Vector3 = (0.0, 0.0, 0.1265)
 """NAO's neck, where HeadYaw and HeadPitch meet, in the torso frame [m]."""
 
 
-def project(point: Vector, camera: Camera) -> tuple[float, float] | None:
+def project(point: Vector3, camera: Camera) -> tuple[float, float] | None:
     """The pixel (u, v) of a point in the camera's frame; None behind the camera or outside the image.
 
     The camera's frame keeps the robot's axes: x looks out of the lens, y left, z up.
@@ -25,26 +25,26 @@ def project(point: Vector, camera: Camera) -> tuple[float, float] | None:
     return pixel if inside else None
 
 
-def camera_pose(camera: Camera, yaw: float, pitch: float, neck: Vector = NECK) -> tuple[Vector, Matrix]:
+def camera_pose(camera: Camera, yaw: float, pitch: float, neck: Vector3 = NECK) -> tuple[Vector3, Matrix3]:
     """The camera's place in the torso frame [m], and its rotation: the columns are its x, y, z in that frame."""
     place = _times(_head(yaw, pitch), camera.position)
     return (neck[0] + place[0], neck[1] + place[1], neck[2] + place[2]), _head(yaw, pitch + camera.pitch)
 
 
-def into_camera(point: Vector, camera: Camera, yaw: float, pitch: float, neck: Vector = NECK) -> Vector:
+def into_camera(point: Vector3, camera: Camera, yaw: float, pitch: float, neck: Vector3 = NECK) -> Vector3:
     """A point of the torso frame in the camera's frame, with the head at `yaw`, `pitch`."""
     place, rotation = camera_pose(camera, yaw, pitch, neck)
     offset = (point[0] - place[0], point[1] - place[1], point[2] - place[2])
-    columns: Matrix = tuple(zip(*rotation, strict=True))  # type: ignore[assignment]
+    columns: Matrix3 = tuple(zip(*rotation, strict=True))  # type: ignore[assignment]
     return _times(columns, offset)
 
 
-def seen(point: Vector, camera: Camera, yaw: float, pitch: float, neck: Vector = NECK) -> tuple[float, float] | None:
+def seen(point: Vector3, camera: Camera, yaw: float, pitch: float, neck: Vector3 = NECK) -> tuple[float, float] | None:
     """The pixel of a point of the torso frame, with the head at `yaw`, `pitch`; None where it can't be seen."""
     return project(into_camera(point, camera, yaw, pitch, neck), camera)
 
 
-def centring(point: Vector, camera: Camera, neck: Vector = NECK) -> tuple[float, float]:
+def centring(point: Vector3, camera: Camera, neck: Vector3 = NECK) -> tuple[float, float]:
     """The yaw and pitch that bring a point of the torso frame to the middle of the image, whatever the joints allow.
 
     Exact for a camera in the head's plane of symmetry, as NAO's are; the point must be farther from the neck than it.
@@ -65,11 +65,11 @@ def after_turning(
     y = (1 - 2 * pixel[0] / camera.width) * tan(camera.horizontal_fov / 2)
     z = (1 - 2 * pixel[1] / camera.height) * tan(camera.vertical_fov / 2)
     ray = _times(_head(before[0], before[1] + camera.pitch), (1.0, y, z))
-    columns: Matrix = tuple(zip(*_head(after[0], after[1] + camera.pitch), strict=True))  # type: ignore[assignment]
+    columns: Matrix3 = tuple(zip(*_head(after[0], after[1] + camera.pitch), strict=True))  # type: ignore[assignment]
     return _pixel(_times(columns, ray), camera)
 
 
-def _pixel(point: Vector, camera: Camera) -> tuple[float, float] | None:
+def _pixel(point: Vector3, camera: Camera) -> tuple[float, float] | None:
     """The pixel of a point in the camera's frame, inside the image or not; None behind the camera."""
     x, y, z = point
     if x <= 0:
@@ -79,12 +79,12 @@ def _pixel(point: Vector, camera: Camera) -> tuple[float, float] | None:
     return u, v
 
 
-def _head(yaw: float, pitch: float) -> Matrix:
+def _head(yaw: float, pitch: float) -> Matrix3:
     """Rotation by `yaw` about z, then by `pitch` about the new y; rows."""
     cy, sy, cp, sp = cos(yaw), sin(yaw), cos(pitch), sin(pitch)
     return (cy * cp, -sy, cy * sp), (sy * cp, cy, sy * sp), (-sp, 0.0, cp)
 
 
-def _times(matrix: Matrix, vector: Vector) -> Vector:
+def _times(matrix: Matrix3, vector: Vector3) -> Vector3:
     a, b, c = (row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2] for row in matrix)
     return a, b, c

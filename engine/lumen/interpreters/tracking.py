@@ -13,9 +13,9 @@ from math import inf, isfinite, pi, sin
 from typing import Any
 
 from lumen.errors import LumenError
-from lumen.interpreters.course import Angles, Course
-from lumen.interpreters.glance import Glance
+from lumen.interpreters.joint_history import JointAngles, JointHistory
 from lumen.interpreters.limits import coupled_range
+from lumen.interpreters.visual_servo import VisualServo
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 
@@ -48,15 +48,15 @@ class Tracker:
         self.joints = tuple(dict.fromkeys(b.joint for b in controller.output_bindings if b.joint in body.joints))
         self._body = body
         self._bindings = [b for b in controller.output_bindings if b.joint in body.joints]
-        self._glance = Glance(controller, body)
+        self._servo = VisualServo(controller, body)
         self._inputs: dict[str, float] = {}
-        self._turn: Angles = {}
-        self._poses = Course(2.0 * controller.tracking.stale)
-        self._told = Course(2.0 * controller.tracking.stale)
+        self._turn: JointAngles = {}
+        self._poses = JointHistory(2.0 * controller.tracking.stale)
+        self._told = JointHistory(2.0 * controller.tracking.stale)
         self._seen = -inf
         self._lost_since: float | None = None
-        self._held: Angles = {}
-        self._sag: Angles = {}
+        self._held: JointAngles = {}
+        self._sag: JointAngles = {}
 
     def succeed(self, before: "Tracker") -> None:
         """Go on where another one stood that moved the same joints: with the poses it knew, and what it saw last."""
@@ -80,7 +80,7 @@ class Tracker:
 
     def see(
         self, fields: Mapping[str, Any], captured_at: float, route: str | None = None, *, now: float = inf
-    ) -> Angles | None:
+    ) -> JointAngles | None:
         """Where the joints should go [rad], from the body of a message and when its image was taken.
 
         `route` is the message's, for a controller whose inputs come from several; `now` is when it came in. None where
@@ -94,14 +94,14 @@ class Tracker:
             return None
         pose = self._poses.at(captured)
         try:
-            self._turn = self._glance.turn(self._inputs, pose)
+            self._turn = self._servo.turn(self._inputs, pose)
         except LumenError:
             return None
         target = self.clamped({joint: self._stood(joint, captured) + self._turn[joint] for joint in pose})
         self._seen, self._lost_since, self._held = captured, None, target
         return self._tell(target, now if isfinite(now) else self._poses.last)
 
-    def idle(self, now: float) -> Angles | None:
+    def idle(self, now: float) -> JointAngles | None:
         """Where the joints should go [rad] while nothing is seen: None to stay, then a search, then ahead."""
         times = self.controller.tracking
         if not self._poses:
@@ -127,11 +127,11 @@ class Tracker:
             self._sag[joint] = sag
         return pose + sag
 
-    def _tell(self, target: Angles, now: float) -> Angles:
+    def _tell(self, target: JointAngles, now: float) -> JointAngles:
         self._told.add(now, target)
         return target
 
-    def clamped(self, angles: Mapping[str, float]) -> Angles:
+    def clamped(self, angles: Mapping[str, float]) -> JointAngles:
         """The nearest angles within the bindings', the joints' and the coupled limits [rad]."""
         result = dict(angles)
         for joint, angle in angles.items():

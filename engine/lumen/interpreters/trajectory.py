@@ -10,12 +10,12 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from lumen.interpreters.segments import Bezier, Polynomial, Segment
-from lumen.language.motions import Interpolation, Key, Motion
+from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 
 _SMOOTH = (Interpolation.CUBIC, Interpolation.BEZIER)
 
 
-class Track(NamedTuple):
+class JointTrack(NamedTuple):
     """One joint's way: `segments[i]` leads to the key at `ends[i]` [s]; after the last it stays at `last` [rad]."""
 
     joint: str
@@ -37,7 +37,7 @@ class Trajectory:
     Joints missing in `start` begin in the motion's start posture, or at their first key where it has none.
     """
 
-    def __init__(self, motion: Motion, start: Mapping[str, float] | None = None) -> None:
+    def __init__(self, motion: MotionDefinition, start: Mapping[str, float] | None = None) -> None:
         start = {} if start is None else start
         self.motion, self.duration = motion, motion.duration
         self.tracks = tuple(
@@ -51,23 +51,23 @@ class Trajectory:
         return {track.joint: track.at(t) for track in self.tracks}
 
 
-def sample(motion: Motion, t: float, start: Mapping[str, float] | None = None) -> dict[str, float]:
+def sample(motion: MotionDefinition, t: float, start: Mapping[str, float] | None = None) -> dict[str, float]:
     """One sample of `Trajectory(motion, start)`; who needs many of them keeps the Trajectory."""
     return Trajectory(motion, start).sample(t)
 
 
-def track(joint: str, keys: Sequence[Key], start: float) -> Track:
+def track(joint: str, keys: Sequence[Keyframe], start: float) -> JointTrack:
     """The track through `keys` from the angle `start` [rad] at time 0."""
-    points = [Key(0.0, start, keys[0].interpolation), *keys]
+    points = [Keyframe(0.0, start, keys[0].interpolation), *keys]
     slopes = _slopes(points)
     segments = [
         _segment(a, b, slope_a, slope_b)
         for a, b, slope_a, slope_b in zip(points, points[1:], slopes, slopes[1:], strict=False)
     ]
-    return Track(joint, start, keys[-1].angle, [key.time for key in keys], segments)
+    return JointTrack(joint, start, keys[-1].angle, [key.time for key in keys], segments)
 
 
-def _segment(a: Key, b: Key, slope_a: float, slope_b: float) -> Segment:
+def _segment(a: Keyframe, b: Keyframe, slope_a: float, slope_b: float) -> Segment:
     h, d = b.time - a.time, b.angle - a.angle
     match b.interpolation:
         case Interpolation.LINEAR:
@@ -85,7 +85,7 @@ def _segment(a: Key, b: Key, slope_a: float, slope_b: float) -> Segment:
             return Bezier(a.time, h, dt_out / h, 1 - dt_in / h, *angles)
 
 
-def _hermite(a: Key, h: float, d: float, slope_a: float, slope_b: float) -> Polynomial:
+def _hermite(a: Keyframe, h: float, d: float, slope_a: float, slope_b: float) -> Polynomial:
     m0, m1 = h * slope_a, h * slope_b
     return Polynomial(a.time, h, a.angle, m0, 3 * d - 2 * m0 - m1, m0 + m1 - 2 * d)
 
@@ -98,7 +98,7 @@ def _handle(given: tuple[float, float], h: float, automatic: float) -> tuple[flo
     return (dt, da) if dt <= h else (h, da * h / dt)
 
 
-def _slopes(points: Sequence[Key]) -> list[float]:
+def _slopes(points: Sequence[Keyframe]) -> list[float]:
     """The speed in which a smooth curve passes each key [rad/s]: 0 at an extreme and beside any other kind."""
     slopes = [0.0] * len(points)
     for i in range(1, len(points) - 1):

@@ -28,7 +28,7 @@ class Template:
     where: NodePath = field(default=(), compare=False)
 
 
-Value = Union[Expression, None, bool, int, float, tuple["Value", ...], Mapping[str, "Value"]]  # noqa: UP007
+ComputedValue = Union[Expression, None, bool, int, float, tuple["ComputedValue", ...], Mapping[str, "ComputedValue"]]  # noqa: UP007
 """A value to be computed: every text in the YAML is an expression, everything else stands for itself."""
 
 
@@ -44,14 +44,14 @@ class PublishBody:
     """`publish`: a body on a route."""
 
     route: str
-    body: Value = None
+    body: ComputedValue = None
 
 
 @dataclass(frozen=True, slots=True)
 class Assign:
     """`assign`: context keys and their new values, evaluated and stored in the order written."""
 
-    values: Mapping[str, Value]
+    values: Mapping[str, ComputedValue]
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ class Raise:
     """`raise`: an event for this machine, before any from outside."""
 
     event: str
-    data: Value = None
+    data: ComputedValue = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ class Send:
     """`send`: an event for this machine, after `delay` [s]; `id` lets `cancel` take it back."""
 
     event: str
-    data: Value = None
+    data: ComputedValue = None
     delay: float = 0.0
     id: str = ""
 
@@ -98,15 +98,15 @@ class If:
     """`if`/`then`/`else` around actions."""
 
     guard: Expression
-    then: tuple["Step", ...]
-    otherwise: tuple["Step", ...] = ()
+    then: tuple["PlacedAction", ...]
+    otherwise: tuple["PlacedAction", ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Parallel:
     """`parallel`, in `do` only: all of these at once; it ends with the last of them."""
 
-    branches: tuple["Step", ...]
+    branches: tuple["PlacedAction", ...]
 
 
 Action = (
@@ -116,7 +116,7 @@ Action = (
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class PlacedAction:
     """One action and where it stands."""
 
     action: Action

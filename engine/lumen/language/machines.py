@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any
 
-from lumen.language.actions import Expression, Step, Value
+from lumen.language.actions import ComputedValue, Expression, PlacedAction
 from lumen.language.diagnostics import NodePath
 
 
@@ -36,7 +36,7 @@ class Transition:
     event: str = ""
     targets: tuple[str, ...] = ()
     guard: Expression | None = None
-    actions: tuple[Step, ...] = ()
+    actions: tuple[PlacedAction, ...] = ()
     reenter: bool = False
     delay: float | None = None
     exact: bool = False
@@ -49,7 +49,7 @@ class Invoke:
 
     id: str
     behavior: str
-    input: Mapping[str, Value] = field(default_factory=dict)
+    input: Mapping[str, ComputedValue] = field(default_factory=dict)
     where: NodePath = field(default=(), compare=False)
 
 
@@ -69,12 +69,12 @@ class State:
     children: tuple[str, ...] = ()
     initial: tuple[str, ...] = ()
     deep: bool = False
-    entry: tuple[Step, ...] = ()
-    do: tuple[Step, ...] = ()
-    exit: tuple[Step, ...] = ()
+    entry: tuple[PlacedAction, ...] = ()
+    do: tuple[PlacedAction, ...] = ()
+    exit: tuple[PlacedAction, ...] = ()
     transitions: tuple[Transition, ...] = ()
     invoke: tuple[Invoke, ...] = ()
-    output: Value = None
+    output: ComputedValue = None
     on_reload: str = ""
     where: NodePath = field(default=(), compare=False)
 

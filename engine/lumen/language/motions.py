@@ -17,7 +17,7 @@ class Interpolation(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Key:
+class Keyframe:
     """At `time` [s] the joint stands at `angle` [rad; a hand 0..1], come to by `interpolation`.
 
     Handles are (dt [s], da [rad]) for Bezier, `handle_in` with dt < 0, `handle_out` with dt > 0, as in NAOqi's
@@ -43,7 +43,7 @@ class Cue:
 
 
 @dataclass(frozen=True)
-class Motion:
+class MotionDefinition:
     """A gesture: for every joint that it moves its keys in time, and the cues beside them.
 
     `duration` [s]. `start` is the posture that it begins in, `end` the one that it returns to; each is empty where the
@@ -53,7 +53,7 @@ class Motion:
 
     name: str
     duration: float
-    tracks: Mapping[str, tuple[Key, ...]]
+    tracks: Mapping[str, tuple[Keyframe, ...]]
     cues: tuple[Cue, ...] = ()
     start: str = ""
     end: str = ""

@@ -7,7 +7,7 @@ from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import ModuleSettings
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.language.routes import Route
 from lumen.language.stories import Story
@@ -41,7 +41,7 @@ class Project:
     behavior: str
     behaviors: Mapping[str, MachineDefinition]
     controllers: Mapping[str, ControllerDefinition] = field(default_factory=dict)
-    motions: Mapping[str, Motion] = field(default_factory=dict)
+    motions: Mapping[str, MotionDefinition] = field(default_factory=dict)
     routes: Mapping[str, Route] = field(default_factory=dict)
     stories: Mapping[str, Story] = field(default_factory=dict)
     messages: Mapping[str, Mapping[str, object]] = field(default_factory=dict)

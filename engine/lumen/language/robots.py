@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf
 
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class Ultrasound:
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class LinkInertia:
     """A link's mass [kg], centre of mass [m], inertia about it (xx yy zz xy xz yz) [kg m^2], in its joint's axes."""
 
     mass: float
@@ -78,5 +78,5 @@ class Body:
     shared: Mapping[str, str] = field(default_factory=dict)
     hands: tuple[str, ...] = ()
     sonar: Ultrasound | None = None
-    passages: tuple[Motion, ...] = ()
-    links: Mapping[str, Link] = field(default_factory=dict)
+    passages: tuple[MotionDefinition, ...] = ()
+    links: Mapping[str, LinkInertia] = field(default_factory=dict)

@@ -37,7 +37,7 @@ class Speak:
 
 
 @dataclass(frozen=True, slots=True)
-class Touch:
+class TouchSensor:
     """`touch: SENSOR` or `release: SENSOR`."""
 
     sensor: str
@@ -53,7 +53,7 @@ class Happen:
 
 
 @dataclass(frozen=True, slots=True)
-class Send:
+class SendMessage:
     """`message: {route, body}`: a message as a module would send it."""
 
     route: str
@@ -61,7 +61,7 @@ class Send:
 
 
 @dataclass(frozen=True, slots=True)
-class Pause:
+class StoryPause:
     """`wait: DURATION` [s]."""
 
     seconds: float
@@ -86,14 +86,14 @@ class Expect:
     within: float = 30.0
 
 
-Deed = Arrive | Leave | Speak | Touch | Happen | Send | Pause | Expect
+VisitorAction = Arrive | Leave | Speak | TouchSensor | Happen | SendMessage | StoryPause | Expect
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class StoryStep:
     """One step of a story and where it stands."""
 
-    deed: Deed
+    action: VisitorAction
     where: NodePath = field(default=(), compare=False)
 
 
@@ -107,7 +107,7 @@ class Story:
 
     name: str
     title: str
-    scenes: tuple[Scene, ...]
+    steps: tuple[StoryStep, ...]
     behavior: str = ""
     language: str = ""
     clock: str = ""

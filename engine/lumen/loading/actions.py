@@ -10,11 +10,11 @@ from lumen.language.actions import (
     If,
     LogText,
     Parallel,
+    PlacedAction,
     PublishBody,
     Raise,
     SayText,
     Send,
-    Step,
     Template,
     Wait,
 )
@@ -36,13 +36,13 @@ class Actions:
         self.angle = ANGLES.get(units.get("angle", "rad"), 1.0)
         self.length = LENGTHS.get(units.get("length", "m"), 1.0)
 
-    def block(self, data: Any, where: NodePath, *, do: bool = False) -> tuple[Step, ...]:
+    def block(self, data: Any, where: NodePath, *, do: bool = False) -> tuple[PlacedAction, ...]:
         """A single action or a list of them; `do` allows `wait` and `parallel`. Broken ones are left out."""
         if isinstance(data, Mapping):
             action = self.action(data, where, do=do)
-            return (Step(action, where),) if action else ()
+            return (PlacedAction(action, where),) if action else ()
         rows = [((*where, i), item) for i, item in enumerate(data or ())]
-        return tuple(Step(a, place) for place, item in rows if (a := self.action(item, place, do=do)))
+        return tuple(PlacedAction(a, place) for place, item in rows if (a := self.action(item, place, do=do)))
 
     def action(self, data: Mapping[str, Any], where: NodePath, *, do: bool = False) -> Action | None:
         """One action, None (and reported) where it can't be read."""

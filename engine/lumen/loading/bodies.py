@@ -7,7 +7,7 @@ from math import inf, isfinite
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.language.robots import Body, Camera, CoupledLimit, Joint, Link, Ultrasound
+from lumen.language.robots import Body, Camera, CoupledLimit, Joint, LinkInertia, Ultrasound
 from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, LENGTHS
 
@@ -86,8 +86,8 @@ class _Builder:
             links={**other.links, **{n: self.link(spec) for n, spec in (data.get("links") or {}).items()}},
         )
 
-    def link(self, spec: Mapping[str, Any]) -> Link:
-        return Link(spec["mass"], tuple(c * self.length for c in spec["centre"]), tuple(spec["inertia"]))
+    def link(self, spec: Mapping[str, Any]) -> LinkInertia:
+        return LinkInertia(spec["mass"], tuple(c * self.length for c in spec["centre"]), tuple(spec["inertia"]))
 
     def unit(self, name: str) -> float:
         """What one of the file's units of this joint is in [rad]; the opening of a hand stays as it is."""

@@ -8,7 +8,7 @@ from typing import Any
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Diagnostic, Place, Severity, gathered
 from lumen.language.machines import MachineDefinition
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.language.stories import Story
 from lumen.loading.packaged import MAIN_FILE
@@ -31,7 +31,7 @@ class ProjectDraft:
     bodies: dict[str, Body] = field(default_factory=dict)
     behaviors: dict[str, MachineDefinition] = field(default_factory=dict)
     controllers: dict[str, ControllerDefinition] = field(default_factory=dict)
-    motions: dict[str, Motion] = field(default_factory=dict)
+    motions: dict[str, MotionDefinition] = field(default_factory=dict)
     stories: dict[str, Story] = field(default_factory=dict)
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     names: dict[str, frozenset[str]] = field(default_factory=dict)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from lumen.interpreters.expressions import Finding, check_expression, check_template
-from lumen.language.actions import Expression, Template, Value
+from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, did_you_mean
 from lumen.loading.numbers import finite
 from lumen.loading.scalars import within
@@ -36,7 +36,7 @@ class Expressions:
         """The text with its `{{ expressions }}`, None (and reported) where one can't be read."""
         return Template(text, where) if self._sound(check_template(text, **self.names), text, where) else None
 
-    def value(self, data: Any, where: NodePath) -> Value:
+    def value(self, data: Any, where: NodePath) -> ComputedValue:
         """Every text an expression, lists and maps read through; None in place of what can't be read.
 
         A number is finite: it goes into messages and snapshots, and JSON has no other.

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.interpreters.choreography import at_speed, joined, mirrored, placed
 from lumen.language.diagnostics import NodePath, did_you_mean, has_errors
-from lumen.language.motions import Cue, Interpolation, Key, Motion
+from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.loading.poses import PoseReader
 from lumen.loading.source import DocumentReport
 from lumen.loading.units import seconds
@@ -29,12 +29,12 @@ class KeyframeReader:
     name: str
     poses: PoseReader
     beat: float | None
-    motions: Mapping[str, Motion]
+    motions: Mapping[str, MotionDefinition]
     broken: Collection[str] = ()
 
-    def read(self, items: list[Any], path: NodePath, interpolation: Interpolation) -> Motion:
+    def read(self, items: list[Any], path: NodePath, interpolation: Interpolation) -> MotionDefinition:
         """The motion that a list of keyframes and blocks makes, its times from the list's own beginning."""
-        parts: list[tuple[float, Motion]] = []
+        parts: list[tuple[float, MotionDefinition]] = []
         now, moved, count = 0.0, 0.0, 0
         for i, item in enumerate(items):
             here = (*path, i)
@@ -59,12 +59,12 @@ class KeyframeReader:
             moved = now if part.tracks else moved
         return joined(parts, now)
 
-    def _keyframe(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> Motion:
+    def _keyframe(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> MotionDefinition:
         """One keyframe at time 0."""
         how = Interpolation(item.get("interpolation", interpolation))
         handles = self.poses.handles(item, here)
         tracks = {
-            joint: (Key(0.0, angle, how, *handles.get(joint, ((0.0, 0.0), (0.0, 0.0))), where),)
+            joint: (Keyframe(0.0, angle, how, *handles.get(joint, ((0.0, 0.0), (0.0, 0.0))), where),)
             for joint, (angle, where) in self.poses.read(item, here).items()
         }
         for joint in handles.keys() - tracks.keys():
@@ -77,10 +77,10 @@ class KeyframeReader:
                 hint = "put the keyframes that it is for into a block: `keyframes:` beside it"
                 self.report("mixed-keyframe", (*here, word), f"`{word}` is for blocks", hint=hint, key=True)
         cues = tuple(Cue(0.0, kind, item[kind], (*here, kind)) for kind in _CUES if kind in item)
-        part = Motion("", 0.0, tracks, cues)
+        part = MotionDefinition("", 0.0, tracks, cues)
         return mirrored(part) if item.get("mirror") is True else part
 
-    def _block(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> Motion:
+    def _block(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> MotionDefinition:
         """A block or another motion, as often, as fast and on the side that the item says."""
         for word in (
             "joints",
@@ -104,7 +104,7 @@ class KeyframeReader:
             part = at_speed(part, item["speed"])
         return self._repeated(part, item.get("repeat", 1), item.get("mirror", False), here)
 
-    def _played(self, name: str, here: NodePath) -> Motion:
+    def _played(self, name: str, here: NodePath) -> MotionDefinition:
         path = (*here, "play")
         if name in self.motions:
             return placed(self.motions[name], path)
@@ -113,9 +113,9 @@ class KeyframeReader:
         elif name not in self.broken:
             hint = did_you_mean(name, {*self.motions, *self.broken}, "motions/ has")
             self.report("unknown-motion", path, f"there is no motion `{name}`", hint=hint)
-        return Motion(name, 0.0, {})
+        return MotionDefinition(name, 0.0, {})
 
-    def _repeated(self, part: Motion, times: int, mirror: bool | str, here: NodePath) -> Motion:
+    def _repeated(self, part: MotionDefinition, times: int, mirror: bool | str, here: NodePath) -> MotionDefinition:
         if times > 1 and part.duration <= 0.0:
             if has_errors(self.report.diagnostics):
                 return part  # what would take its time is broken
@@ -170,5 +170,5 @@ class KeyframeReader:
         self.report("too-many-keys", here, f"the motion would have more than {MAX_KEYS:,} keys", hint=hint)
 
 
-def _size(part: Motion) -> int:
+def _size(part: MotionDefinition) -> int:
     return sum(len(keys) for keys in part.tracks.values()) + len(part.cues)

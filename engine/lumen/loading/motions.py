@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from lumen.interpreters.choreography import at_speed, mirrored, returning
 from lumen.language.diagnostics import NodePath, has_errors
-from lumen.language.motions import Interpolation, Motion
+from lumen.language.motions import Interpolation, MotionDefinition
 from lumen.language.robots import Body
 from lumen.loading.keyframes import KeyframeReader
 from lumen.loading.poses import PoseReader
@@ -22,7 +22,7 @@ STANDING = "Stand"
 MAX_KEYFRAMES = 20_000
 """In one list; the schema says so too, but reads every one of them before it does."""
 
-M = TypeVar("M", bound=Motion)
+M = TypeVar("M", bound=MotionDefinition)
 
 
 def build_motion(
@@ -31,9 +31,9 @@ def build_motion(
     *,
     name: str,
     body: Body,
-    motions: Mapping[str, Motion] | None = None,
+    motions: Mapping[str, MotionDefinition] | None = None,
     broken: Collection[str] = (),
-    into: type[M] = Motion,  # type: ignore[assignment]
+    into: type[M] = MotionDefinition,  # type: ignore[assignment]
 ) -> M | None:
     """The motion that the data of `motions/NAME.yaml` describes, None where it moves nothing.
 
@@ -63,7 +63,7 @@ def build_motions(
     files: Mapping[str, tuple[Any, DocumentReport]],
     body: Body,
     *,
-    into: type[M] = Motion,  # type: ignore[assignment]
+    into: type[M] = MotionDefinition,  # type: ignore[assignment]
 ) -> dict[str, M]:
     """Every motion of a project that can be built, from the data and the report of each by its name.
 
@@ -96,7 +96,7 @@ def countable(data: Any, report: DocumentReport) -> bool:
     return False
 
 
-def _finished(part: Motion, data: Mapping[str, Any], poses: PoseReader, name: str, into: type[M]) -> M:
+def _finished(part: MotionDefinition, data: Mapping[str, Any], poses: PoseReader, name: str, into: type[M]) -> M:
     """The whole motion: its speed, its side, the way back and where it comes from."""
     if "speed" in data and poses.number(data["speed"], ("speed",)):
         part = at_speed(part, data["speed"])
@@ -106,7 +106,7 @@ def _finished(part: Motion, data: Mapping[str, Any], poses: PoseReader, name: st
     origin = (poses.posture(start, ("start",)) if start else None) or {}
     home = origin if end == start else (poses.posture(end, ("end",)) if end else None) or {}
     part = returning(part, home, seconds(data.get("return")) or 1.0, ("end",) if "end" in data else ("keyframes",))
-    values = {f.name: getattr(part, f.name) for f in fields(Motion)}
+    values = {f.name: getattr(part, f.name) for f in fields(MotionDefinition)}
     values |= {"name": name, "start": start or "", "end": end or ""}
     values["origin"] = {joint: origin[joint] for joint in part.tracks if joint in origin}
     return into(**values)

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from lumen.language.diagnostics import Severity, has_errors
 from lumen.language.machines import MachineDefinition
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
@@ -130,7 +130,7 @@ def _machine(data: Any, report: DocumentReport, *, name: str) -> MachineDefiniti
     return build_machine(data, report, name=name, into=MachineDefinition)
 
 
-def _motions(found: ProjectDraft, folder: str) -> dict[str, Motion]:
+def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
     """The motions of a folder, which can be read only where the robot's body is known."""
     files: Mapping[str, BuiltFile[None]] = _each(found, folder, lambda data, report, name: None)
     only = next(iter(found.bodies)) if found.settings is None and len(found.bodies) == 1 else ""

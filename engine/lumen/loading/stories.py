@@ -7,17 +7,17 @@ from typing import Any, TypeVar
 from lumen.language.diagnostics import NodePath
 from lumen.language.stories import (
     Arrive,
-    Deed,
     Expect,
     Happen,
     Leave,
-    Pause,
-    Scene,
-    Send,
+    SendMessage,
     Speak,
     Story,
-    Touch,
+    StoryPause,
+    StoryStep,
+    TouchSensor,
     Visitor,
+    VisitorAction,
 )
 from lumen.loading.routes import duration
 from lumen.loading.source import DocumentReport
@@ -37,7 +37,7 @@ def build_story(data: Any, report: DocumentReport, *, name: str, into: type[S] =
     return into(
         name=name,
         title=data.get("title", name),
-        scenes=tuple(Scene(deed, where) for where, row in rows if (deed := _deed(row, report, where))),
+        steps=tuple(StoryStep(action, where) for where, row in rows if (action := _action(row, report, where))),
         behavior=data.get("behavior", ""),
         language=data.get("language", ""),
         clock=data.get("at", ""),
@@ -58,7 +58,7 @@ def _performance(how: str, report: DocumentReport, where: NodePath) -> str | flo
     return length
 
 
-def _deed(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> Deed | None:
+def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> VisitorAction | None:
     [(verb, body)] = row.items()
     match verb:
         case "visitor":
@@ -66,20 +66,20 @@ def _deed(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> De
         case "says":
             return Speak(body) if isinstance(body, str) else Speak(body["text"], body.get("language", ""))
         case "touch" | "release":
-            return Touch(body, verb == "touch")
+            return TouchSensor(body, verb == "touch")
         case "event":
             return Happen(body) if isinstance(body, str) else Happen(body["name"], body.get("data"))
         case "message":
-            return Send(body["route"], body.get("body"))
+            return SendMessage(body["route"], body.get("body"))
         case "wait":
             length = duration(row, "wait", report, where)
-            return None if length is None else Pause(length)
+            return None if length is None else StoryPause(length)
         case "expect":
             return _expect(body, report, (*where, verb))
     return None
 
 
-def _visitor(body: Any, report: DocumentReport, where: NodePath) -> Deed | None:
+def _visitor(body: Any, report: DocumentReport, where: NodePath) -> VisitorAction | None:
     if isinstance(body, str):
         return Arrive(Visitor()) if body == "arrives" else Leave()
     for key, value in body.items():

@@ -10,7 +10,7 @@ from typing import Any
 from lumen.errors import BusError, ModuleError
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
-from lumen.ports import Bus, Handler, Message
+from lumen.ports import Bus, Message, MessageHandler
 
 KEYS: Mapping[str, str] = {
     "image": "avatar.{robot}.data.image",
@@ -69,7 +69,7 @@ class Module:
         self._undo: list[Callable[[], None]] = []
         self._thread = threading.Thread(target=self._run, name=f"lumen-{self.name}", daemon=True)
 
-    def hears(self) -> Mapping[str, Handler]:
+    def hears(self) -> Mapping[str, MessageHandler]:
         """The routes that it listens on, and what it does with a message of each."""
         raise NotImplementedError
 

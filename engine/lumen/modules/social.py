@@ -10,7 +10,7 @@ from lumen.errors import ModuleError
 from lumen.language.modules import SOCIAL
 from lumen.language.projects import Project
 from lumen.modules.module import Module
-from lumen.ports import Bus, Handler, Message
+from lumen.ports import Bus, Message, MessageHandler
 
 FILE = "posts.jsonl"
 BYTES = 10_000_000
@@ -29,7 +29,7 @@ class Social(Module):
         super().__init__(project, bus, tell)
         self._file = file
 
-    def hears(self) -> Mapping[str, Handler]:
+    def hears(self) -> Mapping[str, MessageHandler]:
         return {"social_expression": self._post}
 
     def _post(self, message: Message) -> None:

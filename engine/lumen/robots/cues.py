@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from lumen.language.events import CUE, Event
-from lumen.language.motions import Cue, Motion
+from lumen.language.motions import Cue, MotionDefinition
 
 TOLD = ("say", "sound")
 """Kinds of cues that a robot tells of; the others it gives itself."""
@@ -11,7 +11,7 @@ TOLD = ("say", "sound")
 Notice = Callable[[Event], None]
 
 
-def told(motion: Motion, cue: Cue, now: float) -> Event:
+def told(motion: MotionDefinition, cue: Cue, now: float) -> Event:
     """The event that a cue of that motion is due."""
     return Event(CUE, {"motion": motion.name, "kind": cue.kind, "value": cue.value}, now)
 
@@ -19,7 +19,7 @@ def told(motion: Motion, cue: Cue, now: float) -> Event:
 class Prompter:
     """Tells of a motion's cues to `notice`, each when it comes."""
 
-    def __init__(self, motion: Motion, notice: Notice) -> None:
+    def __init__(self, motion: MotionDefinition, notice: Notice) -> None:
         self._motion, self._notice = motion, notice
         self._left = sorted((cue for cue in motion.cues if cue.kind in TOLD), key=lambda cue: cue.time, reverse=True)
 

@@ -163,10 +163,10 @@ class _Order:
 
     def move_toward(self) -> Move:
         """NAOqi has the speeds as fractions of the greatest."""
-        from lumen.interpreters.gait import Pace, fastest  # with numpy: only where somebody walks like this
+        from lumen.interpreters.gait import GaitParameters, fastest  # with numpy: only where somebody walks like this
 
         given = self.number("x", 0.0), self.number("y", 0.0), self.turn()
-        parts = [min(max(part, -1.0), 1.0) * most for part, most in zip(given, fastest(Pace()), strict=True)]
+        parts = [min(max(part, -1.0), 1.0) * most for part, most in zip(given, fastest(GaitParameters()), strict=True)]
         return Move(*parts)
 
     def stop(self) -> Stop:

@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.errors import RobotError
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.motions import Cue, Interpolation, Key, Motion
+from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
 
 LONGEST = 600.0
@@ -18,7 +18,7 @@ SLACK = 1e-6
 """By how much an angle may lie beyond its joint's limit, for what decimals lose [rad]."""
 
 
-def data_of(motion: Motion) -> dict[str, Any]:
+def data_of(motion: MotionDefinition) -> dict[str, Any]:
     """The motion as JSON data: keys are `[time, angle, interpolation, *handle_in, *handle_out]`, [s] and [rad]."""
     tracks = {joint: [_row(key) for key in keys] for joint, keys in motion.tracks.items()}
     cues = [[cue.time, cue.kind, cue.value] for cue in motion.cues]
@@ -26,7 +26,7 @@ def data_of(motion: Motion) -> dict[str, Any]:
     return {"name": motion.name, "duration": motion.duration, "tracks": tracks, "cues": cues, **ends}
 
 
-def motion_from(data: Any, body: Body) -> Motion:
+def motion_from(data: Any, body: Body) -> MotionDefinition:
     """The motion that the data is, for this body.
 
     Raises RobotError for what is no motion, for joints and postures that the body lacks, and for angles beyond limits.
@@ -46,7 +46,7 @@ def motion_from(data: Any, body: Body) -> Motion:
     origin = data.get("origin", {})
     if not isinstance(origin, Mapping):
         raise RobotError(f"the `origin` of `{name}` has to be angles by joint")
-    return Motion(
+    return MotionDefinition(
         name,
         duration,
         {_joint(joint, body): _track(joint, keys, body) for joint, keys in tracks.items()},
@@ -57,11 +57,11 @@ def motion_from(data: Any, body: Body) -> Motion:
     )
 
 
-def _row(key: Key) -> list[Any]:
+def _row(key: Keyframe) -> list[Any]:
     return [key.time, key.angle, str(key.interpolation), *key.handle_in, *key.handle_out]
 
 
-def _track(joint: str, keys: Any, body: Body) -> tuple[Key, ...]:
+def _track(joint: str, keys: Any, body: Body) -> tuple[Keyframe, ...]:
     """The keys of a joint; their times have to increase, from above 0 on."""
     found = tuple(_key(joint, row, body) for row in keys) if isinstance(keys, list) else ()
     times = [0.0, *(key.time for key in found)]
@@ -70,7 +70,7 @@ def _track(joint: str, keys: Any, body: Body) -> tuple[Key, ...]:
     return found
 
 
-def _key(joint: str, row: Any, body: Body) -> Key:
+def _key(joint: str, row: Any, body: Body) -> Keyframe:
     if not isinstance(row, list) or not 2 <= len(row) <= 7 or len(row) in (4, 6):
         raise RobotError(f"a key of `{joint}` is a list of its time, angle, interpolation and handles")
     time, angle = _number(row[0], f"a time of `{joint}`"), _angle(joint, row[1], body)
@@ -80,7 +80,7 @@ def _key(joint: str, row: Any, body: Body) -> Key:
         )
     kind = Interpolation(row[2]) if len(row) > 2 else Interpolation.MINIMUM_JERK
     handles = [_number(value, f"a handle of `{joint}`") for value in row[3:]] + [0.0] * (7 - max(len(row), 3))
-    return Key(time, angle, kind, (handles[0], handles[1]), (handles[2], handles[3]))
+    return Keyframe(time, angle, kind, (handles[0], handles[1]), (handles[2], handles[3]))
 
 
 def _cue(cue: Any, name: str) -> Cue:

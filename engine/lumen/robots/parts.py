@@ -3,7 +3,7 @@
 from typing import assert_never
 
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.executor import ARMS, EARS, HEAD, LEDS, LEGS, VOICE
@@ -37,7 +37,7 @@ def part_of(body: Body) -> dict[str, str]:
     return {joint: part for part, joints in body.parts.items() for joint in joints}
 
 
-def _of_motion(motion: Motion, body: Body) -> frozenset[str]:
+def _of_motion(motion: MotionDefinition, body: Body) -> frozenset[str]:
     """What its keys move, arms and legs for the posture that it begins in, and the lights where it sets some."""
     belongs = part_of(body)
     moved = {belongs[joint] for joint in motion.tracks if joint in belongs}

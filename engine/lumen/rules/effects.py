@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lumen.language.machines import MachineDefinition
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
@@ -26,7 +26,7 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
             find(report, "no-effect", (*state.where, "onReload"), message, hint, key=True)
 
 
-def _sounds(motion: Motion, report: DocumentReport, root: Path) -> None:
+def _sounds(motion: MotionDefinition, report: DocumentReport, root: Path) -> None:
     """Sound files that are not in the project's folder."""
     for cue in motion.cues:
         if cue.kind == "sound" and cue.where[-1:] == ("sound",) and not _there(root, str(cue.value)):

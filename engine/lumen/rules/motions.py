@@ -8,7 +8,7 @@ from math import ceil
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.diagnostics import NodePath
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.recollection import memoize
@@ -38,7 +38,7 @@ def check(draft: ProjectDraft) -> None:
             _too_far(report, excess, unit, draft.body)
 
 
-def _excesses(motion: Motion, body: Body) -> tuple[tuple[Excess, ...], tuple[Excess, ...]]:
+def _excesses(motion: MotionDefinition, body: Body) -> tuple[tuple[Excess, ...], tuple[Excess, ...]]:
     """Where a joint is too fast, and where it goes too far."""
     course = Trajectory(motion)
     return tuple(overspeed(motion, body, course)), tuple(beyond_limits(motion, body, course))

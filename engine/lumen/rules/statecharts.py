@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from lumen.language.actions import Assign, Step
+from lumen.language.actions import Assign, PlacedAction
 from lumen.language.diagnostics import MAX_COMPARED_NAMES, nearest
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.loading.draft import ProjectDraft
@@ -151,5 +151,5 @@ def _settled(machine: MachineDefinition, transition: Transition) -> str:
     return target.path if target.kind is StateKind.ATOMIC else ""
 
 
-def _assigns(block: tuple[Step, ...]) -> bool:
+def _assigns(block: tuple[PlacedAction, ...]) -> bool:
     return any(isinstance(step.action, Assign) for step in nested(block))

@@ -8,7 +8,7 @@ from lumen.interpreters.statechart.inside import ID_SEPARATOR, meant
 from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
-from lumen.language.stories import Expect, Happen, Send, Story, Touch
+from lumen.language.stories import Expect, Happen, SendMessage, Story, TouchSensor
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.schema import faults
 from lumen.loading.source import DocumentReport
@@ -40,18 +40,18 @@ class _Script:
             self.state(("never", i), state)
         for key, value in self.story.context.items():
             self.key(("context", key), key, value)
-        for scene in self.story.scenes:
-            match scene.deed:
-                case Touch(sensor, pressed):
-                    self.sensor((*scene.where, "touch" if pressed else "release"), sensor)
+        for step in self.story.steps:
+            match step.action:
+                case TouchSensor(sensor, pressed):
+                    self.sensor((*step.where, "touch" if pressed else "release"), sensor)
                 case Happen(name, data):
-                    self.event(first(self.report, (*scene.where, "event", "name"), (*scene.where, "event")), name)
-                    if (*scene.where, "event", "data") not in self.report.pruned:
-                        self.fits((*scene.where, "event", "data"), {} if data is None else data, self.events.get(name))
-                case Send(route, body):
-                    self.message((*scene.where, "message"), route, body)
+                    self.event(first(self.report, (*step.where, "event", "name"), (*step.where, "event")), name)
+                    if (*step.where, "event", "data") not in self.report.pruned:
+                        self.fits((*step.where, "event", "data"), {} if data is None else data, self.events.get(name))
+                case SendMessage(route, body):
+                    self.message((*step.where, "message"), route, body)
                 case Expect() as expected:
-                    self.expect((*scene.where, "expect"), expected)
+                    self.expect((*step.where, "expect"), expected)
 
     def expect(self, where: NodePath, expected: Expect) -> None:
         for i, state in enumerate(expected.states):

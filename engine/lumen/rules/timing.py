@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 from math import hypot
 
 from lumen.interpreters.expressions import split_template
-from lumen.language.actions import If, Parallel, SayText, Step, Wait
+from lumen.language.actions import If, Parallel, PlacedAction, SayText, Wait
 from lumen.language.commands import Play, Posture, Walk
 from lumen.language.machines import MachineDefinition, State
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
@@ -24,7 +24,9 @@ def check(draft: ProjectDraft) -> None:
                 _cut(machine, state, draft.report("behaviors", name), draft.motions)
 
 
-def _cut(machine: MachineDefinition, state: State, report: DocumentReport, motions: Mapping[str, Motion]) -> None:
+def _cut(
+    machine: MachineDefinition, state: State, report: DocumentReport, motions: Mapping[str, MotionDefinition]
+) -> None:
     length = duration(state.do, motions)
     for transition in state.transitions:
         delay = transition.delay
@@ -39,7 +41,7 @@ def _cut(machine: MachineDefinition, state: State, report: DocumentReport, motio
         find(report, "cut-short", key, message, hint, key=True, related=[(first, "this takes longer")])
 
 
-def duration(block: Iterable[Step], motions: Mapping[str, Motion]) -> float:
+def duration(block: Iterable[PlacedAction], motions: Mapping[str, MotionDefinition]) -> float:
     """How long these actions take one after another [s], at the most for alternatives of a text; never too much.
 
     What is not known (an expression's text, a walk's turn) counts as nothing.
@@ -47,7 +49,7 @@ def duration(block: Iterable[Step], motions: Mapping[str, Motion]) -> float:
     return sum(_one(step, motions) for step in block)
 
 
-def _one(step: Step, motions: Mapping[str, Motion]) -> float:
+def _one(step: PlacedAction, motions: Mapping[str, MotionDefinition]) -> float:
     match step.action:
         case SayText(texts):
             return SAY + CHARACTER * max(_length(text.text) for said in texts.values() for text in said)

@@ -75,9 +75,9 @@ def _expected(draft: ProjectDraft, name: str) -> set[str]:
     return {
         key
         for story in stories
-        for scene in story.scenes
-        if isinstance(scene.deed, Expect)
-        for key in scene.deed.context
+        for step in story.steps
+        if isinstance(step.action, Expect)
+        for key in step.action.context
     }
 
 
@@ -85,7 +85,9 @@ def _files(draft: ProjectDraft) -> None:
     """Files that nothing names."""
     assert draft.settings is not None
     actions = [site.step.action for machine in draft.behaviors.values() for site in sites(machine)]
-    expected = {s.deed.played for story in draft.stories.values() for s in story.scenes if isinstance(s.deed, Expect)}
+    expected = {
+        s.action.played for story in draft.stories.values() for s in story.steps if isinstance(s.action, Expect)
+    }
     motions = {action.motion for action in actions if isinstance(action, Play)} | expected
     for name in draft.motions:
         motions |= _played(draft.report("motions", name).document.data)

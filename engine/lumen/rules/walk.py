@@ -6,17 +6,17 @@ from typing import Any, NamedTuple
 from lumen.interpreters.expressions import schema_of
 from lumen.language.actions import (
     Assign,
+    ComputedValue,
     Expression,
     If,
     LogText,
     Parallel,
+    PlacedAction,
     PublishBody,
     Raise,
     SayText,
     Send,
-    Step,
     Template,
-    Value,
 )
 from lumen.language.machines import Invoke, MachineDefinition, State, Transition
 
@@ -26,7 +26,7 @@ class Site(NamedTuple):
 
     state: State
     transition: Transition | None
-    step: Step
+    step: PlacedAction
 
 
 class Spot(NamedTuple):
@@ -72,7 +72,7 @@ def _input(invoke: Invoke, machine: MachineDefinition | None) -> Iterator[Spot]:
             yield from (Spot(text, None) for text in _values(value))
 
 
-def nested(block: tuple[Step, ...]) -> Iterator[Step]:
+def nested(block: tuple[PlacedAction, ...]) -> Iterator[PlacedAction]:
     """The actions of a block, those inside `if` and `parallel` too."""
     for step in block:
         yield step
@@ -103,7 +103,7 @@ def _spots(site: Site) -> Iterator[Spot]:
             yield from (Spot(text, transition) for text in _values(value))
 
 
-def _values(value: Value) -> Iterator[Expression]:
+def _values(value: ComputedValue) -> Iterator[Expression]:
     if isinstance(value, Expression):
         yield value
     elif isinstance(value, Mapping):

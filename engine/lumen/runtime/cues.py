@@ -11,7 +11,7 @@ from lumen.language.projects import Project
 _log = logging.getLogger(__name__)
 
 
-class Cues:
+class MotionCues:
     """Answers what a robot tells of the cues of a motion.
 
     Words wait for the voice as every `say` does, under ids `cue1`, `cue2`, …; they end with a motion that is cancelled

@@ -9,12 +9,12 @@ from lumen.language.commands import Command, Track
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot
-from lumen.runtime.cues import Cues
+from lumen.runtime.cues import MotionCues
 from lumen.runtime.inbox import Inbox
 from lumen.runtime.performer import Performer
 from lumen.runtime.resuming import Resumption
 from lumen.runtime.runtime import Rescue, Runtime
-from lumen.runtime.tracking import Following, Tracking
+from lumen.runtime.tracking import LocalTracking, TrackingService
 
 TICK = 0.02
 BRAIN_LOST = 5.0
@@ -46,7 +46,7 @@ class BehaviorLoop:
     """
 
     def __init__(
-        self, project: Project, robot: Robot, bus: Bus, clock: Clock, tracking: Following | None = None
+        self, project: Project, robot: Robot, bus: Bus, clock: Clock, tracking: TrackingService | None = None
     ) -> None:
         self.robot, self.bus, self.clock = robot, bus, clock
         self.parts: list[TickHook] = []
@@ -54,9 +54,9 @@ class BehaviorLoop:
         self.rescue: Rescue = lambda _: None
         self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
         self.inbox = Inbox(bus)
-        self.tracking: Following = tracking or Tracking(project, robot, bus)
+        self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
         self._performer = Performer(robot, bus, self.tracking.switch)
-        self._cues = Cues()
+        self._cues = MotionCues()
         self._events: list[Event] = []
         self._last = clock.now()
         self.patience = BRAIN_LOST

@@ -10,21 +10,32 @@ from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.language.stories import Arrive, Deed, Expect, Happen, Leave, Pause, Send, Speak, Story, Touch
+from lumen.language.stories import (
+    Arrive,
+    Expect,
+    Happen,
+    Leave,
+    SendMessage,
+    Speak,
+    Story,
+    StoryPause,
+    TouchSensor,
+    VisitorAction,
+)
 from lumen.ports import Bus, Hall
 from lumen.runtime.loop import Observer
 from lumen.runtime.sending import send
-from lumen.runtime.visitor import Walker
+from lumen.runtime.visitor import VisitorActor
 
 
-class Lack(NamedTuple):
+class UnmetExpectation(NamedTuple):
     """What was expected, and what was instead, in words."""
 
     expected: str
     was: str
 
 
-class Failure(NamedTuple):
+class StoryFailure(NamedTuple):
     """Why a story failed: in which step (from 1) that stands `where`, what was expected, and what was."""
 
     story: str
@@ -48,7 +59,7 @@ def staged(project: Project, story: Story | None) -> Project:
 
 
 @dataclass
-class Witness:
+class StoryObservations:
     """What has been seen: the states now, and since the last expectation that held what was said, played, published."""
 
     states: frozenset[str] = frozenset()
@@ -58,41 +69,41 @@ class Witness:
     published: list[tuple[str, Any]] = field(default_factory=list)
     playing: dict[str, str] = field(default_factory=dict)
 
-    def lacks(self, expected: Expect) -> Lack | None:
+    def lacks(self, expected: Expect) -> UnmetExpectation | None:
         """The first thing of `expected` that does not hold."""
         if missing := [s for s in expected.states if s not in self.states]:
-            return Lack(f"state `{missing[0]}`", f"active are {_names(self.states)}")
+            return UnmetExpectation(f"state `{missing[0]}`", f"active are {_names(self.states)}")
         return self._unheard(expected) or self._unsent(expected) or self._unlike(expected.context)
 
-    def _unheard(self, expected: Expect) -> Lack | None:
+    def _unheard(self, expected: Expect) -> UnmetExpectation | None:
         part, whole = expected.said, expected.said_exactly
         if part is not None and not any(part.lower() in text.lower() for text in self.said):
-            return Lack(f"to hear “{part}”", f"it said {_texts(self.said)}")
+            return UnmetExpectation(f"to hear “{part}”", f"it said {_texts(self.said)}")
         if whole is not None and whole not in self.said:
-            return Lack(f"to hear exactly “{whole}”", f"it said {_texts(self.said)}")
+            return UnmetExpectation(f"to hear exactly “{whole}”", f"it said {_texts(self.said)}")
         if expected.played is not None and expected.played not in self.played:
-            return Lack(f"the motion `{expected.played}`", f"it played {_names(self.played)}")
+            return UnmetExpectation(f"the motion `{expected.played}`", f"it played {_names(self.played)}")
         return None
 
-    def _unsent(self, expected: Expect) -> Lack | None:
+    def _unsent(self, expected: Expect) -> UnmetExpectation | None:
         route, body = expected.published, expected.body
         if route is None or any(name == route and _holds(sent, body) for name, sent in self.published):
             return None
         wanted = f" with {body!r}" if body is not None else ""
         sent = "; ".join(f"{sent!r} on `{name}`" for name, sent in self.published)
-        return Lack(f"a message on `{route}`{wanted}", f"it sent {sent or 'nothing'}")
+        return UnmetExpectation(f"a message on `{route}`{wanted}", f"it sent {sent or 'nothing'}")
 
-    def _unlike(self, context: Mapping[str, Any]) -> Lack | None:
+    def _unlike(self, context: Mapping[str, Any]) -> UnmetExpectation | None:
         for key, value in context.items():
             if self.context.get(key) != value:
-                return Lack(f"{key} = {value!r}", f"it is {self.context.get(key)!r}")
+                return UnmetExpectation(f"{key} = {value!r}", f"it is {self.context.get(key)!r}")
         return None
 
     def forget(self) -> None:
         self.said, self.played, self.published = [], [], []
 
 
-class Scenery(Protocol):
+class StoryEnvironment(Protocol):
     """Where a story plays: an exhibition, in this process or in others."""
 
     @property
@@ -110,22 +121,22 @@ class StoryPlayer(Observer):
     It is `finished` when its last step is done or one has failed; `failed` says what was expected where.
     """
 
-    failed: Failure | None = None
+    failed: StoryFailure | None = None
 
     def __init__(
         self,
         story: Story,
-        exhibition: Scenery,
+        exhibition: StoryEnvironment,
         hall: Hall,
-        walker: Walker,
-        tell: Callable[[Deed], None] = lambda _: None,
+        walker: VisitorActor,
+        tell: Callable[[VisitorAction], None] = lambda _: None,
     ) -> None:
         self.story = story
-        self.scene = 0
+        self.position = 0
         self._exhibition, self._hall, self._walker = exhibition, hall, walker
         self._tell = tell
-        self._witness = Witness()
-        self._missed: Lack | None = None
+        self._witness = StoryObservations()
+        self._missed: UnmetExpectation | None = None
         self._since = 0.0
 
     @property
@@ -135,7 +146,7 @@ class StoryPlayer(Observer):
 
     @property
     def finished(self) -> bool:
-        return self.failed is not None or self.scene >= len(self.story.scenes)
+        return self.failed is not None or self.position >= len(self.story.steps)
 
     def start(self, now: float) -> None:
         """Its first step begins at `now` [s], where that is not 0."""
@@ -148,7 +159,7 @@ class StoryPlayer(Observer):
         """These states are active now, after those were entered, and that is what the behaviour remembers."""
         self._witness.states, self._witness.context = states, dict(context)
         if bad := states.union(entered).intersection(self.story.never):
-            self.fail(Lack(f"never state {_names(bad)}", "it was entered"))
+            self.fail(UnmetExpectation(f"never state {_names(bad)}", "it was entered"))
 
     def performing(self, command: Command, now: float) -> None:
         match command:
@@ -169,34 +180,34 @@ class StoryPlayer(Observer):
         """Do every step that can be done by `now` [s]; what is done is heard before anything is expected of it."""
         heard = True
         while heard and not self.finished and self._do(now):
-            heard = isinstance(self.story.scenes[self.scene].deed, Pause | Expect)
-            self.scene += 1
+            heard = isinstance(self.story.steps[self.position].action, StoryPause | Expect)
+            self.position += 1
             self._since = now
 
     def _do(self, now: float) -> bool:
-        deed = self.story.scenes[self.scene].deed
-        if not isinstance(deed, Pause | Expect):
-            self._tell(deed)
-        match deed:
-            case Pause(seconds):
+        action = self.story.steps[self.position].action
+        if not isinstance(action, StoryPause | Expect):
+            self._tell(action)
+        match action:
+            case StoryPause(seconds):
                 return now >= self._since + seconds
             case Expect():
-                return self._expect(deed, now)
+                return self._expect(action, now)
             case Arrive(visitor):
                 self._walker.arrive(visitor)
             case Leave():
                 self._walker.leave()
             case Speak(text, language):
                 self._walker.speak(text, language)
-            case Touch(sensor, pressed):
+            case TouchSensor(sensor, pressed):
                 self._hall.touch(sensor, pressed)
             case Happen(name, data):
                 self._exhibition.happen(Event(name, data, now))
-            case Send(name, body):
+            case SendMessage(name, body):
                 if reason := send(self._exhibition.bus, self._exhibition.project, name, body):
-                    self.fail(Lack(f"to send on `{name}`", reason))
+                    self.fail(UnmetExpectation(f"to send on `{name}`", reason))
             case _:
-                assert_never(deed)
+                assert_never(action)
         return True
 
     def _expect(self, expected: Expect, now: float) -> bool:
@@ -212,10 +223,12 @@ class StoryPlayer(Observer):
             self.fail(lacking._replace(expected=f"within {expected.within:g} s {lacking.expected}"))
         return False
 
-    def fail(self, lack: Lack) -> None:
+    def fail(self, lack: UnmetExpectation) -> None:
         """End the story at the step it stands at; where it has failed already, that counts."""
-        scene = min(self.scene, len(self.story.scenes) - 1)
-        self.failed = self.failed or Failure(self.story.name, scene + 1, self.story.scenes[scene].where, *lack)
+        position = min(self.position, len(self.story.steps) - 1)
+        self.failed = self.failed or StoryFailure(
+            self.story.name, position + 1, self.story.steps[position].where, *lack
+        )
 
 
 def _holds(body: Any, wanted: Any) -> bool:

@@ -13,7 +13,7 @@ POSES = "joint"
 BACKLOG = 1000
 
 
-class Following(Protocol):
+class TrackingService(Protocol):
     """Whatever lets controllers follow what is seen: here, or in the motion module's process."""
 
     @property
@@ -26,7 +26,7 @@ class Following(Protocol):
     def tick(self, now: float) -> None: ...
 
 
-class Tracking:
+class LocalTracking:
     """Feeds each controller that is on with the poses and sights on the bus, and aims the robot's joints as it says.
 
     Everything comes as messages, as it would for a motion module on another machine. A sight without `time` is taken to

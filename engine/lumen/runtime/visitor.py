@@ -15,7 +15,7 @@ APPROACH = 1.5
 SPEECH = "heard"
 
 
-class Walker:
+class VisitorActor:
     """Moves a visitor through the hall at 1 m/s, and lets them speak.
 
     What is said goes out as the speech module's message, on the route `heard`.

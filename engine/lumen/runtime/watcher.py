@@ -22,25 +22,25 @@ SLICE = 0.001
 INSIDE = ("behaviors/stories", "schemas/messages")
 
 _log = logging.getLogger(__name__)
-Files = Mapping[str, bytes]
+FileContents = Mapping[str, bytes]
 T = TypeVar("T")
 
 
-class Saved(NamedTuple):
+class SavedFiles(NamedTuple):
     """Files as they were once quiet, `changed` those that differ from what was judged before, by path.
 
     `seen` [s, monotonic] is when the first change was noticed, `quiet` when the last had been for the quiet period.
     `asked` is what was handed to `ask`, None where nobody asked.
     """
 
-    files: Files
+    files: FileContents
     changed: tuple[str, ...]
     seen: float
     quiet: float
     asked: object = None
 
 
-class Watcher(Generic[T]):
+class FileWatcher(Generic[T]):
     """Judges the project's files anew whenever their content has changed and stayed quiet, or when somebody asks.
 
     The operating system's notice of a saved file is a hint that hurries it; what decides is the content, read at least
@@ -53,8 +53,8 @@ class Watcher(Generic[T]):
     def __init__(
         self,
         root: Path,
-        files: Files,
-        judge: Callable[[Saved], T],
+        files: FileContents,
+        judge: Callable[[SavedFiles], T],
         *,
         hash: str = "",
         quiet: float = QUIET,
@@ -112,7 +112,7 @@ class Watcher(Generic[T]):
         usual = sys.getswitchinterval()
         sys.setswitchinterval(SLICE)
         try:
-            judged = self._judge(Saved(files, changed, seen, time.monotonic(), asked))
+            judged = self._judge(SavedFiles(files, changed, seen, time.monotonic(), asked))
             self.results.put(judged)
             self._leisure(judged, self._urgent)
         except Exception:  # a fault of ours must not end the watching
@@ -136,7 +136,7 @@ class Watcher(Generic[T]):
                 files, since = again, time.monotonic()
         return files
 
-    def _needed(self, files: Files) -> float:
+    def _needed(self, files: FileContents) -> float:
         half = any(not files.get(path) or isinstance(files[path], Unreadable) for path in self._files)
         return 2 * self._quiet if half else self._quiet
 

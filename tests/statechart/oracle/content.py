@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
-from lumen.language.actions import Assign, CancelSend, Expression, If, LogText, Raise, Send, Step, Value
+from lumen.language.actions import Assign, CancelSend, ComputedValue, Expression, If, LogText, PlacedAction, Raise, Send
 from lumen.language.commands import Command, Log, Play, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
@@ -78,7 +78,7 @@ class World:
             self.fail(guard.where)
             return False
 
-    def value(self, value: Value, here: State) -> Any:
+    def value(self, value: ComputedValue, here: State) -> Any:
         match value:
             case Expression(source):
                 return compile_expression(source)(self.scope(here))
@@ -88,7 +88,7 @@ class World:
                 return {key: self.value(item, here) for key, item in value.items()}
         return value
 
-    def execute(self, block: tuple[Step, ...], here: State) -> None:
+    def execute(self, block: tuple[PlacedAction, ...], here: State) -> None:
         """`executeContent`: the first action that fails ends the block."""
         for step in block:
             try:
@@ -97,7 +97,7 @@ class World:
                 self.fail(step.where)
                 return
 
-    def act(self, step: Step, here: State) -> None:
+    def act(self, step: PlacedAction, here: State) -> None:
         match step.action:
             case Assign(values):
                 before = dict(self.context)

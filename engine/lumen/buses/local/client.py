@@ -17,7 +17,7 @@ from lumen.buses.local.frames import BadFrameError, frame, framed, nonce, proof,
 from lumen.buses.local.sendbuffer import SendBuffer
 from lumen.errors import BusError
 from lumen.language.routes import Route
-from lumen.ports import Handler, Message, Refused
+from lumen.ports import Message, MessageHandler, Refused
 
 CLOSING = 5.0
 WAITING = 20_000
@@ -38,10 +38,10 @@ class LocalBusClient:
         self.gone = threading.Event()
         self._wire, self._read = _enter(address)
         self._leaving, self._closed = SendBuffer(), False
-        self._handlers: dict[int, Handler] = {}
+        self._handlers: dict[int, MessageHandler] = {}
         self._answers: dict[int, tuple[threading.Event, list[str]]] = {}
         self._numbers, self._marked = count(), threading.Event()
-        self._arrived: deque[tuple[Handler, int, Message]] = deque(maxlen=WAITING)
+        self._arrived: deque[tuple[MessageHandler, int, Message]] = deque(maxlen=WAITING)
         self._arriving = threading.Condition()
         self._threads = [
             threading.Thread(target=work, name=f"lumen-local-{name}", daemon=True)
@@ -56,7 +56,7 @@ class LocalBusClient:
     def prepare(self, routes: Mapping[str, Route]) -> None:
         """There is nothing to make ready."""
 
-    def subscribe(self, pattern: str, handler: Handler) -> Callable[[], None]:
+    def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
             raise BusError("the bus is closed: nobody can subscribe any more")
         check_key(pattern)

@@ -19,10 +19,10 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.robots.remote import RemoteRobot
-from lumen.runtime.delegating import Delegating
+from lumen.runtime.delegated_tracking import DelegatedTracking
 from lumen.runtime.presence import BRAIN, HERE, MOTION, ROBOT, Presence, told
 from lumen.runtime.story import staged
-from lumen.runtime.tracking import Tracking
+from lumen.runtime.tracking import LocalTracking
 
 SESSION = "brain.json"
 """Where a brain keeps under which session its commands travel, for the one that goes on after it."""
@@ -60,8 +60,8 @@ class BrainPart:
         self._bus, self._presence, self._premises, self._transcript = bus, presence, premises, transcript
         self._url, self._mode, self._language, self._fresh = url, mode, language, fresh
         self.robot = RemoteRobot(project, bus, clock.now, delegate=lambda id, command: self._tracking.play(id, command))
-        own = Tracking(project, self.robot, bus)
-        self._tracking = Delegating(own, project, bus, self._motion, self.robot.time)
+        own = LocalTracking(project, self.robot, bus)
+        self._tracking = DelegatedTracking(own, project, bus, self._motion, self.robot.time)
         self.show = Show(project, Cast(self.robot, clock, None, remote=True, tracking=self._tracking), bus, story)
         self.show.using.append(self.robot.use)
         self.show.exhibition.patience *= speed  # whether it was away is a matter of real time, as for the robot

@@ -10,9 +10,9 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Clock, Message, Perform
 from lumen.robots.remote import RemoteRobot
-from lumen.runtime.delegating import motion_key
+from lumen.runtime.delegated_tracking import motion_key
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT, Presence
-from lumen.runtime.tracking import Tracking
+from lumen.runtime.tracking import LocalTracking
 
 WAITING = 1_000
 
@@ -32,7 +32,7 @@ class MotionPart:
     ) -> None:
         self._project, self._bus, self._presence, self._transcript = project, bus, presence, transcript
         self._robot = RemoteRobot(project, bus, clock.now)
-        self._tracking = Tracking(project, self._robot, bus)
+        self._tracking = LocalTracking(project, self._robot, bus)
         self._asked: deque[Message] = deque(maxlen=WAITING)
         self._undo: Callable[[], None] = lambda: None
         self._session, self._brain, self._played = "", "", 0

@@ -16,7 +16,7 @@ from lumen.ports import Clock
 from lumen.robots.ways import COMMAND, key_of
 from lumen.runtime.loop import TICK
 from lumen.runtime.presence import ROBOT, Presence, told
-from lumen.runtime.trace import KEY
+from lumen.runtime.trace_publisher import KEY
 
 
 class Process:

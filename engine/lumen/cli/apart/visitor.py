@@ -13,10 +13,10 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Story, Visitor
 from lumen.robots.remote import RemoteHall
-from lumen.runtime.onlooker import Onlooker
 from lumen.runtime.presence import BRAIN, ROBOT, VISITOR
 from lumen.runtime.story import StoryPlayer
-from lumen.runtime.visitor import Walker
+from lumen.runtime.trace_subscriber import TraceSubscriber
+from lumen.runtime.visitor import VisitorActor
 
 
 class VisitorPart:
@@ -33,8 +33,8 @@ class VisitorPart:
     ) -> None:
         self._project, self._transcript, self._story = project, transcript, story
         self._hall = RemoteHall(project, bus)
-        self._walker = Walker(project, self._hall, bus)
-        self._onlooker = Onlooker(project, bus, self._hall.happen)
+        self._walker = VisitorActor(project, self._hall, bus)
+        self._onlooker = TraceSubscriber(project, bus, self._hall.happen)
         self._player: StoryPlayer | None = None
         self._typed: TypedSpeech | None = None
         self._now = 0.0
@@ -55,15 +55,15 @@ class VisitorPart:
         self._walker.tick(now)
         if self._story:
             print(f"The story is “{self._story.title}”.\n", flush=True)
-            tell = self._transcript.deed
+            tell = self._transcript.visitor_action
             self._player = StoryPlayer(self._story, self._onlooker, self._hall, self._walker, tell)
             self._player.start(now)
             self._onlooker.watchers.append(self._player)
             return
         print("You are the visitor: type what you say. Ctrl-D walks away, Ctrl-C ends.\n", flush=True)
         self._walker.arrive(Visitor())
-        self._transcript.deed(Arrive(Visitor()))
-        self._typed = TypedSpeech(self._walker, self._transcript.deed)
+        self._transcript.visitor_action(Arrive(Visitor()))
+        self._typed = TypedSpeech(self._walker, self._transcript.visitor_action)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self._now = now

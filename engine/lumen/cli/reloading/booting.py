@@ -13,8 +13,8 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.rules import check_files
-from lumen.runtime.trials import DEATHS
-from lumen.runtime.watcher import Saved
+from lumen.runtime.crash_counter import DEATHS
+from lumen.runtime.watcher import SavedFiles
 
 
 def boot(root: Path, premises: Premises, *, last_good: bool) -> Project:
@@ -44,7 +44,7 @@ def boot(root: Path, premises: Premises, *, last_good: bool) -> Project:
 
 def _instead(premises: Premises, good: Project, hash: str, why: str, diagnostics: Sequence[Diagnostic] = ()) -> Project:
     """The last good project; that it is another is news."""
-    judged = Judged(Saved({}, (), 0.0, 0.0), hash, None, tuple(diagnostics))
+    judged = Judged(SavedFiles({}, (), 0.0, 0.0), hash, None, tuple(diagnostics))
     premises.news.append(Bulletin("refused", START, good.hash, hash, judged=judged, reason=why))
     return good
 

@@ -13,9 +13,9 @@ from lumen.interpreters.migration import Refusal
 from lumen.interpreters.statechart import deserialize
 from lumen.language.projects import Project
 from lumen.rules import check_files
-from lumen.runtime.keeping import Keeper, Kept
+from lumen.runtime.crash_counter import DEATHS
 from lumen.runtime.resuming import Resumption, resume
-from lumen.runtime.trials import DEATHS
+from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
 
 LATELY = 600.0
 """How old a snapshot may be to be gone on with [s]: after that, whoever spoke with the robot has left."""
@@ -52,7 +52,7 @@ def comeback(root: Path, records: Records, project: Project) -> Found:
     return Found(how, news)
 
 
-def _before(root: Path, keeper: Keeper, kept: Kept, project: Project) -> Project | None:
+def _before(root: Path, keeper: SnapshotStore, kept: StoredSnapshot, project: Project) -> Project | None:
     """The bundle that ran, None where it was not kept."""
     old: Project | None = project
     if kept.bundle != project.hash:

@@ -14,7 +14,7 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.files import fingerprint
-from lumen.runtime.watcher import Saved
+from lumen.runtime.watcher import SavedFiles
 
 _log = logging.getLogger(__name__)
 
@@ -31,7 +31,7 @@ class Judged:
     `running`, the bundle that ran when they were judged; `loading` and `playing` are how long each took [s].
     """
 
-    saved: Saved
+    saved: SavedFiles
     hash: str
     project: Project | None = None
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -65,7 +65,7 @@ class Judge:
     def __init__(self, court: Here | Jury, running: Callable[[], Project], budget: float = BUDGET) -> None:
         self._court, self._running, self._budget = court, running, budget
 
-    def __call__(self, saved: Saved) -> Judged:
+    def __call__(self, saved: SavedFiles) -> Judged:
         """What came of them; nothing here raises for what they say."""
         hash, began = "", time.perf_counter()
         try:
@@ -119,7 +119,7 @@ def _touched_stories(project: Project, found: Iterable[Change], changed: Iterabl
         for story in project.stories.values()
         if story not in saved and (everything or (story.behavior or project.behavior) in behaviors)
     ]
-    return sorted(touched, key=lambda story: (story.name != project.story, len(story.scenes)))
+    return sorted(touched, key=lambda story: (story.name != project.story, len(story.steps)))
 
 
 def told(rehearsal: Rehearsal) -> str:

@@ -6,11 +6,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from lumen.language.projects import Project
+from lumen.runtime.crash_counter import CrashCounter
 from lumen.runtime.home import Home
 from lumen.runtime.journal import Journal
-from lumen.runtime.keeping import Keeper
 from lumen.runtime.loop import BehaviorLoop
-from lumen.runtime.trials import Trials
+from lumen.runtime.snapshot_store import SnapshotStore
 
 _log = logging.getLogger(__name__)
 
@@ -26,8 +26,8 @@ class Records:
         self._told, self._trial = False, ""
         self._desk = ThreadPoolExecutor(1, "records")
         self._keeping: Future[None] | None = None
-        self.keeper = Keeper(home) if home else None
-        self.trials = Trials(home) if home else None
+        self.keeper = SnapshotStore(home) if home else None
+        self.trials = CrashCounter(home) if home else None
         self.journal = Journal(home.folder if home else None)
 
     def write(self, entry: Mapping[str, Any]) -> None:

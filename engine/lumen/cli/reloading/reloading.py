@@ -23,7 +23,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.ports import Message
-from lumen.runtime.watcher import QUIET, Saved, Watcher
+from lumen.runtime.watcher import QUIET, FileWatcher, SavedFiles
 
 _log = logging.getLogger(__name__)
 
@@ -61,7 +61,7 @@ class Reloading:
         project = show.exhibition.project
         self._court = (Jury if apart else Here)(Path(project.root))
         judge = Judge(self._court, lambda: self._running, budget)
-        self._watcher: Watcher[Judged | list[Rehearsal]] = Watcher(
+        self._watcher: FileWatcher[Judged | list[Rehearsal]] = FileWatcher(
             Path(project.root),
             read_files(Path(project.root)),
             lambda saved: self._judge(judge, saved),
@@ -116,7 +116,7 @@ class Reloading:
                 self._warn(found)
         self._staging.tick(now)
 
-    def _judge(self, judge: Judge, saved: Saved) -> Judged:
+    def _judge(self, judge: Judge, saved: SavedFiles) -> Judged:
         """On the watcher's thread: routes that come with the files are made ready here, where nobody has to wait."""
         judged = Judged(saved, "")
         try:

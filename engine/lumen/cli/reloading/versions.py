@@ -13,7 +13,7 @@ from lumen.loading.project import read_files
 from lumen.loading.revisions import files_at
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
-from lumen.runtime.keeping import Keeper, Kept
+from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
 
 LIVE = "live"
 
@@ -34,7 +34,7 @@ def version(name: str | None, here: Path | None = None) -> Version:
     errors.
     """
     root = here or find_project()
-    kept: Kept | None = None
+    kept: StoredSnapshot | None = None
     if name is None:
         files: Mapping[str, bytes] = read_files(root)
     elif name == LIVE:
@@ -50,9 +50,9 @@ def version(name: str | None, here: Path | None = None) -> Version:
     return Version(name or str(root), project, files, deserialize(project.machine, kept.frozen) if kept else None)
 
 
-def _running(root: Path) -> tuple[Kept, Mapping[str, bytes]]:
+def _running(root: Path) -> tuple[StoredSnapshot, Mapping[str, bytes]]:
     home = Home(home_of(root))
-    keeper = Keeper(home)
+    keeper = SnapshotStore(home)
     kept = keeper.kept()
     if kept is None or not home.held():
         raise UsageError(f"no exhibition of {root} runs on this machine: start it with `lumen run`")

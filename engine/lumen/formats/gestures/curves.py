@@ -22,7 +22,7 @@ Handle = tuple[float, float]
 class Point(NamedTuple):
     """At `time` [s] a joint stands at `angle` [rad; a hand 0..1]; come to along a line where it is `straight`.
 
-    Handles are (dt [s], da [rad]) as in `lumen.language.motions.Key`; those with dt = 0 are to be chosen.
+    Handles are (dt [s], da [rad]) as in `lumen.language.motions.Keyframe`; those with dt = 0 are to be chosen.
     """
 
     time: float

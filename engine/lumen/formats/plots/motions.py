@@ -3,14 +3,14 @@
 from math import degrees
 
 from lumen.formats.plots.sheet import Axis, Line, Mark, Panel, Sheet
-from lumen.interpreters.trajectory import Track, Trajectory
-from lumen.language.motions import Motion
+from lumen.interpreters.trajectory import JointTrack, Trajectory
+from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 
 POINTS = 201
 
 
-def motion_sheet(motion: Motion, body: Body) -> Sheet:
+def motion_sheet(motion: MotionDefinition, body: Body) -> Sheet:
     """A panel for each joint, in the body's order; angles in degrees, hands from 0 to 1."""
     tracks = sorted(Trajectory(motion).tracks, key=lambda track: _place(body, track.joint))
     title = f"Motion {motion.name}, {motion.duration:g} s"
@@ -18,7 +18,7 @@ def motion_sheet(motion: Motion, body: Body) -> Sheet:
     return Sheet(title, panels, min(4, max(1, len(tracks))), "Dots: the keys. Level lines: the joint's limits.")
 
 
-def _panel(motion: Motion, body: Body, track: Track) -> Panel:
+def _panel(motion: MotionDefinition, body: Body, track: JointTrack) -> Panel:
     joint = None if track.joint in body.hands else body.joints.get(track.joint)
     scale = degrees if joint else float
     xs = tuple(motion.duration * i / (POINTS - 1) for i in range(POINTS))

@@ -12,7 +12,7 @@ from lumen.formats.scxml.templates import expression_of
 from lumen.formats.scxml.xml import Tag
 from lumen.interpreters.expressions import parse_expression, unparse
 from lumen.interpreters.expressions.tree import Literal
-from lumen.language.actions import Assign, CancelSend, Expression, If, LogText, Raise, Send, Step, Value
+from lumen.language.actions import Assign, CancelSend, ComputedValue, Expression, If, LogText, PlacedAction, Raise, Send
 
 
 class Orders:
@@ -21,7 +21,7 @@ class Orders:
     def __init__(self, vocabulary: Vocabulary, report: Report) -> None:
         self.vocabulary, self.report = vocabulary, report
 
-    def block(self, steps: Sequence[Step]) -> list[Tag]:
+    def block(self, steps: Sequence[PlacedAction]) -> list[Tag]:
         """The elements of these actions."""
         return [tag for step in steps for tag in self._one(step)]
 
@@ -35,7 +35,7 @@ class Orders:
         for name in names:
             self.report.foreign(f"`{name}` in an expression", where)
 
-    def _one(self, step: Step) -> list[Tag]:
+    def _one(self, step: PlacedAction) -> list[Tag]:
         try:
             return list(self._tags(step))
         except ScriptError as error:
@@ -43,7 +43,7 @@ class Orders:
             self.report.lost(f"`{verb}` is left out: {error}", step.where)
             return []
 
-    def _tags(self, step: Step) -> Iterator[Tag]:
+    def _tags(self, step: PlacedAction) -> Iterator[Tag]:
         match step.action:
             case Assign(values):
                 if any(isinstance(v, Expression) and not is_constant(v.source) for v in list(values.values())[1:]):
@@ -74,20 +74,20 @@ class Orders:
     def _branches(self, choice: If) -> Iterator[Tag]:
         yield from self.block(choice.then)
         match choice.otherwise:
-            case (Step(action=If() as other),):
+            case (PlacedAction(action=If() as other),):
                 yield Tag("elseif", {"cond": self.expression(other.guard)})
                 yield from self._branches(other)
             case (_, *_):
                 yield Tag("else")
                 yield from self.block(choice.otherwise)
 
-    def data(self, value: Value) -> list[Tag]:
+    def data(self, value: ComputedValue) -> list[Tag]:
         """Parameters for a map, content for everything else; raises ScriptError."""
         if isinstance(value, Mapping) and value and all(value):
             return [Tag("param", {"name": key, "expr": self.value(item)}) for key, item in value.items()]
         return [Tag("content", {"expr": self.value(value)})]
 
-    def value(self, value: Value) -> str:
+    def value(self, value: ComputedValue) -> str:
         """A value as ECMAScript; raises ScriptError."""
         match value:
             case Expression():

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from lumen.formats.scxml.candidates import overlap
-from lumen.language.actions import If, Raise, Send, Step
+from lumen.language.actions import If, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
 
 
@@ -70,7 +70,7 @@ def _covers(transition: Transition, event: str) -> bool:
     return general == "*" or f"{event}.".startswith(f"{general}.")
 
 
-def _raised(steps: Sequence[Step]) -> Iterator[str]:
+def _raised(steps: Sequence[PlacedAction]) -> Iterator[str]:
     for step in steps:
         match step.action:
             case Raise(event) | Send(event):

@@ -10,7 +10,7 @@ from lumen.formats.xstate.descriptors import Descriptors
 from lumen.formats.xstate.parts import DO, EXPRESSION, PREFIX
 from lumen.interpreters.expressions import ExpressionError, parse_expression
 from lumen.interpreters.expressions.tree import Literal
-from lumen.language.actions import Expression, Step, Value
+from lumen.language.actions import ComputedValue, Expression, PlacedAction
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import Answer, Invoke, MachineDefinition, State, StateKind, Transition
 
@@ -171,10 +171,10 @@ class _Config:
             transition.reenter or state.kind is not StateKind.COMPOUND or state.path in transition.targets
         )
 
-    def _actions(self, steps: Sequence[Step]) -> list[dict[str, Any]]:
+    def _actions(self, steps: Sequence[PlacedAction]) -> list[dict[str, Any]]:
         return [self._action(step) for step in steps]
 
-    def _action(self, step: Step) -> dict[str, Any]:
+    def _action(self, step: PlacedAction) -> dict[str, Any]:
         plain = plain_action(step.action)
         verb = next(iter(plain))
         self.report.foreign(f"the action `{PREFIX}{verb}`", step.where)
@@ -209,7 +209,7 @@ def _answer(row: Answer) -> dict[str, Any]:
     return {"phrases": _phrases(row.phrases), "value": row.value}
 
 
-def _constant(value: Value) -> Any:
+def _constant(value: ComputedValue) -> Any:
     """A value with the texts in it that are written out; expressions stay what they are."""
     match value:
         case Expression(source):

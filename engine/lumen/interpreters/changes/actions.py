@@ -13,11 +13,11 @@ from lumen.language.actions import (
     If,
     LogText,
     Parallel,
+    PlacedAction,
     PublishBody,
     Raise,
     SayText,
     Send,
-    Step,
     Wait,
 )
 from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
@@ -27,7 +27,9 @@ T = TypeVar("T")
 Pair = tuple[T | None, T | None]
 
 
-def block_changes(old: Sequence[Step], new: Sequence[Step], title: str, when: str, file: str) -> Iterator[Change]:
+def block_changes(
+    old: Sequence[PlacedAction], new: Sequence[PlacedAction], title: str, when: str, file: str
+) -> Iterator[Change]:
     """The changes of a block of actions; `title` is whose it is, `when` when it is done (` on entering`)."""
     for one, other in paired([s.action for s in old], [s.action for s in new], lambda action: type(action).__name__):
         if one is not None and other is not None:

@@ -7,7 +7,7 @@ from typing import Any
 from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.formatting import code, names, seconds
 from lumen.language.controllers import ControllerDefinition
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.routes import Route
 
 
@@ -17,7 +17,7 @@ def controller_changes(old: ControllerDefinition, new: ControllerDefinition) -> 
         yield Change("controller", new.name, sentence, Risk.MOTION, f"fuzzy/{new.name}.yaml")
 
 
-def motion_changes(old: Motion, new: Motion) -> Iterator[Change]:
+def motion_changes(old: MotionDefinition, new: MotionDefinition) -> Iterator[Change]:
     """How much longer it is, which joints it moves, and whether otherwise."""
     for sentence in _motion(old, new):
         yield Change("motion", new.name, f"motion `{new.name}` {sentence}", Risk.MOTION, f"motions/{new.name}.yaml")
@@ -81,7 +81,7 @@ def _variables(old: ControllerDefinition, new: ControllerDefinition, title: str)
             yield f"`{name}` of {title} changed"
 
 
-def _motion(old: Motion, new: Motion) -> Iterator[str]:
+def _motion(old: MotionDefinition, new: MotionDefinition) -> Iterator[str]:
     longer = new.duration - old.duration
     if abs(longer) > 1e-9:
         yield f"is {seconds(round(abs(longer), 6))} {'longer' if longer > 0 else 'shorter'}"

@@ -5,7 +5,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.interpreters.expressions import ExpressionError, Node, names, parse_expression
-from lumen.language.actions import Assign, Expression, If, Parallel, Raise, Send, Step, Value
+from lumen.language.actions import Assign, ComputedValue, Expression, If, Parallel, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
 
 
@@ -42,7 +42,7 @@ def of_state(state: State) -> Iterator[ExpressionUse]:
         yield from _of(value)
 
 
-def of_block(block: tuple[Step, ...]) -> Iterator[ExpressionUse]:
+def of_block(block: tuple[PlacedAction, ...]) -> Iterator[ExpressionUse]:
     """What actions read, except for texts and messages: those change nothing in the behaviour."""
     for step in block:
         match step.action:
@@ -74,7 +74,7 @@ def invoked_behavior(machine: MachineDefinition, state: str, id: str) -> str:
     return next(invoke.behavior for invoke in machine.states[state].invoke if invoke.id == id)
 
 
-def _of(value: Value, key: str = "") -> Iterator[ExpressionUse]:
+def _of(value: ComputedValue, key: str = "") -> Iterator[ExpressionUse]:
     if isinstance(value, Expression):
         if (tree := tree_of(value.source)) is not None:
             yield ExpressionUse(tree, key)

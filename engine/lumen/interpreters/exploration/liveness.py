@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from lumen.interpreters.exploration.expression_uses import of_state, relevant, tree_of
 from lumen.interpreters.expressions import names
 from lumen.interpreters.expressions.tree import Literal
-from lumen.language.actions import Assign, Expression, Step, Value
+from lumen.language.actions import Assign, ComputedValue, Expression, PlacedAction
 from lumen.language.machines import MachineDefinition, State, StateKind
 
 
@@ -86,7 +86,7 @@ class Liveness:
             place = self._machine.states[place].parent
 
 
-def _assigned(block: tuple[Step, ...]) -> frozenset[str]:
+def _assigned(block: tuple[PlacedAction, ...]) -> frozenset[str]:
     """The keys that a block surely gives new values, whatever they were."""
     return frozenset(
         key
@@ -97,6 +97,6 @@ def _assigned(block: tuple[Step, ...]) -> frozenset[str]:
     )
 
 
-def _certain(value: Value) -> bool:
+def _certain(value: ComputedValue) -> bool:
     """Whether a value can be had without fail: an expression may have none."""
     return not isinstance(value, Expression) or isinstance(tree_of(value.source), Literal)

@@ -3,25 +3,25 @@
 Nothing here touches a robot: feet and a goal go in, joint angles come out, tick by tick.
 """
 
-from lumen.interpreters.gait.footsteps import Feet, Step, corners, middle
-from lumen.interpreters.gait.gait import CentreOfMass, Gait, Tick
+from lumen.interpreters.gait.footsteps import Feet, Footstep, corners, middle
+from lumen.interpreters.gait.gait import CentreOfMass, Gait, GaitTick
 from lumen.interpreters.gait.legs import JOINTS, SIDES, Side, foot_from
-from lumen.interpreters.gait.pace import GENTLE, Pace
+from lumen.interpreters.gait.parameters import GENTLE_GAIT, GaitParameters
 from lumen.interpreters.gait.poses import Pose
 from lumen.interpreters.gait.velocity import Velocity, fastest
 
 __all__ = [
-    "GENTLE",
+    "GENTLE_GAIT",
     "JOINTS",
     "SIDES",
     "CentreOfMass",
     "Feet",
+    "Footstep",
     "Gait",
-    "Pace",
+    "GaitParameters",
+    "GaitTick",
     "Pose",
     "Side",
-    "Step",
-    "Tick",
     "Velocity",
     "corners",
     "fastest",

@@ -5,7 +5,7 @@ from math import ceil, hypot
 from typing import NamedTuple
 
 from lumen.interpreters.gait.legs import Side, other, sign
-from lumen.interpreters.gait.pace import Pace
+from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.poses import Pose
 
 Feet = Mapping[Side, Pose]
@@ -18,7 +18,7 @@ TOE, HEEL, OUTER, INNER = 0.095, 0.045, 0.046, 0.028
 """How far the sole reaches from the point below the ankle [m]."""
 
 
-class Step(NamedTuple):
+class Footstep(NamedTuple):
     """That foot goes there."""
 
     side: Side
@@ -30,12 +30,12 @@ def middle(feet: Feet) -> Pose:
     return feet["L"].toward(feet["R"], 0.5)
 
 
-def beside(body: Pose, side: Side, pace: Pace) -> Pose:
+def beside(body: Pose, side: Side, pace: GaitParameters) -> Pose:
     """Where that foot belongs while the robot stands at `body`."""
     return body.then(Pose(0.0, sign(side) * pace.apart / 2, 0.0))
 
 
-def footsteps(feet: Feet, goal: Pose, first: Side, pace: Pace) -> list[Step]:
+def footsteps(feet: Feet, goal: Pose, first: Side, pace: GaitParameters) -> list[Footstep]:
     """The steps from these feet until they stand side by side at `goal`; `first` begins, then they alternate.
 
     A step that goes ahead, aside and around at once goes less far each way.
@@ -43,12 +43,12 @@ def footsteps(feet: Feet, goal: Pose, first: Side, pace: Pace) -> list[Step]:
     here = middle(feet)
     way = goal.seen_from(here)
     count = max(1, ceil(hypot(way.x / pace.forward, way.y / pace.sideways, way.theta / pace.turn) - 1e-6))
-    steps: list[Step] = []
+    steps: list[Footstep] = []
     side, bearing, there = first, feet[other(first)], 0
     while there < 2 and len(steps) < 2 * count + 4:
         part = min(1.0, (len(steps) + 1) / count)
         wanted = beside(here.then(Pose(way.x * part, way.y * part, way.theta * part)), side, pace)
-        step = Step(side, clear(wanted, side, bearing))
+        step = Footstep(side, clear(wanted, side, bearing))
         there = there + 1 if part == 1.0 and abs(step.pose.place - wanted.place) < 1e-6 else 0
         steps.append(step)
         side, bearing = other(side), step.pose
@@ -69,7 +69,7 @@ def first_side(way: Pose) -> Side:
     return "L" if way.theta >= 0 else "R"
 
 
-def corners(step: Step) -> Sequence[complex]:
+def corners(step: Footstep) -> Sequence[complex]:
     """The corners of a sole on the ground, x + iy [m]."""
     s, foot = sign(step.side), step.pose
     return [

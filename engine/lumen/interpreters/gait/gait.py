@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait.footsteps import Feet, Step, first_side, footsteps, middle
+from lumen.interpreters.gait.footsteps import Feet, Footstep, first_side, footsteps, middle
 from lumen.interpreters.gait.legs import Placed, Side, Stance, foot_from, other, sign, sole, stand, torso_rotation
-from lumen.interpreters.gait.pace import Pace
+from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.pendulum import Pendulum
-from lumen.interpreters.gait.planning import Phase, Planner, between
+from lumen.interpreters.gait.planning import GaitPhase, StepPlanner, between
 from lumen.interpreters.gait.poses import Pose, wrap
 from lumen.interpreters.gait.velocity import Velocity, strides
 
@@ -29,7 +29,7 @@ _FORESIGHT, _MORE, _LATEST = 3, 8, 0.5
 _TORSO_TO_MASS = (0.01, 0.0, -0.05)
 
 
-class Tick(NamedTuple):
+class GaitTick(NamedTuple):
     """What the legs do next: their angles [rad], the foot in the air, and how far the left foot leads [m]."""
 
     angles: Mapping[str, float]
@@ -49,10 +49,10 @@ class Gait:
     """
 
     def __init__(
-        self, feet: Feet, goal: Pose | Velocity, com: CentreOfMass, pace: Pace | None = None, dt: float = 0.01
+        self, feet: Feet, goal: Pose | Velocity, com: CentreOfMass, pace: GaitParameters | None = None, dt: float = 0.01
     ) -> None:
         self.goal: Pose | Velocity = goal
-        self.feet, self.pace, self.steps = feet, pace or Pace(), 0
+        self.feet, self.pace, self.steps = feet, pace or GaitParameters(), 0
         self._com = com
         self._side = first_side(goal.seen_from(middle(feet)) if isinstance(goal, Pose) else Pose(*goal))
         self._most = 2 * len(self.coming) + _MORE if isinstance(goal, Pose) else inf
@@ -64,7 +64,7 @@ class Gait:
             stance = self._stand({side: Placed(pose) for side, pose in feet.items()})
         self.angles: Mapping[str, float] = stance.angles
         self._pendulum = Pendulum(self.pace.torso + float(self._offset[2]), dt)
-        self._planner = Planner(self.pace, self._pendulum, dt)
+        self._planner = StepPlanner(self.pace, self._pendulum, dt)
         self._phase = self._rest() if self._arrived(feet) else self._step(standing=True)
 
     @property
@@ -76,14 +76,14 @@ class Gait:
         return hypot(way.x, way.y), abs(way.theta)
 
     @property
-    def coming(self) -> list[Step]:
+    def coming(self) -> list[Footstep]:
         """The steps that are left, as planned now; of a walk that goes on and on, the next one and one that ends it."""
         if isinstance(self.goal, Velocity):
             step = strides(self.feet, self.goal, self._side, self.pace, 1)[0]
             return [step, self._beside(step.pose, other(step.side))]
         return footsteps(self.feet, self.goal, self._side, self.pace)
 
-    def tick(self, measured: Mapping[str, float], heading: float) -> Tick | None:
+    def tick(self, measured: Mapping[str, float], heading: float) -> GaitTick | None:
         """What the legs do next; None once the robot stands.
 
         `measured` are the legs' angles now, `heading` the torso's, from wherever it is counted [rad].
@@ -101,7 +101,7 @@ class Gait:
         self._mass, self._dcm = self._pendulum.fall(self._mass, self._dcm, self._zmp)
         phase.tick += 1
         stride = feet["L"].pose.seen_from(feet["R"].pose).x
-        return Tick(self._stand(feet).angles, lifted, stride)
+        return GaitTick(self._stand(feet).angles, lifted, stride)
 
     def stop(self) -> None:
         """End as soon as balance allows: a foot that has just left comes to the other one, a later one lands first."""
@@ -157,13 +157,13 @@ class Gait:
         way = self.goal.seen_from(middle(feet))
         return hypot(way.x, way.y) < NEAR and abs(way.theta) < STRAIGHT and side_by_side
 
-    def _step(self, *, standing: bool) -> Phase:
+    def _step(self, *, standing: bool) -> GaitPhase:
         return self._planner.step(self.feet, self._next(), self._dcm, self._zmp, standing=standing)
 
-    def _rest(self) -> Phase:
+    def _rest(self) -> GaitPhase:
         return self._planner.settle(self.feet, self._dcm, self._zmp)
 
-    def _next(self) -> list[Step]:
+    def _next(self) -> list[Footstep]:
         """The next steps; one alone is the last."""
         if self._stopping:
             return [self._closing()]
@@ -173,12 +173,12 @@ class Gait:
         ends = self.steps >= self._most or self._arrived({**self.feet, self._side: steps[0].pose})
         return steps[:1] if ends else steps
 
-    def _closing(self) -> Step:
+    def _closing(self) -> Footstep:
         """The foot that comes next, beside the other one."""
         return self._beside(self.feet[other(self._side)], self._side)
 
-    def _beside(self, bearing: Pose, side: Side) -> Step:
-        return Step(side, bearing.then(Pose(0.0, sign(side) * self.pace.apart)))
+    def _beside(self, bearing: Pose, side: Side) -> Footstep:
+        return Footstep(side, bearing.then(Pose(0.0, sign(side) * self.pace.apart)))
 
     def _stand(self, feet: Mapping[Side, Placed]) -> Stance:
         """The joints that bring the centre of mass where the plan wants it."""

@@ -25,8 +25,8 @@ STRETCHED = THIGH + TIBIA - 1e-4
 _SLOPE = 2.7
 _YAW_STEP, _YAW_ERROR, _ROUNDS = 0.2, 1e-4, 6
 
-Matrix = NDArray[np.float64]
-Vector = NDArray[np.float64]
+RotationMatrix = NDArray[np.float64]
+LegVector = NDArray[np.float64]
 
 
 class Placed(NamedTuple):
@@ -45,7 +45,7 @@ def sign(side: Side) -> int:
     return 1 if side == "L" else -1
 
 
-def bend(side: Side, rotation: Matrix, ankle: Vector) -> tuple[float, ...]:
+def bend(side: Side, rotation: RotationMatrix, ankle: LegVector) -> tuple[float, ...]:
     """The joints of a leg [rad], in the order of `JOINTS`, that put its ankle there.
 
     `rotation` (3, 3) of the foot and `ankle` (3,) [m] in the torso's frame. A place out of reach is approached as far
@@ -63,7 +63,7 @@ def bend(side: Side, rotation: Matrix, ankle: Vector) -> tuple[float, ...]:
     return -s * yaw, tilt + s * pi / 4, swing, knee, pitch, roll
 
 
-def sole(side: Side, angles: Mapping[str, float]) -> tuple[Matrix, Vector]:
+def sole(side: Side, angles: Mapping[str, float]) -> tuple[RotationMatrix, LegVector]:
     """The sole's rotation (3, 3) and place (3,) [m] in the torso's frame, of joints by NAOqi's names [rad]."""
     yaw, roll, pitch, knee, ankle, tilt = (angles[side + name] for name in JOINTS)
     s = sign(side)
@@ -109,9 +109,9 @@ def stand(torso: complex, height: float, lean: float, yaw: float, feet: Mapping[
     return Stance(angles, yaw)
 
 
-def torso_rotation(yaw: float, lean: float) -> Matrix:
+def torso_rotation(yaw: float, lean: float) -> RotationMatrix:
     """The torso's rotation (3, 3), which does not roll."""
-    rotation: Matrix = _about_z(yaw) @ _about_y(lean)
+    rotation: RotationMatrix = _about_z(yaw) @ _about_y(lean)
     return rotation
 
 
@@ -127,16 +127,16 @@ def _bend_both(
     return bent
 
 
-def _about_x(angle: float) -> Matrix:
+def _about_x(angle: float) -> RotationMatrix:
     c, s = cos(angle), sin(angle)
     return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
 
 
-def _about_y(angle: float) -> Matrix:
+def _about_y(angle: float) -> RotationMatrix:
     c, s = cos(angle), sin(angle)
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
 
-def _about_z(angle: float) -> Matrix:
+def _about_z(angle: float) -> RotationMatrix:
     c, s = cos(angle), sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

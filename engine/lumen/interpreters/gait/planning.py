@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from lumen.interpreters.gait.footsteps import Feet, Step
+from lumen.interpreters.gait.footsteps import Feet, Footstep
 from lumen.interpreters.gait.legs import Side, other, sign
-from lumen.interpreters.gait.pace import Pace
+from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.pendulum import Pendulum
 from lumen.interpreters.gait.poses import Pose
 from lumen.interpreters.gait.swing import Swing
@@ -15,7 +15,7 @@ SOLE_AHEAD, SOLE_ASIDE = 0.035, 0.015
 
 
 @dataclass(slots=True)
-class Phase:
+class GaitPhase:
     """A step, or the settling after the last: where the weight rests at each tick, and the foot that moves.
 
     The foot leaves the ground at the tick `lifts`; after the `last` step the weight is between the feet.
@@ -42,15 +42,15 @@ class Phase:
         return self.swing.side if self.swing and self.tick >= self.lifts else None
 
 
-class Planner:
+class StepPlanner:
     """Plans phases in ticks of `dt` [s]; points are x + iy [m]."""
 
-    def __init__(self, pace: Pace, pendulum: Pendulum, dt: float) -> None:
+    def __init__(self, pace: GaitParameters, pendulum: Pendulum, dt: float) -> None:
         self._pace, self._pendulum = pace, pendulum
         self._double, self._single = round(pace.double / dt), round(pace.single / dt)
         self._shift, self._settle = round(pace.shift / dt), round(pace.settle / dt)
 
-    def step(self, feet: Feet, steps: Sequence[Step], dcm: complex, zmp: complex, *, standing: bool) -> Phase:
+    def step(self, feet: Feet, steps: Sequence[Footstep], dcm: complex, zmp: complex, *, standing: bool) -> GaitPhase:
         """The first of these steps, seen that the others follow; one alone is the last.
 
         A robot that was `standing` takes its time to shift its weight.
@@ -61,25 +61,25 @@ class Planner:
         weight = [zmp] * wait + _ramp(zmp, rests, self._double) + [rests] * self._single
         swing = Swing(side, feet[side], goal, self._pace.lift)
         weight = self._shifted(weight, dcm, self._end(feet, steps), feet[other(side)], SOLE_ASIDE)
-        return Phase(weight, swing, wait + self._double, len(steps) == 1)
+        return GaitPhase(weight, swing, wait + self._double, len(steps) == 1)
 
-    def settle(self, feet: Feet, dcm: complex, zmp: complex) -> Phase:
+    def settle(self, feet: Feet, dcm: complex, zmp: complex) -> GaitPhase:
         """Both feet stay, the weight comes to rest between them."""
         end = between(feet, self._pace)
         weight = _ramp(zmp, end, self._double) + [end] * (self._settle - self._double)
-        return Phase(self._shifted(weight, dcm, end, feet["L"], self._pace.apart / 2))
+        return GaitPhase(self._shifted(weight, dcm, end, feet["L"], self._pace.apart / 2))
 
-    def divert(self, phase: Phase, feet: Feet, goal: Pose, dcm: complex) -> None:
+    def divert(self, phase: GaitPhase, feet: Feet, goal: Pose, dcm: complex) -> None:
         """Let the foot that moves go there, as the last step."""
         assert phase.swing
         side = phase.swing.side
         phase.swing.turn(max(phase.part, 0.0), goal)
-        end = self._end(feet, [Step(side, goal)])
+        end = self._end(feet, [Footstep(side, goal)])
         weight = phase.zmp[phase.tick :]
         phase.zmp[phase.tick :] = self._shifted(weight, dcm, end, feet[other(side)], SOLE_ASIDE)
         phase.last = True
 
-    def _end(self, feet: Feet, steps: Sequence[Step]) -> complex:
+    def _end(self, feet: Feet, steps: Sequence[Footstep]) -> complex:
         """The DCM at the end of the first of these steps."""
         pace, feet = self._pace, {**feet, steps[0].side: steps[0].pose}
         last, weight = rest(feet, other(steps[0].side), pace), list[complex]()
@@ -98,12 +98,12 @@ class Planner:
         return [point + complex(x, y) * foot.ahead for point in zmp]
 
 
-def rest(feet: Feet, side: Side, pace: Pace) -> complex:
+def rest(feet: Feet, side: Side, pace: GaitParameters) -> complex:
     """Where the weight rests on that foot."""
     return feet[side].place + complex(pace.ahead, -sign(side) * pace.inside) * feet[side].ahead
 
 
-def between(feet: Feet, pace: Pace) -> complex:
+def between(feet: Feet, pace: GaitParameters) -> complex:
     """Where the weight rests on both feet."""
     return (rest(feet, "L", pace) + rest(feet, "R", pace)) / 2
 

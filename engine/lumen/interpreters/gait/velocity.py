@@ -3,9 +3,9 @@
 from math import hypot
 from typing import NamedTuple
 
-from lumen.interpreters.gait.footsteps import WIDEST, Feet, Step, beside, clear
+from lumen.interpreters.gait.footsteps import WIDEST, Feet, Footstep, beside, clear
 from lumen.interpreters.gait.legs import Side, other, sign
-from lumen.interpreters.gait.pace import Pace
+from lumen.interpreters.gait.parameters import GaitParameters
 from lumen.interpreters.gait.poses import Pose
 
 
@@ -16,34 +16,34 @@ class Velocity(NamedTuple):
     y: float = 0.0
     theta: float = 0.0
 
-    def within(self, pace: Pace) -> "Velocity":
+    def within(self, pace: GaitParameters) -> "Velocity":
         """This way at this speed, or at the greatest of that pace."""
         most = fastest(pace)
         haste = hypot(*(part / limit for part, limit in zip(self, most, strict=True)))
         return Velocity(*(part / max(1.0, haste) for part in self))
 
 
-def fastest(pace: Pace) -> Velocity:
+def fastest(pace: GaitParameters) -> Velocity:
     """How fast a robot goes straight ahead, aside or around at that pace, one of them at a time."""
     step = pace.double + pace.single
     aside = min(pace.sideways, (WIDEST - pace.apart) / 2)
     return Velocity(pace.forward / step, aside / step, pace.turn / step)
 
 
-def strides(feet: Feet, velocity: Velocity, first: Side, pace: Pace, count: int) -> list[Step]:
+def strides(feet: Feet, velocity: Velocity, first: Side, pace: GaitParameters, count: int) -> list[Footstep]:
     """The next `count` steps from these feet at that speed; `first` begins, then they alternate.
 
     Each begins where the foot that bears belongs, so that what one step lacks the next one does not repeat. Aside, the
     foot on that side goes for both steps and the other one follows: feet must not touch.
     """
     speed, time = velocity.within(pace), pace.double + pace.single
-    steps: list[Step] = []
+    steps: list[Footstep] = []
     side, bearing = first, feet[other(first)]
     for _ in range(count):
         aside = 2 * speed.y * time if sign(side) * speed.y > 0 else 0.0
         here = bearing.then(Pose(0.0, sign(side) * pace.apart / 2))
         there = here.then(Pose(speed.x * time, aside, speed.theta * time))
-        step = Step(side, clear(beside(there, side, pace), side, bearing))
+        step = Footstep(side, clear(beside(there, side, pace), side, bearing))
         steps.append(step)
         side, bearing = other(side), step.pose
     return steps

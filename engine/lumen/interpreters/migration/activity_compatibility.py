@@ -1,10 +1,10 @@
 """Whether a `do` that is under way can go on as it is written now."""
 
 from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Within
-from lumen.language.actions import Action, If, Parallel, SayText, Step, Wait
+from lumen.language.actions import Action, If, Parallel, PlacedAction, SayText, Wait
 
 
-def can_continue(before: tuple[Step, ...], after: tuple[Step, ...], position: Within) -> bool:
+def can_continue(before: tuple[PlacedAction, ...], after: tuple[PlacedAction, ...], position: Within) -> bool:
     """Whether a `do` that stands there finds its place again.
 
     What has been done already must be of the same verbs, and what is being done the same but for its texts and the
@@ -31,9 +31,9 @@ def _same(before: Action, after: Action, position: Position | None) -> bool:
     return isinstance(position, Awaiting) and before == after
 
 
-def _branch(choice: If, block: str) -> tuple[Step, ...]:
+def _branch(choice: If, block: str) -> tuple[PlacedAction, ...]:
     return choice.then if block == "then" else choice.otherwise
 
 
-def _shape(steps: tuple[Step, ...]) -> list[type]:
+def _shape(steps: tuple[PlacedAction, ...]) -> list[type]:
     return [type(step.action) for step in steps]

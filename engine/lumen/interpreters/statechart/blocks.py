@@ -8,16 +8,16 @@ from lumen.language.actions import (
     Action,
     Assign,
     CancelSend,
+    ComputedValue,
     Expression,
     If,
     LogText,
     Parallel,
+    PlacedAction,
     PublishBody,
     Raise,
     SayText,
     Send,
-    Step,
-    Value,
     Wait,
 )
 from lumen.language.commands import (
@@ -51,7 +51,7 @@ class ActionError(Exception):
     """An action can't be done as it is written; the rest of its block is skipped."""
 
 
-def compile_block(steps: tuple[Step, ...]) -> CompiledBlock:
+def compile_block(steps: tuple[PlacedAction, ...]) -> CompiledBlock:
     """Each action with the place it stands at."""
     return tuple((compile_action(step.action), step.where) for step in steps)
 
@@ -108,7 +108,7 @@ def compile_command(action: Action) -> CommandFactory:
             assert_never(action)
 
 
-def compile_value(value: Value) -> Callable[[Scope], Any]:
+def compile_value(value: ComputedValue) -> Callable[[Scope], Any]:
     """What computes a value; lists and maps become JSON's."""
     match value:
         case Expression(source):
@@ -123,7 +123,7 @@ def compile_value(value: Value) -> Callable[[Scope], Any]:
             return lambda scope: value
 
 
-def _assign(values: Mapping[str, Value]) -> ActionFunction:
+def _assign(values: Mapping[str, ComputedValue]) -> ActionFunction:
     pairs = [(key, compile_value(value)) for key, value in values.items()]
 
     def assign(execution: "ExecutionContext") -> None:

@@ -20,10 +20,10 @@ from lumen.language.actions import (
     If,
     LogText,
     Parallel,
+    PlacedAction,
     PublishBody,
     Raise,
     Send,
-    Step,
     Wait,
 )
 from lumen.language.diagnostics import NodePath
@@ -86,7 +86,7 @@ class ActivityError(Exception):
         self.reason, self.where = reason, where
 
 
-def compile_do(steps: tuple[Step, ...]) -> tuple[CompiledAction, ...]:
+def compile_do(steps: tuple[PlacedAction, ...]) -> tuple[CompiledAction, ...]:
     """The actions of a `do`."""
     return tuple(_compile(step.action, step.where) for step in steps)
 

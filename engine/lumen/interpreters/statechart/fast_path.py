@@ -17,8 +17,7 @@ from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransitio
 from lumen.interpreters.statechart.plans import Configuration, MicrostepPlan, MicrostepPlanner, bound
 from lumen.interpreters.statechart.types import TypeCheck
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
-from lumen.language.actions import Assign, Expression, Value
-from lumen.language.actions import Step as ActionStep
+from lumen.language.actions import Assign, ComputedValue, Expression, PlacedAction
 from lumen.language.events import Event
 from lumen.language.machines import State, Transition
 
@@ -236,12 +235,12 @@ def _sources(transition: Transition) -> Iterator[str]:
         yield from _assigned(step)
 
 
-def _assigned(step: ActionStep) -> Iterator[str]:
+def _assigned(step: PlacedAction) -> Iterator[str]:
     if isinstance(step.action, Assign):
         yield from _in(tuple(step.action.values.values()))
 
 
-def _in(value: Value) -> Iterator[str]:
+def _in(value: ComputedValue) -> Iterator[str]:
     match value:
         case Expression(source):
             yield source

@@ -10,7 +10,7 @@ from lumen.modules.ears.expected import expected
 from lumen.modules.ears.recogniser import Recogniser
 from lumen.modules.module import Module
 from lumen.modules.sound import sound_of
-from lumen.ports import Bus, Handler, Message
+from lumen.ports import Bus, Message, MessageHandler
 
 
 class Ears(Module):
@@ -28,7 +28,7 @@ class Ears(Module):
         self._recogniser = recogniser or _sphinx()
         self._recogniser.expect(expected(project))
 
-    def hears(self) -> Mapping[str, Handler]:
+    def hears(self) -> Mapping[str, MessageHandler]:
         return {"recording": self._sound, "wav_stream": self._sound}
 
     def use(self, project: Project) -> None:

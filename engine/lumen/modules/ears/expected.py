@@ -13,7 +13,7 @@ _WORD = re.compile(r"[a-z][a-z']*")
 def expected(project: Project) -> list[list[str]]:
     """Sentences as words: the phrases and questions that the behaviours listen for in any language, and examples."""
     found = [phrase for machine in project.behaviors.values() for phrase in _phrases(machine)]
-    found += [s.deed.text for story in project.stories.values() for s in story.scenes if isinstance(s.deed, Speak)]
+    found += [s.action.text for story in project.stories.values() for s in story.steps if isinstance(s.action, Speak)]
     return [words for text in dict.fromkeys(found) if (words := _WORD.findall(text.lower()))]
 
 

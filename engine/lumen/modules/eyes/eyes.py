@@ -15,7 +15,7 @@ from lumen.modules.eyes.pictures import Frame, frame_of
 from lumen.modules.eyes.video import ROBOT, VideoSource
 from lumen.modules.eyes.window import Window
 from lumen.modules.module import Module
-from lumen.ports import Bus, Handler, Message
+from lumen.ports import Bus, Message, MessageHandler
 
 FILE = "faces.npz"
 EVERY = 0.1
@@ -62,8 +62,8 @@ class Eyes(Module):
         self._head = ""
         self._window = Window(options["window"]) if "window" in options else None
 
-    def hears(self) -> Mapping[str, Handler]:
-        heard: dict[str, Handler] = {"visual_command": self._enrol, "forgotten": self._forget}
+    def hears(self) -> Mapping[str, MessageHandler]:
+        heard: dict[str, MessageHandler] = {"visual_command": self._enrol, "forgotten": self._forget}
         if self._window:
             heard["joint"] = self._joints
         return heard if self._source else {"image": self._image, **heard}

@@ -12,7 +12,7 @@ from lumen.language.modules import MEMORY
 from lumen.language.projects import Project
 from lumen.modules.memory.store import DAY, JournalEntry, Store
 from lumen.modules.module import Module
-from lumen.ports import Bus, Handler, Message
+from lumen.ports import Bus, Message, MessageHandler
 
 FILE = "memory.db"
 KEEP = 30.0
@@ -50,8 +50,8 @@ class Memory(Module):
         self._sampled: dict[str, float] = {}
         self._met: deque[str] = deque(maxlen=PENDING)
 
-    def hears(self) -> Mapping[str, Handler]:
-        heard: dict[str, Handler] = {
+    def hears(self) -> Mapping[str, MessageHandler]:
+        heard: dict[str, MessageHandler] = {
             "state": self._state,
             "heard": lambda m: self._note("heard", m.body, "result"),
             "recognised": lambda m: self._note("recognised", m.body, "name"),

@@ -8,7 +8,7 @@ from lumen.language.modules import VOICE
 from lumen.language.projects import Project
 from lumen.modules.module import Module
 from lumen.modules.voice.espeak import espeak
-from lumen.ports import Bus, Handler, Message
+from lumen.ports import Bus, Message, MessageHandler
 
 
 class Voice(Module):
@@ -20,7 +20,7 @@ class Voice(Module):
         super().__init__(project, bus, tell)
         self._espeak = espeak()
 
-    def hears(self) -> Mapping[str, Handler]:
+    def hears(self) -> Mapping[str, MessageHandler]:
         return {"text_stream": self._text}
 
     def _text(self, message: Message) -> None:

@@ -3,7 +3,7 @@
 import logging
 
 from lumen.errors import RobotError
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.robots.cues import Notice, Prompter
 from lumen.robots.naoqi.lights import fades
 from lumen.robots.naoqi.link import Call
@@ -18,7 +18,7 @@ _log = logging.getLogger(__name__)
 class Beside:
     """The cues of a motion, each when its time has come; a sound that can't be played is logged once in `silent`."""
 
-    def __init__(self, post: Post, motion: Motion, notice: Notice, silent: set[str]) -> None:
+    def __init__(self, post: Post, motion: MotionDefinition, notice: Notice, silent: set[str]) -> None:
         self._post, self._silent = post, silent
         self._cues = sorted((cue for cue in motion.cues if cue.kind in ("leds", "sound")), key=lambda cue: -cue.time)
         self._prompter = Prompter(motion, notice)

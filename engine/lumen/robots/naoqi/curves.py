@@ -10,7 +10,7 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from lumen.interpreters.segments import Bezier, Polynomial, Segment
-from lumen.interpreters.trajectory import Track
+from lumen.interpreters.trajectory import JointTrack
 
 CYCLE = 0.02
 """ALMotion's period [s]."""
@@ -43,7 +43,7 @@ class Curves(NamedTuple):
     controls: list[list[list[Any]]]
 
 
-def curves(tracks: Iterable[Track]) -> Curves:
+def curves(tracks: Iterable[JointTrack]) -> Curves:
     """These tracks for NAOqi; it begins each where the joint stands, which should be where the track begins.
 
     Which handle NAOqi gives to that beginning is not documented. So the first key stands one of its cycles later, on

@@ -8,9 +8,9 @@ from lumen.errors import RobotError
 from lumen.interpreters.choreography import joined
 from lumen.interpreters.limits import TOLERANCE
 from lumen.interpreters.postures import UPRIGHT
-from lumen.interpreters.trajectory import Track, Trajectory
+from lumen.interpreters.trajectory import JointTrack, Trajectory
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.robots.cues import Notice
 from lumen.robots.naoqi.beside import Beside
@@ -27,7 +27,7 @@ BRISK = 0.8
 """Which part of its greatest speed a joint uses at most on the ways that are ours."""
 
 
-def fitted(motion: Motion, body: Body, start: Mapping[str, float]) -> Motion:
+def fitted(motion: MotionDefinition, body: Body, start: Mapping[str, float]) -> MotionDefinition:
     """The motion from these angles on [rad], begun so much later that no joint has to hurry to its first key.
 
     Raises RobotError for joints that the body lacks, and for angles and speeds that it can't have.
@@ -46,7 +46,7 @@ def fitted(motion: Motion, body: Body, start: Mapping[str, float]) -> Motion:
     return replace(motion, duration=later.duration, tracks=later.tracks, cues=later.cues)
 
 
-def _late(track: Track, motion: Motion, body: Body) -> float:
+def _late(track: JointTrack, motion: MotionDefinition, body: Body) -> float:
     """How much more time the joint needs to its first key [s]. Raises RobotError for what it can't do later on."""
     limit, late = body.joints[track.joint], 0.0
     for i, segment in enumerate(track.segments):
@@ -70,7 +70,7 @@ class Player:
         self._post, self._body, self._notice, self._clock = post, body, notice, clock
         self._silent: set[str] = set()
 
-    def begin(self, motion: Motion, owned: Sequence[str]) -> Deed:
+    def begin(self, motion: MotionDefinition, owned: Sequence[str]) -> Deed:
         """The motion under way; `owned` are the joints that it may bring to its posture before and after.
 
         Raises RobotError, and moves nothing, for a motion that this body can't play.
@@ -87,7 +87,9 @@ class Player:
 
         return Deed(self._perform(motion, home, joints, playing), abort, lambda: self._recover(home))
 
-    def _perform(self, motion: Motion, home: Mapping[str, float], joints: list[str], playing: list[Beside]) -> Doing:
+    def _perform(
+        self, motion: MotionDefinition, home: Mapping[str, float], joints: list[str], playing: list[Beside]
+    ) -> Doing:
         yield from self._ready(motion)
         here = yield from self._stand(joints)
         if self._away(home, here):
@@ -107,7 +109,7 @@ class Player:
             yield None
         beside(now)
 
-    def _ready(self, motion: Motion) -> Doing:
+    def _ready(self, motion: MotionDefinition) -> Doing:
         """Raises RobotError where the robot is not in a posture to begin in."""
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
             raise RobotError("the motors are off: `wake` first")
@@ -140,7 +142,7 @@ class Player:
         times = [[max(seconds, needed)]] * len(goal)
         return self._post("ALMotion", "angleInterpolation", list(goal), [[a] for a in goal.values()], times, True)
 
-    def _inside(self, motion: Motion, here: Mapping[str, float]) -> dict[str, float]:
+    def _inside(self, motion: MotionDefinition, here: Mapping[str, float]) -> dict[str, float]:
         """Where each joint of the motion stands, inside its limits; one without a motor stands as its leader does."""
         found = {}
         for joint in motion.tracks:
@@ -148,7 +150,7 @@ class Player:
             found[joint] = min(max(float(here[self._body.shared.get(joint, joint)]), limit.minimum), limit.maximum)
         return found
 
-    def _driven(self, tracks: Sequence[Track]) -> list[Track]:
+    def _driven(self, tracks: Sequence[JointTrack]) -> list[JointTrack]:
         """The tracks under the names of motors; where one has two, its own joint decides."""
         shared, moved = self._body.shared, {track.joint for track in tracks}
         return [t._replace(joint=shared.get(t.joint, t.joint)) for t in tracks if shared.get(t.joint) not in moved]

@@ -8,7 +8,7 @@ from typing import Protocol
 from lumen.errors import RobotError
 from lumen.interpreters.postures import UPRIGHT, lies, passage, route
 from lumen.interpreters.trajectory import Trajectory
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.transition import Transition, duration
@@ -35,7 +35,7 @@ class Stance:
     """In which posture the robot is; between two of them, on which passage, and how far along it [s]."""
 
     posture: str
-    passage: Motion | None = None
+    passage: MotionDefinition | None = None
     reached: float = 0.0
 
     @property
@@ -152,7 +152,7 @@ class _Straight:
 class _Passing:
     """Along a passage, from the time `reached` [s] of it; then it comes to rest."""
 
-    def __init__(self, motors: Motors, motion: Motion, now: float, reached: float = 0.0) -> None:
+    def __init__(self, motors: Motors, motion: MotionDefinition, now: float, reached: float = 0.0) -> None:
         self.motion, self.end, self.reached = motion, motion.end, reached
         self._motors, self._begin = motors, now - reached
         self._trajectory = Trajectory(motion, motors.wanted(motion.tracks) if not reached else None)

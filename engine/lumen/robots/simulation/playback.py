@@ -5,7 +5,7 @@ from math import isfinite
 
 from lumen.errors import RobotError
 from lumen.interpreters.trajectory import Trajectory
-from lumen.language.motions import Cue, Motion
+from lumen.language.motions import Cue, MotionDefinition
 from lumen.robots.cues import Notice, Prompter
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors
@@ -29,7 +29,7 @@ class Playback:
         self,
         motors: Motors,
         lights: Lights,
-        motion: Motion,
+        motion: MotionDefinition,
         home: Mapping[str, float],
         now: float,
         notice: Notice = lambda _: None,
@@ -109,7 +109,7 @@ class Speech:
         self._voice.end(self._now)
 
 
-def _check(motors: Motors, motion: Motion) -> None:
+def _check(motors: Motors, motion: MotionDefinition) -> None:
     numbers = (x for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle))
     if not (isfinite(motion.duration) and all(map(isfinite, numbers))):
         raise RobotError(f"`{motion.name}` holds an angle or a time that is no number")

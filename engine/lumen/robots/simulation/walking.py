@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotError
-from lumen.interpreters.gait import GENTLE, JOINTS, SIDES, Gait, Pose, Velocity, middle
+from lumen.interpreters.gait import GENTLE_GAIT, JOINTS, SIDES, Gait, Pose, Velocity, middle
 from lumen.language.commands import Move, Walk
 from lumen.robots.simulation.anatomy import Anatomy
 from lumen.robots.simulation.balance import Balance
@@ -87,7 +87,7 @@ class Walker:
             raise RobotError(f"{reason}: the robot did not set out")
         feet = self.whereabouts.feel(self.measured())
         goal = way if isinstance(way, Velocity) else middle(feet).then(way)
-        gait = Gait(feet, goal, self._centre_of_mass, GENTLE if self._hot() else None)
+        gait = Gait(feet, goal, self._centre_of_mass, GENTLE_GAIT if self._hot() else None)
         self.whereabouts.check(gait.coming)
         self._walking = Walking(self, gait, now)
         return self._walking

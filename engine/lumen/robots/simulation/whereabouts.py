@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from lumen.errors import RobotError
-from lumen.interpreters.gait import Feet, Pose, Step, corners, foot_from, middle
+from lumen.interpreters.gait import Feet, Footstep, Pose, corners, foot_from, middle
 from lumen.interpreters.gait.poses import wrap
 from lumen.interpreters.postures import lies
 from lumen.language.projects import Stage
@@ -57,7 +57,7 @@ class Whereabouts:
         """Believe that the feet stand there."""
         self.feet, self._here = feet, middle(feet)
 
-    def check(self, steps: Iterable[Step], drift: float = 0.0) -> None:
+    def check(self, steps: Iterable[Footstep], drift: float = 0.0) -> None:
         """Raises RobotError for a step farther beyond the stage than `drift` [m], or than the feet stand already.
 
         In doubt, the stage is that much smaller on every side: wherever the robot really is, it stays on it. A stage
@@ -65,7 +65,7 @@ class Whereabouts:
         """
         if self._stage is None:
             return
-        stand = [corner for side, pose in self.feet.items() for corner in corners(Step(side, pose))]
+        stand = [corner for side, pose in self.feet.items() for corner in corners(Footstep(side, pose))]
         for step in steps:
             reached = corners(step)
             for axis, (low, high), before, after in (

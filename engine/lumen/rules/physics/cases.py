@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from lumen.interpreters.postures import UPRIGHT
-from lumen.language.actions import If, Parallel, Step
+from lumen.language.actions import If, Parallel, PlacedAction
 from lumen.language.commands import Play, Posture, Wake, Walk
 from lumen.language.machines import MachineDefinition
-from lumen.language.motions import Motion
+from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.ports import Perform, RobotCommand
 
@@ -23,7 +23,7 @@ class Case:
     """A motion of `folder`, what the robot does before it, and the `command` that plays it."""
 
     folder: str
-    motion: Motion
+    motion: MotionDefinition
     before: Before
     command: RobotCommand
 
@@ -70,7 +70,7 @@ def _to(posture: str) -> Before:
     return () if posture == FIRST else (Posture(posture, 1.0),)
 
 
-def _end(motions: Mapping[str, Motion], action: object) -> Before | None:
+def _end(motions: Mapping[str, MotionDefinition], action: object) -> Before | None:
     """What a robot does to be where this action leaves it; None for one that moves neither arms nor legs."""
     match action:
         case Posture(name):
@@ -90,7 +90,7 @@ def _upright(end: Before) -> bool:
     return True
 
 
-def _played(step: Step) -> Iterator[str]:
+def _played(step: PlacedAction) -> Iterator[str]:
     match step.action:
         case Play(name):
             yield name
@@ -99,14 +99,14 @@ def _played(step: Step) -> Iterator[str]:
                 yield from _played(branch)
 
 
-def _blocks(machine: MachineDefinition) -> Iterator[Sequence[Step]]:
+def _blocks(machine: MachineDefinition) -> Iterator[Sequence[PlacedAction]]:
     """Every list of actions, those inside others too."""
     for state in machine.states.values():
         for block in (state.entry, state.do, state.exit, *(t.actions for t in state.transitions)):
             yield from _nested(block)
 
 
-def _nested(block: Sequence[Step]) -> Iterator[Sequence[Step]]:
+def _nested(block: Sequence[PlacedAction]) -> Iterator[Sequence[PlacedAction]]:
     yield block
     for step in block:
         match step.action:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import degrees
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Places
-from lumen.language.motions import Key
+from lumen.language.motions import Keyframe
 from lumen.rules.codes import CODES
 from lumen.rules.physics import FELL, Outcome, Rehearsal
 from lumen.rules.physics.trial import FALLS, SLID, Moment
@@ -151,7 +151,7 @@ def _name(what: str) -> str:
     return _FEET.get(what, what if " " in what else f"`{what}`")
 
 
-def _keyframe(key: Key) -> NodePath:
+def _keyframe(key: Keyframe) -> NodePath:
     """Where the keyframe of a key stands: the innermost item of a list of keyframes."""
     last = max((i for i, step in enumerate(key.where) if step == "keyframes"), default=None)
     if last == len(key.where) - 1:

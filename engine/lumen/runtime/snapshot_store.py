@@ -20,7 +20,7 @@ SPACING = 0.02
 """How long after a snapshot the next is written at the earliest [s]: a simulation may take a hundred steps in that."""
 
 
-class Kept(NamedTuple):
+class StoredSnapshot(NamedTuple):
     """A snapshot as it was written: of which bundle and behaviour, at which time (Unix), frozen.
 
     `tracking` are the controllers that were on.
@@ -33,7 +33,7 @@ class Kept(NamedTuple):
     tracking: tuple[str, ...] = ()
 
 
-class Keeper:
+class SnapshotStore:
     """Writes snapshots (`count` of them) and bundles into a home; `trouble` says why it could not, once.
 
     Where only the time of a snapshot differs from the one before, nothing is written: its timers have deadlines.
@@ -75,14 +75,14 @@ class Keeper:
         self._last = snapshot
         self.count += 1
 
-    def kept(self) -> Kept | None:
+    def kept(self) -> StoredSnapshot | None:
         """The snapshot of a run that did not end by itself, None where there is none that can be read."""
         try:
             data = json.loads(self._home.read(SNAPSHOT) or b"")
             if data["version"] != VERSION:
                 return None
             tracking = tuple(map(str, data["tracking"]))
-            return Kept(
+            return StoredSnapshot(
                 str(data["bundle"]), str(data["behavior"]), float(data["time"]), dict(data["snapshot"]), tracking
             )
         except (ValueError, TypeError, KeyError):

@@ -20,7 +20,7 @@ LASTING = 10.0
 _log = logging.getLogger(__name__)
 
 
-class Trace(Observer):
+class TracePublisher(Observer):
     """Publishes each step that changed something, each command as it is given, and its answer.
 
     `project` is asked for the bundle that runs, `now` for the time [s].

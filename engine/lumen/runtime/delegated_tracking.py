@@ -8,7 +8,7 @@ from lumen.errors import BusError
 from lumen.language.commands import Track
 from lumen.language.projects import Project
 from lumen.ports import Bus, Perform
-from lumen.runtime.tracking import Tracking
+from lumen.runtime.tracking import LocalTracking
 
 KEY, ROUTE = "lumen.motion.{robot}.command", "motion"
 LASTING = 2.0
@@ -22,7 +22,7 @@ def motion_key(project: Project) -> str:
     return row.key_for(project.robot) if row else KEY.replace("{robot}", project.robot)
 
 
-class Delegating:
+class DelegatedTracking:
     """Controllers that are on, and motions, in the hands of the motion module while it is `able`.
 
     `able` is the session of a motion module that has the very files that run here, empty where there is none; `time`
@@ -30,7 +30,7 @@ class Delegating:
     """
 
     def __init__(
-        self, own: Tracking, project: Project, bus: Bus, able: Callable[[], str], time: Callable[[], float | None]
+        self, own: LocalTracking, project: Project, bus: Bus, able: Callable[[], str], time: Callable[[], float | None]
     ) -> None:
         self._own, self._project, self._bus, self._able, self._time = own, project, bus, able, time
         self._on: dict[str, None] = {}

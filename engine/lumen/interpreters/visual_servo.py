@@ -18,15 +18,15 @@ from lumen.interpreters.projection import after_turning
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 
-Angles = dict[str, float]
+JointAngles = dict[str, float]
 
-STEP = 2**0.5
+ZOOM_STEP = 2**0.5
 """From one magnification to the next."""
 
 _YAW, _PITCH = "HeadYaw", "HeadPitch"
 
 
-class Glance:
+class VisualServo:
     """Turns a sight into a turn, for a controller bound to joints of a body."""
 
     def __init__(self, controller: ControllerDefinition, body: Body) -> None:
@@ -40,7 +40,7 @@ class Glance:
         self._across, self._down = _image_inputs(controller)
         self._previous: dict[str, float] = {}
 
-    def turn(self, inputs: Mapping[str, float], pose: Mapping[str, float]) -> Angles:
+    def turn(self, inputs: Mapping[str, float], pose: Mapping[str, float]) -> JointAngles:
         """How far to turn each joint [rad] for these inputs, seen with the joints at `pose` [rad]."""
         turned = dict.fromkeys(pose, 0.0)
         seen: Mapping[str, float] | None = inputs
@@ -50,7 +50,7 @@ class Glance:
             seen = self._after(inputs, pose, turned)
         return turned
 
-    def _once(self, inputs: Mapping[str, float]) -> Angles:
+    def _once(self, inputs: Mapping[str, float]) -> JointAngles:
         """What the controller says of one image."""
         outputs: dict[str, float] = {}
         for zoom in self._zooms():
@@ -69,7 +69,7 @@ class Glance:
         zoom = 1.0
         while zoom <= self._controller.tracking.zoom:
             yield zoom
-            zoom *= STEP
+            zoom *= ZOOM_STEP
 
     def _within(self, inputs: Mapping[str, float]) -> dict[str, float]:
         ranges = self._controller.inputs

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
+class GaitParameters:
     """Times in [s], lengths in [m], angles in [rad]. Found in simulation: this pace walked with every mass and floor.
 
     A step takes `double` on both feet and `single` on one. With each step the body goes at most `forward`, `sideways`
@@ -28,5 +28,5 @@ class Pace:
     settle: float = 0.35
 
 
-GENTLE = Pace(forward=0.03, sideways=0.02, turn=0.12, lift=0.02)
+GENTLE_GAIT = GaitParameters(forward=0.03, sideways=0.02, turn=0.12, lift=0.02)
 """Shorter and lower steps, for a robot whose motors are hot."""

@@ -12,7 +12,7 @@ MOST = 20
 """How many bundles are remembered, the latest."""
 
 
-class Trials:
+class CrashCounter:
     """Counts in a home how often each bundle came in force and ended the exhibition before it had stood its probation.
 
     A count is written before the bundle is in force, for who crashes writes nothing.

@@ -4,15 +4,15 @@ from bisect import bisect_left, bisect_right
 from collections import deque
 from collections.abc import Mapping
 
-Angles = dict[str, float]
+JointAngles = dict[str, float]
 
 
-class Course:
+class JointHistory:
     """The angles [rad] of some joints at increasing times [s]; what is older than `memory` [s] is forgotten."""
 
     def __init__(self, memory: float) -> None:
         self.memory = memory
-        self.known: deque[tuple[float, Angles]] = deque()
+        self.known: deque[tuple[float, JointAngles]] = deque()
 
     def __bool__(self) -> bool:
         return bool(self.known)
@@ -30,7 +30,7 @@ class Course:
         while len(self.known) > 1 and self.known[1][0] < time - self.memory:
             self.known.popleft()
 
-    def at(self, time: float) -> Angles:
+    def at(self, time: float) -> JointAngles:
         """Where the joints were, on the straight way from one known place to the next; the nearest outside them."""
         i = bisect_left(self.known, time, key=lambda entry: entry[0])
         if i == 0 or i == len(self.known):

@@ -23,16 +23,16 @@ from lumen.language.commands import (
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
-from lumen.runtime.trace import KEY, ROUTE
+from lumen.runtime.trace_publisher import KEY, ROUTE
 
-WAITING = 10_000
+MAX_PENDING_TRACES = 10_000
 
 _VERBS: Mapping[str, type] = {
     kind.__name__.lower(): kind for kind in (Say, Play, Posture, Walk, Move, Look, Track, Stop, Rest, Wake, Language)
 }
 
 
-class Watching(Protocol):
+class TraceListener(Protocol):
     """Somebody who is told of what is seen."""
 
     def see(self, states: frozenset[str], entered: tuple[str, ...], context: Mapping[str, Any]) -> None: ...
@@ -42,16 +42,16 @@ class Watching(Protocol):
     def answered(self, event: Event) -> None: ...
 
 
-class Onlooker:
-    """Hears what a behaviour does (`Trace`) and tells `watchers` of it, at each `tick`.
+class TraceSubscriber:
+    """Hears what a behaviour does (`TracePublisher`) and tells `watchers` of it, at each `tick`.
 
     It is the scenery of a story: `happen` lets something happen to the robot.
     """
 
     def __init__(self, project: Project, bus: Bus, happen: Callable[[Event], None]) -> None:
         self.project, self.bus, self.happen = project, bus, happen
-        self.watchers: list[Watching] = []
-        self._came: deque[Message] = deque(maxlen=WAITING)
+        self.watchers: list[TraceListener] = []
+        self._came: deque[Message] = deque(maxlen=MAX_PENDING_TRACES)
         row = project.routes.get(ROUTE)
         self._undo = bus.subscribe(row.key_for(project.robot) if row else KEY, self._came.append)
 
@@ -67,7 +67,7 @@ class Onlooker:
         self._undo()
 
 
-def _tell(watcher: Watching, body: dict[str, Any], now: float) -> None:
+def _tell(watcher: TraceListener, body: dict[str, Any], now: float) -> None:
     match body:
         case {"states": list(states), "context": dict(context)}:
             watcher.see(frozenset(map(str, states)), tuple(map(str, body.get("entered", ()))), context)
