@@ -11,6 +11,7 @@ editor counts them: a function's from its `def` to its end, its docstring includ
 
 import argparse
 import ast
+import gc
 import json
 import re
 import subprocess
@@ -147,9 +148,17 @@ def function_sizes(files: Iterable[SourceFile]) -> list[Size]:
     return sorted(
         Size((node.end_lineno or node.lineno) - node.lineno + 1, f"{node.name} in {file.path}")
         for file in files
-        for node in ast.walk(file.tree)
+        for node in _statements(file.tree)
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
     )
+
+
+def _statements(parent: ast.AST) -> Iterator[ast.AST]:
+    """The statements beneath a node, at any depth; quicker than `ast.walk`, which looks into expressions, too."""
+    for node in ast.iter_child_nodes(parent):
+        if isinstance(node, ast.stmt | ast.excepthandler | ast.match_case):
+            yield node
+            yield from _statements(node)
 
 
 def type_names(file: SourceFile) -> set[str]:
@@ -415,4 +424,5 @@ def _keep(page: Path, text: str, *, only_check: bool) -> None:
 
 
 if __name__ == "__main__":
+    gc.disable()  # the trees stay until the end: looking for what could go took two fifths of the time
     main()
