@@ -26,7 +26,7 @@ from lumen.language.routes import SIZES, Size
 from lumen.language.stories import Visitor
 from lumen.ports import Image, Perform, RobotCommand, Sense
 from lumen.robots.simulation import SimulatedRobot, available
-from lumen.robots.simulation.world import PERIOD, World
+from lumen.robots.simulation.world import CONTROL_PERIOD, World
 
 ROOT = Path(__file__).parent.parent
 SECONDS = 20.0
@@ -47,7 +47,7 @@ def against_bare(name: str, robot: SimulatedRobot, live: Callable[[], object]) -
     live()
     took = process_time() - begin
     del world.step
-    bare, time = _bare(world, beginning, told), PERIOD * len(told)
+    bare, time = _bare(world, beginning, told), CONTROL_PERIOD * len(told)
     print(
         f"{name:<18} {time / took:6.1f} x real time   bare {time / bare:6.1f} x   {bare / took:.2f} of bare", flush=True
     )
@@ -66,7 +66,7 @@ def _listen(world: World, told: Told) -> None:
 
 def _bare(world: World, beginning: NDArray[np.float64], told: Told) -> float:
     """The CPU time [s] of bare steps through what the servos were told."""
-    model, data, steps = world.model, mujoco.MjData(world.model), round(PERIOD / world.model.opt.timestep)
+    model, data, steps = world.model, mujoco.MjData(world.model), round(CONTROL_PERIOD / world.model.opt.timestep)
     mujoco.mj_setState(model, data, beginning, BEGINNING)
     mujoco.mj_forward(model, data)
     begin = process_time()

@@ -25,7 +25,7 @@ from lumen.language.robots import Body
 from lumen.motion import Motion
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.model import Variation
-from lumen.robots.simulation.world import PERIOD
+from lumen.robots.simulation.world import CONTROL_PERIOD
 
 MISS, EFFORT, BUMP, TIME, BEYOND, WORST = 2.0, 0.4, 1.0, 0.01, 1.0, 0.3
 """The price of how far the torso's up ends from where it should, of the mean of the motors' load cubed, of what the
@@ -89,12 +89,12 @@ class Trial:
         motors.goal, motors.command = (angles.copy() for angles in self._stance)
         course, loads, sinking = Trajectory(motion, motors.wanted(motion.tracks)), [], 0.0
         still = np.zeros(len(motors.names))
-        for tick in range(round((motion.duration + SETTLING) / PERIOD)):
-            motors.aim(course.sample(tick * PERIOD))
-            motors.drive(still, PERIOD)
+        for tick in range(round((motion.duration + SETTLING) / CONTROL_PERIOD)):
+            motors.aim(course.sample(tick * CONTROL_PERIOD))
+            motors.drive(still, CONTROL_PERIOD)
             before = world.data.xpos[world.torso][2]
             world.step()
-            sinking = max(sinking, float(before - world.data.xpos[world.torso][2]) / PERIOD)
+            sinking = max(sinking, float(before - world.data.xpos[world.torso][2]) / CONTROL_PERIOD)
             loads.append(np.mean(np.abs(world.torques[world.driven] / motors.effort[world.driven]) ** 3))
         miss = float(np.linalg.norm(np.array(world.up) - self._sought))
         return MISS * miss + EFFORT * float(np.mean(loads)) + BUMP * max(0.0, sinking - GENTLE) + TIME * motion.duration

@@ -35,7 +35,7 @@ from lumen.language.projects import Project
 from lumen.ports import Image as Frame
 from lumen.ports import Perform, Sense
 from lumen.robots.simulation import SimulatedRobot, available
-from lumen.robots.simulation.rendering import Quality, Scene, Studio
+from lumen.robots.simulation.rendering import RenderQuality, RenderState, SceneRenderer
 
 HERE = Path(__file__).parent
 MID_DANCE = 7.0
@@ -52,8 +52,8 @@ def robot_of(project: Project) -> SimulatedRobot:
 
 def picture(robot: SimulatedRobot, camera: str | mujoco.MjvCamera, width: int, height: int) -> Image.Image:
     """What a camera sees now, one of the hall or another."""
-    studio = Studio(robot.world.model, Quality(shadows=4096, samples=4))
-    pixels = studio.draw(Scene.of(robot.world.model, robot.world.data), camera, width, height)
+    studio = SceneRenderer(robot.world.model, RenderQuality(shadows=4096, samples=4))
+    pixels = studio.draw(RenderState.of(robot.world.model, robot.world.data), camera, width, height)
     studio.close()
     return Image.fromarray(pixels)
 

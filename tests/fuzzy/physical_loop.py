@@ -10,7 +10,7 @@ from lumen.interpreters.projection import centring
 from lumen.language.commands import Look, Track
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.robots.server import Server
+from lumen.robots.server import RobotServer
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.tracking import LocalTracking
@@ -41,7 +41,7 @@ def run(
     few = replace(project, routes={name: project.routes[name] for name in ("face", "joint")})
     robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall, stage=project.stage)
     bus = connect("memory://")
-    server = Server(few, robot, bus)
+    server = RobotServer(few, robot, bus)
     robot.place(visitor(0.0))
     robot.advance(0.2)
     goal = towards_face(robot)

@@ -8,8 +8,8 @@ import qi
 from lumen.interpreters.projection import seen
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
-from lumen.robots.naoqi.noticing import event_of
-from lumen.robots.recording import FACE, PODIUM, TORSO
+from lumen.robots.naoqi.naoqi_events import event_of
+from lumen.robots.recording import FACE_HEIGHT_FRACTION, PODIUM_HEIGHT, TORSO_HEIGHT
 from tests.naoqi.services import SERVICES, ALAudioDevice, ALMemory, ALSonar, ALVideoDevice, World
 
 
@@ -61,7 +61,11 @@ class FakeNao:
         if self._visitor is None:
             return None
         angles = self.world.joints.angles()
-        place = (self._visitor.x, self._visitor.y, self._visitor.height * FACE - PODIUM - TORSO)
+        place = (
+            self._visitor.x,
+            self._visitor.y,
+            self._visitor.height * FACE_HEIGHT_FRACTION - PODIUM_HEIGHT - TORSO_HEIGHT,
+        )
         return seen(place, self.world.body.camera, angles["HeadYaw"], angles["HeadPitch"])
 
     def touch(self, sensor: str, pressed: bool) -> None:

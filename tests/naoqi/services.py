@@ -6,7 +6,7 @@ from typing import Any
 
 import qi
 
-from lumen.robots.naoqi.instruments import CHARGE, CHARGING, INERTIAL, PLUGGED, SOLES, TOUCHES, device
+from lumen.robots.naoqi.sensors import CHARGE, CHARGING, FORCE_SENSORS, INERTIAL, PLUGGED, TOUCH_DEVICES, device
 from tests.naoqi.joints import Joints, bezier
 from tests.naoqi.times import Blocked, Times
 
@@ -254,8 +254,8 @@ class ALMemory:
             CHARGING: world.charging,
             **{device(f"{joint}/Temperature"): world.temperatures.get(joint, 40.0) for joint in world.body.joints},
             **{device(f"InertialSensor/{name}"): 9.81 if name == "AccelerometerZ" else 0.0 for name in INERTIAL},
-            **{device(name): 2.7 if name.endswith("TotalWeight") else 0.675 for name in SOLES},
-            **{device(d): float(name in world.pressed) for name, devices in TOUCHES.items() for d in devices},
+            **{device(name): 2.7 if name.endswith("TotalWeight") else 0.675 for name in FORCE_SENSORS},
+            **{device(d): float(name in world.pressed) for name, devices in TOUCH_DEVICES.items() for d in devices},
         }
         return known.get(key) if key not in world.lacks else None
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from lumen.language.projects import Project
-from lumen.robots.naoqi.curves import ERROR, curves
+from lumen.robots.naoqi.curves import MAX_CURVE_ERROR, curves
 from tests.naoqi.joints import bezier
 
 
@@ -27,7 +27,7 @@ def test_the_shipped_motions_are_carried_over(project: Project, name: str) -> No
     motion = project.motions[name]
     start = {joint: motion.origin.get(joint, keys[0].angle) for joint, keys in motion.tracks.items()}
     few = dict(list(motion.tracks.items())[::9])
-    assert worst(MotionDefinition(name, motion.duration, few), start) < ERROR
+    assert worst(MotionDefinition(name, motion.duration, few), start) < MAX_CURVE_ERROR
 
 
 angles = st.floats(-pi / 2, pi / 2)
@@ -46,12 +46,12 @@ def test_any_motion_is_carried_over(rows: list[tuple], start: float) -> None:  #
         time += gap
         keys.append(Keyframe(time, angle, kind, (-dt_in, da_in), out))
     found = worst(MotionDefinition("any", time, {"HeadYaw": tuple(keys)}), {"HeadYaw": start})
-    assert found < ERROR
+    assert found < MAX_CURVE_ERROR
 
 
 def test_minimum_jerk_is_as_near_as_stated() -> None:
     motion = MotionDefinition("far", 2.0, {"HeadYaw": (Keyframe(2.0, 1.5, Interpolation.MINIMUM_JERK),)})
-    assert 1e-5 < worst(motion, {"HeadYaw": -1.5}) < ERROR
+    assert 1e-5 < worst(motion, {"HeadYaw": -1.5}) < MAX_CURVE_ERROR
 
 
 def test_a_line_is_one_piece_and_its_first_cycle() -> None:

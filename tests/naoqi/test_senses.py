@@ -8,7 +8,7 @@ import pytest
 from lumen.language.commands import Posture
 from lumen.language.routes import Size
 from lumen.ports import Battery, Image, Joints, Sense, Tactile
-from lumen.robots.naoqi.instruments import INERTIAL, SOLES, device
+from lumen.robots.naoqi.sensors import FORCE_SENSORS, INERTIAL, device
 from tests.naoqi.conftest import Live
 from tests.naoqi.lockstep import Lockstep
 from tests.waiting import until
@@ -115,7 +115,7 @@ def test_what_it_feels_travels_with_its_joints(robot: Lockstep) -> None:
     assert (heat["LHipYawPitch"], heat["RHipYawPitch"], heat["HeadYaw"]) == (51.5, 51.5, 40.0)
     assert joints.inertial == {**dict.fromkeys(set(INERTIAL) - {"AngleZ"}, 0.0), "AccelerometerZ": 9.81}
     assert joints.fsr["LFoot/FSR/TotalWeight"] == 2.7
-    assert joints.fsr.keys() == set(SOLES)
+    assert joints.fsr.keys() == set(FORCE_SENSORS)
 
 
 def test_a_robot_that_feels_nothing_has_its_joints_all_the_same(

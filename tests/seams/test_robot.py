@@ -16,7 +16,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Hall, Joints, Perform, Record, Robot, Sense, Sonar, Tactile
 from lumen.robots.recording import RecordingRobot
-from lumen.robots.remote import Host, RemoteHall, RemoteRobot
+from lumen.robots.remote import RemoteHall, RemoteRobot, RobotHost
 from lumen.robots.simulation import SimulatedRobot
 from tests.naoqi.lockstep import Lockstep
 from tests.tour.names import ROOT
@@ -41,7 +41,7 @@ class Remote(RemoteRobot):
 
     def __init__(self, project: Project) -> None:
         self._far, wire = RecordingRobot(project.body), validated(connect("memory://"), project)
-        self._host = Host(project, self._far, wire, self._far)
+        self._host = RobotHost(project, self._far, wire, self._far)
         self._hall = RemoteHall(project, wire)
         super().__init__(project, wire, lambda: self._far.time, patience=lambda: self._far.time)
         self.advance(0.02)

@@ -8,7 +8,7 @@ import numpy as np
 from lumen.bus import Bus, connect
 from lumen.language.events import Event
 from lumen.ports import Battery, Image, Joints, Reading, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.server import Server
+from lumen.robots.server import RobotServer
 from tests.exhibits import JOINTS, TACTILE, project
 from tests.waiting import Collector
 
@@ -63,7 +63,7 @@ class Stand:
         self.robot, self.bus, self.heard = Puppet(), bus or connect("memory://"), Collector()
         self.bus.subscribe("avatar.NAO.data.#", self.heard)
         self.clock = 0.0
-        self.server = Server(project(**changes), self.robot, self.bus, date=lambda: DATE, clock=lambda: self.clock)
+        self.server = RobotServer(project(**changes), self.robot, self.bus, date=lambda: DATE, clock=lambda: self.clock)
 
     def live(self, seconds: float, tick: float = 0.02) -> None:
         for i in range(round(seconds / tick)):

@@ -14,7 +14,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.modules.sound import Sound, sound_of
 from lumen.ports import Aim, Message, Perform
 from lumen.robots.recording import RecordingRobot
-from lumen.robots.server import Server
+from lumen.robots.server import RobotServer
 from tests.exhibits import project
 from tests.server.stand import PATIENT, PROJECT, Caller, Stand, without
 from tests.waiting import Collector
@@ -235,7 +235,7 @@ def test_after_closing_no_command_is_taken() -> None:
 def test_a_recording_is_for_modules_and_on_its_own_route() -> None:
     robot = RecordingRobot(PROJECT.body)
     bus = validated(connect("memory://"), PROJECT)
-    server, came, told = Server(PROJECT, robot, bus), Collector(), Collector()
+    server, came, told = RobotServer(PROJECT, robot, bus), Collector(), Collector()
     bus.subscribe("avatar.NAO.data.recording", came)
     bus.subscribe("avatar.NAO.event.noticed", told)
     order = {"type": "audiodevice", "Method": "record", "parameter": {"recordingName": "r1", "duration": 0.5}}

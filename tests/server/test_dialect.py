@@ -10,7 +10,7 @@ from lumen.errors import RobotError
 from lumen.language.commands import Language, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.motions import MotionDefinition
 from lumen.ports import Aim, Perform, Record
-from lumen.robots.dialect import command_from
+from lumen.robots.command_codec import command_from
 from tests.exhibits import project
 
 PROJECT = project()

@@ -7,7 +7,7 @@ import pytest
 import lumen
 from lumen.errors import RobotError
 from lumen.language.projects import Project
-from lumen.robots.motions import LONGEST, data_of, motion_from
+from lumen.robots.motion_codec import MAX_MOTION_DURATION, decode_motion, encode_motion
 from tests.tour.names import ROOT
 
 
@@ -18,7 +18,7 @@ def project() -> Project:
 
 def test_what_arrives_is_the_motion_that_was_sent(project: Project) -> None:
     for motion in project.motions.values():
-        found = motion_from(data_of(motion), project.body)
+        found = decode_motion(encode_motion(motion), project.body)
         assert (found.tracks, found.duration, found.start, found.end) == (
             motion.tracks,
             motion.duration,
@@ -32,7 +32,7 @@ GOOD: dict[str, Any] = {"name": "nod", "duration": 1.0, "tracks": {"HeadPitch": 
 
 
 def test_a_key_needs_no_more_than_time_and_angle(project: Project) -> None:
-    assert [key.time for key in motion_from(GOOD, project.body).tracks["HeadPitch"]] == [0.5, 1.0]
+    assert [key.time for key in decode_motion(GOOD, project.body).tracks["HeadPitch"]] == [0.5, 1.0]
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_a_key_needs_no_more_than_time_and_angle(project: Project) -> None:
         ({"tracks": {"HeadPitch": [[1.0, 0.1, "linear", 1.0]]}}, "a key of `HeadPitch` is a list"),
         ({"tracks": {"HeadPitch": [[i + 1.0, 0.0] for i in range(20_001)]}}, "more than 20,000"),
         ({"tracks": []}, "needs a `name`"),
-        ({"duration": LONGEST + 1}, "may take from 0 to 600 s"),
+        ({"duration": MAX_MOTION_DURATION + 1}, "may take from 0 to 600 s"),
         ({"duration": None}, "has to be a number"),
         ({"start": "Handstand"}, "no posture `Handstand`"),
         ({"cues": [[1.0, "leds"]]}, "a cue of `nod`"),
@@ -58,9 +58,9 @@ def test_a_key_needs_no_more_than_time_and_angle(project: Project) -> None:
 )
 def test_what_is_no_motion_of_this_body_is_refused(project: Project, change: dict[str, Any], words: str) -> None:
     with pytest.raises(RobotError, match=words.replace("(", r"\(")):
-        motion_from({**GOOD, **change}, project.body)
+        decode_motion({**GOOD, **change}, project.body)
 
 
 def test_what_is_no_object_is_refused(project: Project) -> None:
     with pytest.raises(RobotError, match="has to be an object"):
-        motion_from("dance", project.body)
+        decode_motion("dance", project.body)

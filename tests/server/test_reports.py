@@ -10,9 +10,9 @@ from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.language.commands import Look, Say, Wake
 from lumen.ports import Perform
-from lumen.robots.ledger import RECENT, Ledger
+from lumen.robots.deduplication_log import DEDUPLICATION_WINDOW, DeduplicationLog
 from lumen.robots.recording import RecordingRobot
-from lumen.robots.remote import Host
+from lumen.robots.remote import RobotHost
 from tests.exhibits import BODY, messages, project
 from tests.waiting import Collector
 
@@ -24,7 +24,7 @@ class Desk:
 
     def __init__(self) -> None:
         self.robot, self.bus = RecordingRobot(BODY), validated(connect("memory://"), PROJECT)
-        self.host = Host(PROJECT, self.robot, self.bus, self.robot)
+        self.host = RobotHost(PROJECT, self.robot, self.bus, self.robot)
         self.reports, self.answers, self.noticed, self.texts = Collector(), Collector(), Collector(), Collector()
         self.bus.subscribe("avatar.NAO.event.command", self.reports)
         self.bus.subscribe("avatar.NAO.event.noticed", self.noticed)
@@ -201,7 +201,7 @@ def test_a_robot_that_was_restarted_does_nothing_twice_but_rest(tmp_path: Path) 
     ends = []
     for _ in range(2):
         desk = Desk()
-        desk.host.server.recall(Ledger(tmp_path / "home" / "commands"))
+        desk.host.server.recall(DeduplicationLog(tmp_path / "home" / "commands"))
         desk.order("a", "goodbye")
         desk.live(0.1)
         desk.order("b", "rest")
@@ -214,25 +214,25 @@ def test_a_robot_that_was_restarted_does_nothing_twice_but_rest(tmp_path: Path) 
 
 def test_a_ledger_keeps_the_newest_and_a_line_that_was_cut_short_harms_nobody(tmp_path: Path) -> None:
     file = tmp_path / "commands"
-    ledger = Ledger(file)
+    ledger = DeduplicationLog(file)
     for i in range(2_500):
         ledger.note(f"n\n{i}")
     assert len(file.read_bytes().splitlines()) <= 2_000
     with file.open("ab") as end:
         end.write(b'"n\xff')
-    assert Ledger(file).before[-1] == "n\n2499"
-    assert len(Ledger(file).before) >= 999
+    assert DeduplicationLog(file).before[-1] == "n\n2499"
+    assert len(DeduplicationLog(file).before) >= 999
 
 
 def test_what_was_begun_long_before_a_restart_may_come_again(tmp_path: Path) -> None:
     file = tmp_path / "commands"
-    file.write_text(f'[{time.time() - RECENT - 1}, "1"]\n[{time.time() - 5}, "2"]\n"3"\n', "utf-8")
-    assert Ledger(file).before == ("2",)
+    file.write_text(f'[{time.time() - DEDUPLICATION_WINDOW - 1}, "1"]\n[{time.time() - 5}, "2"]\n"3"\n', "utf-8")
+    assert DeduplicationLog(file).before == ("2",)
 
 
 def test_a_disk_that_takes_nothing_is_told_of_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "home").write_text("a file, and no folder")
-    ledger = Ledger(tmp_path / "home" / "commands")
+    ledger = DeduplicationLog(tmp_path / "home" / "commands")
     for id in ("a", "b"):
         ledger.note(id)
     assert [record.getMessage().count("can't be kept in") for record in caplog.records] == [1]

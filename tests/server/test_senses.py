@@ -19,7 +19,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.routes import SIZES
 from lumen.ports import Message, Reading, Sense
-from lumen.robots.server import Server
+from lumen.robots.server import RobotServer
 from tests.exhibits import TACTILE, messages, project
 from tests.server.stand import DATE, FRAME, NAMES, PATIENT, PROJECT, Puppet, Stand, without
 from tests.waiting import Collector, until
@@ -269,7 +269,7 @@ def test_the_same_server_on_a_broker(request: pytest.FixtureRequest) -> None:
     senses, answers = Collector(), Collector()
     module.subscribe("avatar.NAO.data.*", senses)
     module.subscribe("lumen.me", answers)
-    server = Server(replace(PROJECT), Puppet(), bus)
+    server = RobotServer(replace(PROJECT), Puppet(), bus)
     module.publish("avatar.NAO.command", {"Method": "rest"}, reply_to="lumen.me", correlation_id="9")
     until(lambda: server.sample(time.monotonic()) or server.answer(Event("done.command.m1")))
     answers.wait(1)

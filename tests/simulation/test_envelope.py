@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from lumen.interpreters.limits import coupled_range
 from lumen.language.robots import Body
-from lumen.robots.simulation.limits import Envelope
+from lumen.robots.simulation.joint_envelope import JointEnvelope
 
 DT = 0.01
 
@@ -14,7 +14,7 @@ DT = 0.01
 @settings(max_examples=60, deadline=None)
 @given(data=st.data())
 def test_commands_stay_inside_limits_coupled_limits_and_speeds(body: Body, data: st.DataObject) -> None:
-    envelope = Envelope(body)
+    envelope = JointEnvelope(body)
     names = list(body.joints)
     last = np.array([body.postures["StandZero"][n] for n in names])
     goals = data.draw(st.lists(st.lists(st.floats(-7, 7), min_size=26, max_size=26), min_size=1, max_size=5))
@@ -32,7 +32,7 @@ def test_commands_stay_inside_limits_coupled_limits_and_speeds(body: Body, data:
 
 
 def test_a_goal_inside_is_reached(body: Body) -> None:
-    envelope = Envelope(body)
+    envelope = JointEnvelope(body)
     names = list(body.joints)
     command = np.array([body.postures["Stand"][n] for n in names])
     goal = np.array([body.postures["Crouch"][n] for n in names])

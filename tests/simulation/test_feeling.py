@@ -6,9 +6,9 @@ import pytest
 
 from lumen.language.commands import Posture, Walk
 from lumen.ports import Joints, Sense
-from lumen.robots.bodies import body_of
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote.bodies import reading_of
+from lumen.robots.sense_codec import body_of
 from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import until_answered
 

@@ -11,7 +11,7 @@ from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Battery, Joints, Sense, Sonar, Tactile
 from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.condition import Condition
+from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
 from tests.simulation.conftest import MODELS, Do, answer, look_at_face, until_answered
 
 
@@ -95,7 +95,7 @@ def test_the_battery_drains_slowly(robot: SimulatedRobot) -> None:
 
 
 def test_a_low_battery_and_hot_motors_speak_up_once() -> None:
-    condition = Condition(("knee", "hip"), (3.0, 3.0), charge=0.206)
+    condition = BatteryAndHeat(("knee", "hip"), (3.0, 3.0), charge=0.206)
     events = [e for t in range(1200) for e in condition.live(np.array([3.0, 0.0]), np.zeros(2), 1.0, float(t))]
     assert [e.name for e in events] == ["battery.low", "motors.hot"]
     assert events[0].data == {"percentage": 20}
@@ -104,7 +104,7 @@ def test_a_low_battery_and_hot_motors_speak_up_once() -> None:
 
 
 def test_a_charger_fills_the_battery_and_it_may_speak_up_again() -> None:
-    condition, torques = Condition(("knee",), (3.0,), charge=0.206), np.zeros(1)
+    condition, torques = BatteryAndHeat(("knee",), (3.0,), charge=0.206), np.zeros(1)
 
     def live(seconds: int) -> list[str]:
         return [e.name for t in range(seconds) for e in condition.live(torques, torques, 1.0, float(t))]
@@ -123,7 +123,9 @@ def test_a_charger_fills_the_battery_and_it_may_speak_up_again() -> None:
 
 
 def test_an_empty_battery_lets_the_robot_rest_until_it_is_plugged_in(robot: SimulatedRobot, do: Do) -> None:
-    robot.condition = Condition(tuple(robot.body.joints), [j.effort for j in robot.body.joints.values()], charge=3e-5)
+    robot.condition = BatteryAndHeat(
+        tuple(robot.body.joints), [j.effort for j in robot.body.joints.values()], charge=3e-5
+    )
     robot.start("say", Say("x" * 2000))
     events = until_answered(robot, "say")
     assert answer(events, "say") == "cancelled"

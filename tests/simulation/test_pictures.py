@@ -16,7 +16,7 @@ from lumen.language.routes import Size
 from lumen.language.stories import Visitor
 from lumen.ports import Image, Sense
 from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.film import RATE, Film
+from lumen.robots.simulation.film import FILM_RATE, Film
 from lumen.robots.simulation.shells import write
 from tests.guarded import run_guarded
 from tests.simulation.conftest import MODELS, Do, look_at_face
@@ -77,7 +77,7 @@ def test_a_film_has_a_frame_for_every_twenty_fifth_of_a_second(robot: SimulatedR
     film.close()
     frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(path))
     assert frames == film.frames == 11
-    assert seconds * RATE == frames
+    assert seconds * FILM_RATE == frames
 
 
 def test_a_hall_without_that_camera_is_not_filmed(robot: SimulatedRobot, tmp_path: Path) -> None:

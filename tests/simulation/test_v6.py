@@ -12,7 +12,7 @@ from lumen.language.commands import Walk
 from lumen.language.robots import Body
 from lumen.loading.project import draft, read_files
 from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.anatomy import Anatomy
+from lumen.robots.simulation.mass_model import MassModel
 from tests.simulation.conftest import MODELS, answer, until_answered
 
 TOTAL = 5.35975
@@ -49,7 +49,7 @@ def test_its_masses_are_the_published_ones(v6: Body) -> None:
 
 def test_it_knows_its_own_weight(body: Body, v6: Body) -> None:
     stand = body.postures["Stand"]
-    higher = Anatomy(v6, MODELS).centre_of_mass(stand) - Anatomy(body, MODELS).centre_of_mass(stand)
+    higher = MassModel(v6, MODELS).centre_of_mass(stand) - MassModel(body, MODELS).centre_of_mass(stand)
     assert 0.001 < higher[2] < 0.003
 
 

@@ -11,7 +11,7 @@ from lumen.language.commands import Posture, Wake, Walk
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.whereabouts import ANYWHERE, ON_ITS_BACK, SEATED, Whereabouts
+from lumen.robots.simulation.odometry import DRIFT_AFTER_FALL, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_SITTING, Odometry
 from tests.simulation.conftest import answer, until_answered
 from tests.simulation.test_postures import shoved
 from tests.simulation.walks import any_robot, on_the_floor, truth
@@ -23,14 +23,14 @@ STANDING = dict.fromkeys(
 
 
 def test_once_down_the_stage_is_smaller_by_as_much_as_nobody_knows() -> None:
-    whereabouts = Whereabouts(WIDE)
+    whereabouts = Odometry(WIDE)
     whereabouts.feel(STANDING)
     whereabouts.check([Footstep("L", Pose(0.85, 0.05))])
     for posture in ("Crouch", "Straddle", "LyingBack", "Straddle"):
         whereabouts.lose(posture)
     whereabouts.keep(0.0)
     whereabouts.feel(STANDING)
-    assert whereabouts.doubt == ON_ITS_BACK
+    assert whereabouts.doubt == DRIFT_AFTER_LYING_BACK
     whereabouts.check([Footstep("L", Pose(0.6, 0.05))])
     with pytest.raises(
         RobotError, match=r"might leave the stage: .* to 1 m; the robot has been down since, and may be 0\.25"
@@ -39,11 +39,11 @@ def test_once_down_the_stage_is_smaller_by_as_much_as_nobody_knows() -> None:
     whereabouts.lose("Sit")
     whereabouts.keep(0.0)
     whereabouts.lose("")
-    assert whereabouts.doubt == ON_ITS_BACK + SEATED + ANYWHERE
+    assert whereabouts.doubt == DRIFT_AFTER_LYING_BACK + DRIFT_AFTER_SITTING + DRIFT_AFTER_FALL
 
 
 def test_feet_in_doubt_may_stay_where_they_stand() -> None:
-    whereabouts = Whereabouts(Stage((-0.2, 0.2), (-0.2, 0.2)))
+    whereabouts = Odometry(Stage((-0.2, 0.2), (-0.2, 0.2)))
     whereabouts.feel(STANDING)
     whereabouts.lose("Sit")
     whereabouts.feel(STANDING)
@@ -54,7 +54,7 @@ def test_feet_in_doubt_may_stay_where_they_stand() -> None:
 
 
 def test_what_it_turned_while_it_was_down_counts_and_what_it_drifts_while_it_stands_does_not() -> None:
-    whereabouts = Whereabouts(WIDE)
+    whereabouts = Odometry(WIDE)
     for heading in (0.1, 0.2):
         whereabouts.keep(heading)
     whereabouts.lose("Sit")
@@ -67,7 +67,7 @@ def test_a_robot_that_sat_walks_only_where_it_is_safe_all_the_same(body: Body) -
     for posture in ("Sit", "Stand"):
         robot.start("p", Posture(posture))
         assert answer(until_answered(robot, "p"), "p") == "done"
-    assert abs(truth(robot).place) < SEATED
+    assert abs(truth(robot).place) < DRIFT_AFTER_SITTING
     robot.start("w", Walk(0.5))
     assert "the robot has been down since, and may be 0.1 m off" in answer(until_answered(robot, "w"), "w")
     robot.start("w", Walk(0.3))
@@ -90,5 +90,5 @@ def test_a_robot_that_fell_on_its_way_knows_where_it_faces(body: Body, seed: int
     robot.start("w", Walk(0.05))
     assert answer(until_answered(robot, "w"), "w") == "done"
     off = truth(robot).seen_from(believed(robot))
-    assert abs(off.place) < ANYWHERE
+    assert abs(off.place) < DRIFT_AFTER_FALL
     assert abs(degrees(wrap(off.theta))) < 10

@@ -49,14 +49,14 @@ def cast(kind: str, project: Project, speed: str, story: Story | None = None, ur
         recording = RecordingRobot(project.body, story.robot if story else None)
         return Cast(recording, SimulatedClock(recording.advance, pace), recording)
     if kind == "naoqi":
-        from lumen.robots.naoqi import NaoqiRobot, Place
+        from lumen.robots.naoqi import NaoqiRobot, PhysicalHall
 
         if speed != "1":
             raise UsageError("a real robot lives in real time: leave out --speed")
         if story:
             raise UsageError("a story needs a visitor of ours in a simulated hall: leave out --robot naoqi")
         clock = RealClock()
-        return Cast(NaoqiRobot(project.body, url or NAO, clock.now, stage=project.stage), clock, Place())
+        return Cast(NaoqiRobot(project.body, url or NAO, clock.now, stage=project.stage), clock, PhysicalHall())
     if kind == "none":
         from lumen.robots.none import NoRobot
 

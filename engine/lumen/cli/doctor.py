@@ -22,7 +22,7 @@ from lumen.language.routes import Direction
 from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.ports import Bus
-from lumen.robots.ways import COMMAND, key_of
+from lumen.robots.robot_routes import COMMAND, key_of
 from lumen.rules import check_files
 from lumen.runtime.delegated_tracking import ROUTE as MOTION
 

@@ -22,8 +22,8 @@ from lumen.language.modules import EYES, MODULES
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Leave, Story, Visitor, VisitorAction
 from lumen.loading.packaged import shipped_root
-from lumen.robots.broadcast import Count
-from lumen.robots.ledger import FILE, Ledger
+from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
+from lumen.robots.sense_publisher import PublishCounts
 from lumen.runtime.home import home_of
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT, Presence
 
@@ -99,7 +99,7 @@ class Performance:
         show.closing.insert(0, presence.close)
         claim(presence)
         if show.server:
-            show.server.recall(Ledger(home_of(self._premises.root) / FILE))
+            show.server.recall(DeduplicationLog(home_of(self._premises.root) / DEDUPLICATION_FILE))
         self._presence = presence
         show.exhibition.parts.append(lambda now: self._meet(presence))
 
@@ -204,7 +204,7 @@ class Performance:
         return 1 if failure or (early and not self._interrupts) else 0
 
 
-def told_count(item: tuple[str, Count]) -> str:
+def told_count(item: tuple[str, PublishCounts]) -> str:
     """`1204 joint (3 dropped)`."""
     sense, count = item
     return f"{count.published} {sense}" + (f" ({count.dropped} dropped)" if count.dropped else "")

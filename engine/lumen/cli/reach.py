@@ -12,7 +12,7 @@ from lumen.errors import BusError
 from lumen.loading.packaged import find_project
 from lumen.loading.project import draft, read_files
 from lumen.ports import Bus
-from lumen.robots.orders import KEY, ROUTE
+from lumen.robots.command_receiver import KEY, ROUTE
 from lumen.runtime.home import DOOR, Home, home_of, homes
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import lumen
 from lumen.language.projects import Project
 from lumen.ports import Perform
-from lumen.robots.motions import data_of
+from lumen.robots.motion_codec import encode_motion
 from lumen.rules.physics import Case, Outcome
 
 _ENGINE = ("robots/simulation", "robots/executor.py", "interpreters", "rules/physics")
@@ -59,7 +59,7 @@ class Rehearsed:
 
     def _file(self, case: Case) -> Path:
         passages = self._passages if case.passage or case.before else ""
-        parts = [data_of(case.motion), [_said(command) for command in case.before], _said(case.command)]
+        parts = [encode_motion(case.motion), [_said(command) for command in case.before], _said(case.command)]
         digest = _digest([json.dumps(parts, sort_keys=True).encode(), self._models.encode(), passages.encode()])
         return self._folder / f"{_name(case)}-{digest[:20]}.json"
 
@@ -75,7 +75,7 @@ def engine() -> str:
 
 
 def _said(command: object) -> Any:
-    return data_of(command.motion) if isinstance(command, Perform) else repr(command)
+    return encode_motion(command.motion) if isinstance(command, Perform) else repr(command)
 
 
 def _name(case: Case) -> str:

@@ -15,7 +15,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story, VisitorAction
 from lumen.ports import Sense
-from lumen.robots.server import Server
+from lumen.robots.server import RobotServer
 from lumen.runtime.loop import BehaviorLoop, Observer, TickHook
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.story import StoryPlayer, staged
@@ -51,7 +51,7 @@ class Show(Observer):
         self.robot, self._story = chosen.robot, story
         self.exhibition = BehaviorLoop(project, chosen.robot, self.bus, chosen.clock, chosen.tracking)
         self._sensed: Callable[[Project], Project] = _all if sensing else _quiet
-        self.server = None if chosen.remote else Server(self._sensed(project), chosen.robot, self.bus)
+        self.server = None if chosen.remote else RobotServer(self._sensed(project), chosen.robot, self.bus)
         self.trace = TracePublisher(self.bus, lambda: self.exhibition.project, chosen.clock.now)
         self.using: list[Callable[[Project], None]] = []
         self.walker: VisitorActor | None = None

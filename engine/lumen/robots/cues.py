@@ -5,25 +5,27 @@ from collections.abc import Callable
 from lumen.language.events import CUE, Event
 from lumen.language.motions import Cue, MotionDefinition
 
-TOLD = ("say", "sound")
+NOTIFIED_KINDS = ("say", "sound")
 """Kinds of cues that a robot tells of; the others it gives itself."""
 
-Notice = Callable[[Event], None]
+EventSink = Callable[[Event], None]
 
 
-def told(motion: MotionDefinition, cue: Cue, now: float) -> Event:
+def cue_event(motion: MotionDefinition, cue: Cue, now: float) -> Event:
     """The event that a cue of that motion is due."""
     return Event(CUE, {"motion": motion.name, "kind": cue.kind, "value": cue.value}, now)
 
 
-class Prompter:
+class CueNotifier:
     """Tells of a motion's cues to `notice`, each when it comes."""
 
-    def __init__(self, motion: MotionDefinition, notice: Notice) -> None:
+    def __init__(self, motion: MotionDefinition, notice: EventSink) -> None:
         self._motion, self._notice = motion, notice
-        self._left = sorted((cue for cue in motion.cues if cue.kind in TOLD), key=lambda cue: cue.time, reverse=True)
+        self._left = sorted(
+            (cue for cue in motion.cues if cue.kind in NOTIFIED_KINDS), key=lambda cue: cue.time, reverse=True
+        )
 
     def advance(self, t: float, now: float) -> None:
         """Live until `t` [s] from the motion's beginning, which is `now` on the robot's clock."""
         while self._left and self._left[-1].time <= t:
-            self._notice(told(self._motion, self._left.pop(), now))
+            self._notice(cue_event(self._motion, self._left.pop(), now))

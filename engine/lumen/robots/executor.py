@@ -17,7 +17,7 @@ from lumen.ports import Perform, Record, RobotCommand
 
 HEAD, ARMS, LEGS, VOICE, LEDS, EARS = PARTS = ("head", "arms", "legs", "voice", "leds", "ears")
 
-REMEMBERED = 1_000
+MAX_UNREAD_STARTS = 1_000
 """Of how many commands that began it is known at most, where nobody asks."""
 
 _RANK = {Stop: 0, Rest: 0, Wake: 1, Posture: 1, Walk: 1, Perform: 2, Move: 2, Say: 2, Record: 2, Look: 3}
@@ -80,7 +80,7 @@ class Executor:
         self._begin, self._parts = begin, parts
         self._tasks: list[_Task] = []
         self._answers: list[tuple[str, _Task, dict[str, str] | None]] = []
-        self._begun: deque[str] = deque(maxlen=REMEMBERED)
+        self._begun: deque[str] = deque(maxlen=MAX_UNREAD_STARTS)
 
     def start(self, id: str, command: RobotCommand) -> None:
         """Queue a command; it begins at the next `advance` for which its parts are free."""

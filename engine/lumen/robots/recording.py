@@ -12,26 +12,26 @@ from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.cues import Prompter
+from lumen.robots.body_parts import part_of, parts
+from lumen.robots.cues import CueNotifier
 from lumen.robots.executor import Activity, Executor
-from lumen.robots.listening import Listening
-from lumen.robots.parts import part_of, parts
+from lumen.robots.silent_recording import SilentRecording
 
 _VERBS: Mapping[type, str] = {
     Say: "say", Perform: "play", Posture: "posture", Walk: "walk", Move: "walk", Look: "look", Rest: "rest",
     Wake: "wake", Record: "record",
 }  # fmt: skip
 
-TORSO = 0.333
+TORSO_HEIGHT = 0.333
 """Where a standing NAO's torso is above its soles [m]."""
 
-TURNING = 0.25
+TURNING_SPEED = 0.25
 """How fast a walk turns [rad/s]: the simulated robot turns around by 90 degrees in 7 s."""
 
-PODIUM = 0.5
+PODIUM_HEIGHT = 0.5
 """What the robot stands on [m]."""
 
-FACE = 0.93
+FACE_HEIGHT_FRACTION = 0.93
 """Where a visitor's face is, as a fraction of their height."""
 
 
@@ -51,7 +51,7 @@ class _Lasting:
 class _Playing(_Lasting):
     """A motion, its words and sounds told as they come."""
 
-    def __init__(self, until: float, begin: float, prompter: Prompter) -> None:
+    def __init__(self, until: float, begin: float, prompter: CueNotifier) -> None:
         super().__init__(until)
         self._begin, self._prompter = begin, prompter
 
@@ -130,7 +130,7 @@ class RecordingRobot:
         if self._visitor is None:
             return None
         visitor = self._visitor
-        place = (visitor.x, visitor.y, visitor.height * FACE - PODIUM - TORSO)
+        place = (visitor.x, visitor.y, visitor.height * FACE_HEIGHT_FRACTION - PODIUM_HEIGHT - TORSO_HEIGHT)
         return seen(place, self.body.camera, self._angles.get("HeadYaw", 0.0), self._angles.get("HeadPitch", 0.0))
 
     def touch(self, sensor: str, pressed: bool) -> None:
@@ -160,9 +160,9 @@ class RecordingRobot:
             self._turn({"HeadYaw": command.yaw, "HeadPitch": command.pitch})
         until = float("inf") if behaves == "hangs" else now + _duration(command, behaves)
         if isinstance(command, Perform):
-            return _Playing(until, now, Prompter(command.motion, self._notice))
+            return _Playing(until, now, CueNotifier(command.motion, self._notice))
         if isinstance(command, Record):
-            return Listening(command, until, self._notice)
+            return SilentRecording(command, until, self._notice)
         return _Lasting(until)
 
     def _free(self, joint: str) -> bool:
@@ -187,7 +187,7 @@ def _duration(command: RobotCommand, behaves: str | float | None) -> float:
         case Perform(motion):
             return motion.duration
         case Walk(x, y, theta):
-            return hypot(x, y) / 0.1 + abs(theta) / TURNING
+            return hypot(x, y) / 0.1 + abs(theta) / TURNING_SPEED
         case Move(vx, vy, vtheta):
             return inf if any((vx, vy, vtheta)) else 1.0
         case Look():

@@ -14,17 +14,17 @@ from lumen.language.events import RECORDED, Event
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.ports import Bus, Image, Robot, RobotCommand, Sense
-from lumen.robots.bodies import body_of, image_body
-from lumen.robots.broadcast import Broadcast, Count, Handed
-from lumen.robots.ledger import Ledger
-from lumen.robots.orders import Orders
-from lumen.robots.ways import NOTICED, RECORDING, TEXT, tell
+from lumen.robots.command_receiver import CommandReceiver
+from lumen.robots.deduplication_log import DeduplicationLog
+from lumen.robots.robot_routes import NOTICED, RECORDING, TEXT, tell
+from lumen.robots.sense_codec import body_of, image_body
+from lumen.robots.sense_publisher import PendingReading, PublishCounts, SensePublisher
 
-PERIOD = 0.1
-CLOSING = 5.0
-SOON = 1e-9
-PATIENCE = 0.02
-STARVED = 1.0
+DEFAULT_SENSE_PERIOD = 0.1
+CLOSE_TIMEOUT = 5.0
+TIME_EPSILON = 1e-9
+SETTLE_TIMEOUT = 0.02
+THREAD_START_TIMEOUT = 1.0
 
 _log = logging.getLogger(__name__)
 
@@ -33,7 +33,7 @@ def _date() -> str:
     return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
-class Server:
+class RobotServer:
     """A robot on a bus, as the project's routes `image`, `joint`, `sonar`, `tactile` and `battery` say.
 
     Whoever owns the clock calls `sample` at each tick; that reads the senses that are due and begins the commands that
@@ -58,25 +58,25 @@ class Server:
         self._project = project
         self._routes: dict[Sense, Route] = {}
         self._next: dict[Sense, float] = {}
-        self._broadcasts: dict[Sense, Broadcast] = {}
-        self._leaving: list[Handed] = []
+        self._broadcasts: dict[Sense, SensePublisher] = {}
+        self._leaving: list[PendingReading] = []
         self._listen(project)
-        self._orders = Orders(project, robot, bus, clock, self._given)
+        self._orders = CommandReceiver(project, robot, bus, clock, self._given)
         self._closed = False
 
-    def recall(self, ledger: Ledger) -> None:
+    def recall(self, ledger: DeduplicationLog) -> None:
         """Perform nothing that the process before had begun, and note what is begun from now on."""
         self._orders.recall(ledger)
 
     @property
-    def counts(self) -> Mapping[str, Count]:
+    def counts(self) -> Mapping[str, PublishCounts]:
         """What became of the readings of each sense."""
         return {sense: self._broadcasts[sense].count for sense in Sense if sense in self._broadcasts}
 
     def sample(self, now: float) -> None:
         """Read the senses that are due at `now` [s] and hand them on; begin the commands that have come."""
         for sense, route in self._routes.items():
-            if now + SOON >= self._next[sense] and not self._broadcasts[sense].count.off:
+            if now + TIME_EPSILON >= self._next[sense] and not self._broadcasts[sense].count.off:
                 self._schedule(sense, route, now)
                 self._read(sense)
         self._orders.begin()
@@ -91,7 +91,7 @@ class Server:
             broadcast.arm()
         self._orders.use(project)
 
-    def settle(self, patience: float = PATIENCE) -> bool:
+    def settle(self, patience: float = SETTLE_TIMEOUT) -> bool:
         """Wait until every reading but images has been published; whether that is so.
 
         Publishing may take `patience` [s]; it takes longer where a subscriber is slow, who keeps nobody waiting. A
@@ -99,7 +99,7 @@ class Server:
         on what else the machine does.
         """
         for handed in self._leaving:
-            if not handed.begun.wait(STARVED):
+            if not handed.begun.wait(THREAD_START_TIMEOUT):
                 return False
             arrived = time.monotonic()
             if not handed.done.wait(max(0.0, min(patience, handed.began + patience - arrived))):
@@ -132,10 +132,10 @@ class Server:
             return
         self._closed = True
         self._orders.close()
-        deadline = time.monotonic() + CLOSING
+        deadline = time.monotonic() + CLOSE_TIMEOUT
         ended = [b.close(deadline - time.monotonic()) for b in self._broadcasts.values()]
         if not all(ended):
-            _log.warning("a sense still works %g s after it was told to end", CLOSING)
+            _log.warning("a sense still works %g s after it was told to end", CLOSE_TIMEOUT)
 
     def _given(self, command: RobotCommand) -> None:
         self._told(command)
@@ -149,7 +149,7 @@ class Server:
 
     def _schedule(self, sense: Sense, route: Route, now: float) -> None:
         """The next time on the grid of the sense's period; where ticks are coarser than that, a period from now."""
-        period = route.every or PERIOD
+        period = route.every or DEFAULT_SENSE_PERIOD
         self._next[sense] += period
         if self._next[sense] <= now:
             self._next[sense] = now + period
@@ -159,10 +159,10 @@ class Server:
         if reading is None:
             return
         if isinstance(reading, Image):
-            self._broadcasts[sense].hand(Handed(reading))
+            self._broadcasts[sense].hand(PendingReading(reading))
             return
         self._leaving = [handed for handed in self._leaving if not handed.done.is_set()]
-        handed = Handed(reading, self._leaving[-1] if self._leaving else None)
+        handed = PendingReading(reading, self._leaving[-1] if self._leaving else None)
         self._leaving.append(handed)
         self._broadcasts[sense].hand(handed)
 
@@ -172,7 +172,7 @@ class Server:
         self._routes = {sense: project.routes[sense] for sense in Sense if sense in project.routes}
         for sense in self._routes.keys() - self._broadcasts.keys():
             encode = self._picture if sense is Sense.IMAGE else body_of
-            self._broadcasts[sense] = Broadcast(sense, encode, partial(self._publish, sense))
+            self._broadcasts[sense] = SensePublisher(sense, encode, partial(self._publish, sense))
             self._next[sense] = 0.0
 
     def _publish(self, sense: Sense, body: dict[str, Any]) -> None:

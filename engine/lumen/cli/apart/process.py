@@ -13,7 +13,7 @@ from lumen.cli.sweeping import Sweeper
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.ports import Clock
-from lumen.robots.ways import COMMAND, key_of
+from lumen.robots.robot_routes import COMMAND, key_of
 from lumen.runtime.loop import TICK
 from lumen.runtime.presence import ROBOT, Presence, told
 from lumen.runtime.trace_publisher import KEY

@@ -14,8 +14,8 @@ from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, Record, RobotCommand
-from lumen.robots.ledger import FILE, Ledger
-from lumen.robots.remote import Host
+from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
+from lumen.robots.remote import RobotHost
 from lumen.runtime.home import home_of
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.presence import BRAIN, ROBOT, Presence
@@ -33,7 +33,7 @@ class RobotPart:
     ) -> None:
         self._project, self._bus, self._chosen, self._transcript = project, bus, chosen, transcript
         self._presence = presence
-        self._host: Host | None = None
+        self._host: RobotHost | None = None
         self._faces: FaceDetector | None = None
         self._guard: Guard | None = None
         self._interrupted = False
@@ -45,8 +45,8 @@ class RobotPart:
 
     def begin(self, now: float) -> None:
         chosen = self._chosen
-        self._host = Host(self._project, chosen.robot, self._bus, chosen.hall, self._given)
-        self._host.server.recall(Ledger(home_of(Path(self._project.root)) / FILE))
+        self._host = RobotHost(self._project, chosen.robot, self._bus, chosen.hall, self._given)
+        self._host.server.recall(DeduplicationLog(home_of(Path(self._project.root)) / DEDUPLICATION_FILE))
         self._guard = Guard(chosen.robot, self._presence, self._host.notice, self._say, time.monotonic)
         if chosen.hall:
             self._faces = FaceDetector(self._project, chosen.hall, self._bus)

@@ -13,7 +13,7 @@ from lumen.cli.reloading.records import Records
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.ports import Bus
-from lumen.robots.orders import command_key
+from lumen.robots.command_receiver import command_key
 from lumen.rules import check_files
 from lumen.runtime.home import DOOR, Home, home_of
 from lumen.runtime.resuming import Resumption

@@ -12,17 +12,17 @@ from typing import Any, NamedTuple
 from lumen.interpreters.segments import Bezier, Polynomial, Segment
 from lumen.interpreters.trajectory import JointTrack
 
-CYCLE = 0.02
+MOTION_CYCLE = 0.02
 """ALMotion's period [s]."""
-ERROR = 1e-3
+MAX_CURVE_ERROR = 1e-3
 """By how much a joint may leave a minimum-jerk track [rad]."""
-SHORTEST = 2 * CYCLE
+MIN_PIECE_DURATION = 2 * MOTION_CYCLE
 """A piece takes at least so long [s]."""
-BEZIER = 3
+BEZIER_HANDLE = 3
 """NAOqi's number for a handle that is given."""
 
 
-class Piece(NamedTuple):
+class CubicPiece(NamedTuple):
     """A cubic from `start` for `duration` [s]: inner points at `t1`, `t2` [s] from its start, angles `a0` to `a3`."""
 
     start: float
@@ -35,7 +35,7 @@ class Piece(NamedTuple):
     a3: float
 
 
-class Curves(NamedTuple):
+class BezierCurves(NamedTuple):
     """The three arguments of `angleInterpolationBezier`."""
 
     names: list[str]
@@ -43,13 +43,13 @@ class Curves(NamedTuple):
     controls: list[list[list[Any]]]
 
 
-def curves(tracks: Iterable[JointTrack]) -> Curves:
+def curves(tracks: Iterable[JointTrack]) -> BezierCurves:
     """These tracks for NAOqi; it begins each where the joint stands, which should be where the track begins.
 
     Which handle NAOqi gives to that beginning is not documented. So the first key stands one of its cycles later, on
     the way, and what it does before that can't be seen.
     """
-    found = Curves([], [], [])
+    found = BezierCurves([], [], [])
     for track in tracks:
         pieces = [piece for segment in track.segments for piece in _pieces(segment)]
         pieces[:1] = _split(pieces[0])
@@ -59,54 +59,54 @@ def curves(tracks: Iterable[JointTrack]) -> Curves:
     return found
 
 
-def _controls(pieces: list[Piece]) -> Iterator[list[Any]]:
+def _controls(pieces: list[CubicPiece]) -> Iterator[list[Any]]:
     for piece, after in zip(pieces, [*pieces[1:], None], strict=True):
-        before = [BEZIER, piece.t2 - piece.duration, piece.a2 - piece.a3]
-        yield [piece.a3, before, [BEZIER, after.t1, after.a1 - after.a0] if after else [BEZIER, 0.0, 0.0]]
+        before = [BEZIER_HANDLE, piece.t2 - piece.duration, piece.a2 - piece.a3]
+        yield [piece.a3, before, [BEZIER_HANDLE, after.t1, after.a1 - after.a0] if after else [BEZIER_HANDLE, 0.0, 0.0]]
 
 
-def _pieces(segment: Segment) -> Iterator[Piece]:
+def _pieces(segment: Segment) -> Iterator[CubicPiece]:
     match segment:
         case Bezier(start, h, x1, x2, a0, a1, a2, a3):
-            yield Piece(start, h, x1 * h, x2 * h, a0, a1, a2, a3)
+            yield CubicPiece(start, h, x1 * h, x2 * h, a0, a1, a2, a3)
         case Polynomial():
             yield from _cubics(segment)
 
 
-def _cubics(curve: Polynomial) -> Iterator[Piece]:
+def _cubics(curve: Polynomial) -> Iterator[CubicPiece]:
     """The polynomial in pieces with its own angles and speeds at their ends; one is enough up to the third degree."""
-    most = max(1, int(curve.duration / SHORTEST))
+    most = max(1, int(curve.duration / MIN_PIECE_DURATION))
     way = abs(curve.c5) / 6
-    pieces = min(most, ceil((360 / 384 * way / ERROR) ** 0.25)) if way else 1
+    pieces = min(most, ceil((360 / 384 * way / MAX_CURVE_ERROR) ** 0.25)) if way else 1
     for i in range(max(1, pieces)):
         u0, u1 = i / max(1, pieces), (i + 1) / max(1, pieces)
         h, du = curve.duration * (u1 - u0), u1 - u0
         a0, a3 = curve.at(curve.start + u0 * curve.duration), curve.at(curve.start + u1 * curve.duration)
         a1, a2 = a0 + _slope(curve, u0) * du / 3, a3 - _slope(curve, u1) * du / 3
-        yield Piece(curve.start + u0 * curve.duration, h, h / 3, 2 * h / 3, a0, a1, a2, a3)
+        yield CubicPiece(curve.start + u0 * curve.duration, h, h / 3, 2 * h / 3, a0, a1, a2, a3)
 
 
 def _slope(c: Polynomial, u: float) -> float:
     return c.c1 + u * (2 * c.c2 + u * (3 * c.c3 + u * (4 * c.c4 + u * 5 * c.c5)))
 
 
-def _split(piece: Piece) -> list[Piece]:
+def _split(piece: CubicPiece) -> list[CubicPiece]:
     """The piece cut one cycle after its beginning, by de Casteljau; whole where it is too short for that."""
-    if piece.duration < SHORTEST:
+    if piece.duration < MIN_PIECE_DURATION:
         return [piece]
-    u = _reached(piece, CYCLE)
+    u = _reached(piece, MOTION_CYCLE)
     times = _halves(u, 0.0, piece.t1, piece.t2, piece.duration)
     angles = _halves(u, piece.a0, piece.a1, piece.a2, piece.a3)
     at = times[0][3]
-    first = Piece(piece.start, at, times[0][1], times[0][2], *angles[0])
-    rest = Piece(piece.start + at, piece.duration - at, times[1][1] - at, times[1][2] - at, *angles[1])
+    first = CubicPiece(piece.start, at, times[0][1], times[0][2], *angles[0])
+    rest = CubicPiece(piece.start + at, piece.duration - at, times[1][1] - at, times[1][2] - at, *angles[1])
     return [first, rest]
 
 
-Points = tuple[float, float, float, float]
+ControlPoints = tuple[float, float, float, float]
 
 
-def _halves(u: float, p0: float, p1: float, p2: float, p3: float) -> tuple[Points, Points]:
+def _halves(u: float, p0: float, p1: float, p2: float, p3: float) -> tuple[ControlPoints, ControlPoints]:
     def mix(a: float, b: float) -> float:
         return a + u * (b - a)
 
@@ -116,7 +116,7 @@ def _halves(u: float, p0: float, p1: float, p2: float, p3: float) -> tuple[Point
     return (p0, a, d, middle), (middle, e, c, p3)
 
 
-def _reached(piece: Piece, time: float) -> float:
+def _reached(piece: CubicPiece, time: float) -> float:
     """The parameter at which the curve has come to that time [s] from its beginning."""
     low, high = 0.0, 1.0
     for _ in range(50):

@@ -6,51 +6,53 @@ from typing import Any
 from lumen.errors import RobotError
 from lumen.language.events import RECORDED, Event
 from lumen.ports import Record
-from lumen.robots.bodies import RATE, recording_body
-from lumen.robots.cues import Notice
-from lumen.robots.naoqi.deeds import Deed, Doing
-from lumen.robots.naoqi.link import Call, Link
+from lumen.robots.cues import EventSink
+from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
+from lumen.robots.naoqi.session import NaoqiCall, NaoqiSession
+from lumen.robots.sense_codec import RECORDING_RATE, recording_body
 
-DEVICE, NAME = "ALAudioDevice", "LumenMicrophones"
-FRONT, INTERLEAVED = 3, 0
+AUDIO_DEVICE, MICROPHONE_SERVICE = "ALAudioDevice", "LumenMicrophones"
+FRONT_MICROPHONE, INTERLEAVED = 3, 0
 """The microphone that points at the visitor: ALAudioDevice gives one of them at 16 kHz, all four at 48 kHz only."""
-LATE = 3.0
+RECORDING_GRACE = 3.0
 """How much longer than its duration a recording may take to come [s]."""
 
 
 class Microphones:
     """Records from ALAudioDevice, one recording at a time; `notice` is told of each that was made."""
 
-    def __init__(self, link: Link, notice: Notice, clock: Callable[[], float]) -> None:
+    def __init__(self, link: NaoqiSession, notice: EventSink, clock: Callable[[], float]) -> None:
         self._link, self._notice, self._clock = link, notice, clock
         self._heard, self._wanted = bytearray(), 0
 
-    def begin(self, command: Record) -> Deed:
+    def begin(self, command: Record) -> CallSequence:
         """The recording under way. Raises RobotError where there is no microphone."""
-        if not self._link.has(DEVICE):
-            raise RobotError(f"this robot has no {DEVICE}")
-        return Deed(self._listen(command), self._hush)
+        if not self._link.has(AUDIO_DEVICE):
+            raise RobotError(f"this robot has no {AUDIO_DEVICE}")
+        return CallSequence(self._listen(command), self._hush)
 
-    def _listen(self, command: Record) -> Doing:
+    def _listen(self, command: Record) -> CallSteps:
         """NAOqi calls `processRemote` of our service about six times a second; whatever came before does not count."""
-        yield self._link.serve(NAME, self._service)
-        yield self._link.post(DEVICE, "setClientPreferences", NAME, RATE, FRONT, INTERLEAVED)
-        self._heard, self._wanted = bytearray(), 2 * round(command.duration * RATE)
-        yield self._link.post(DEVICE, "subscribe", NAME)
-        until = self._clock() + command.duration + LATE
+        yield self._link.serve(MICROPHONE_SERVICE, self._service)
+        yield self._link.post(
+            AUDIO_DEVICE, "setClientPreferences", MICROPHONE_SERVICE, RECORDING_RATE, FRONT_MICROPHONE, INTERLEAVED
+        )
+        self._heard, self._wanted = bytearray(), 2 * round(command.duration * RECORDING_RATE)
+        yield self._link.post(AUDIO_DEVICE, "subscribe", MICROPHONE_SERVICE)
+        until = self._clock() + command.duration + RECORDING_GRACE
         while len(self._heard) < self._wanted:
             if self._clock() > until:
                 self._hush()
                 raise RobotError(
-                    f"{len(self._heard) / (2 * RATE):.1f} of {command.duration:g} s came from the microphones: "
-                    "can the robot reach this machine, or is there a firewall?"
+                    f"{len(self._heard) / (2 * RECORDING_RATE):.1f} of {command.duration:g} s came from the "
+                    "microphones: can the robot reach this machine, or is there a firewall?"
                 )
             yield None
         yield from self._hush()
         self._notice(Event(RECORDED, recording_body(command.name, bytes(self._heard[: self._wanted])), self._clock()))
 
-    def _hush(self) -> list[Call]:
-        return [self._link.post(DEVICE, "unsubscribe", NAME)]
+    def _hush(self) -> list[NaoqiCall]:
+        return [self._link.post(AUDIO_DEVICE, "unsubscribe", MICROPHONE_SERVICE)]
 
     def _service(self, qi: Any) -> object:
         """What NAOqi calls, on a thread of qi's, one call at a time."""

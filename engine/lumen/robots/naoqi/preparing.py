@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from lumen.errors import RobotError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
-from lumen.robots.naoqi.link import Link
+from lumen.robots.naoqi.session import NaoqiSession
 
-NEEDED = ("ALMotion", "ALRobotPosture", "ALMemory")
-WELCOME = {
+REQUIRED_SERVICES = ("ALMotion", "ALRobotPosture", "ALMemory")
+OPTIONAL_SERVICES = {
     "ALTextToSpeech": "it will not speak",
     "ALVideoDevice": "it has no images",
     "ALSonar": "nothing but its bumpers stops it before a wall",
@@ -21,14 +21,14 @@ WELCOME = {
     "ALSystem": "its version is not known",
 }
 """Services that a tour can do without, and what is missing then."""
-OLDEST, TESTED = (2, 1), ((2, 1), (2, 8))
-LASTING = 10.0
+OLDEST_NAOQI, TESTED_NAOQI = (2, 1), ((2, 1), (2, 8))
+AUTONOMOUS_LIFE_TIMEOUT = 10.0
 """How long autonomous life may take to end [s]: it lets the robot finish what it does."""
 
 _log = logging.getLogger(__name__)
 
 
-def prepare(link: Link, body: Body, *, again: bool) -> None:
+def prepare(link: NaoqiSession, body: Body, *, again: bool) -> None:
     """Take the robot over: nothing else moves it, its reflexes are on, and what it did before a break has ended.
 
     Raises RobotError where it is no robot that this body is of, or its NAOqi is too old.
@@ -37,13 +37,13 @@ def prepare(link: Link, body: Body, *, again: bool) -> None:
     _check_version(link)
     _check_joints(link, body)
     if link.has("ALAutonomousLife") and link.ask("ALAutonomousLife", "getState") != "disabled":
-        link.ask("ALAutonomousLife", "setState", "disabled", patience=LASTING)
+        link.ask("ALAutonomousLife", "setState", "disabled", patience=AUTONOMOUS_LIFE_TIMEOUT)
     if again:
         halt(link, list(body.joints))
     _protect(link)
 
 
-def halt(link: Link, joints: Sequence[str]) -> None:
+def halt(link: NaoqiSession, joints: Sequence[str]) -> None:
     """End what goes on, keeping balance: a walk by its last step, motions where they are, and words."""
     link.post("ALMotion", "stopMove").wait(2.0)
     link.post("ALMotion", "killTasksUsingResources", list(joints)).wait(1.0)
@@ -51,14 +51,14 @@ def halt(link: Link, joints: Sequence[str]) -> None:
         link.post("ALTextToSpeech", "stopAll").wait(1.0)
 
 
-def _find(link: Link) -> None:
-    if missing := link.find(NEEDED):
+def _find(link: NaoqiSession) -> None:
+    if missing := link.find(REQUIRED_SERVICES):
         raise RobotError(f"at {link.url} there is no {missing[0]}: is NAOqi up yet, and is it a NAO?")
-    for name in link.find(WELCOME):
-        _log.warning("this robot has no %s: %s", name, WELCOME[name])
+    for name in link.find(OPTIONAL_SERVICES):
+        _log.warning("this robot has no %s: %s", name, OPTIONAL_SERVICES[name])
 
 
-def _check_version(link: Link) -> None:
+def _check_version(link: NaoqiSession) -> None:
     if not link.has("ALSystem"):
         return
     text = str(link.ask("ALSystem", "systemVersion"))
@@ -67,13 +67,13 @@ def _check_version(link: Link) -> None:
         _log.warning("the robot says it has NAOqi `%s`, which nobody here knows", text[:40])
         return
     version = int(found[1]), int(found[2])
-    if version < OLDEST:
+    if version < OLDEST_NAOQI:
         raise RobotError(f"the robot has NAOqi {text}: Lumen needs 2.1 or newer")
-    if not TESTED[0] <= version <= TESTED[1]:
+    if not TESTED_NAOQI[0] <= version <= TESTED_NAOQI[1]:
         _log.warning("the robot has NAOqi %s: Lumen was written for 2.1 to 2.8", text)
 
 
-def _check_joints(link: Link, body: Body) -> None:
+def _check_joints(link: NaoqiSession, body: Body) -> None:
     """Raises RobotError where the robot lacks a joint: a body without hands is another model."""
     names = list(map(str, link.ask("ALMotion", "getBodyNames", "Body")))
     for joint in body.joints:
@@ -81,7 +81,7 @@ def _check_joints(link: Link, body: Body) -> None:
             raise RobotError(f"this robot has no {joint}, and models/{body.name} has: {did_you_mean(joint, names)}")
 
 
-def _protect(link: Link) -> None:
+def _protect(link: NaoqiSession) -> None:
     """NAOqi's reflexes on: the fall manager, the distance kept from obstacles, and stiffness that adapts."""
     for method, *arguments in (
         ("setFallManagerEnabled", True),

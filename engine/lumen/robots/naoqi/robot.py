@@ -8,17 +8,17 @@ from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.ports import Aim, Battery, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.robots.body_parts import part_of, parts
 from lumen.robots.executor import Executor
-from lumen.robots.naoqi.deeds import Deed
-from lumen.robots.naoqi.ground import Ground
-from lumen.robots.naoqi.instruments import Instruments
-from lumen.robots.naoqi.keeping import Keeper
-from lumen.robots.naoqi.link import CUT, PATIENCE, Call, Link
-from lumen.robots.naoqi.noticing import FALLEN, FALLING, FULL, Condition, Noticing
+from lumen.robots.naoqi.call_sequence import CallSequence
+from lumen.robots.naoqi.naoqi_events import FALLEN, FALLING, FULL, HealthAlerts, NaoqiEvents
 from lumen.robots.naoqi.preparing import halt, prepare
-from lumen.robots.naoqi.repertoire import Repertoire
-from lumen.robots.naoqi.senses import PERIODS, Acquiring
-from lumen.robots.parts import part_of, parts
+from lumen.robots.naoqi.reconnector import Reconnector
+from lumen.robots.naoqi.sense_poller import SENSE_PERIODS, SensePoller
+from lumen.robots.naoqi.sensors import NaoqiSensors
+from lumen.robots.naoqi.session import CALL_TIMEOUT, CONNECTION_LOST, NaoqiCall, NaoqiSession
+from lumen.robots.naoqi.skills import NaoqiSkills
+from lumen.robots.naoqi.walking_area import WalkingArea
 
 _log = logging.getLogger(__name__)
 
@@ -38,25 +38,26 @@ class NaoqiRobot:
         clock: Callable[[], float],
         *,
         stage: Stage | None = None,
-        patience: float = PATIENCE,
+        patience: float = CALL_TIMEOUT,
     ) -> None:
         self.body = body
         self._clock = clock
-        self._link = Link(url, lambda reason: self._keeper.lose(reason), patience)
-        self._noticing = Noticing(body.tactile)
-        self._instruments = Instruments(self._link, body, clock)
-        self._ground = Ground(stage, self._noticing.pressed, self._echo)
-        self._condition = Condition()
+        self._link = NaoqiSession(url, lambda reason: self._keeper.lose(reason), patience)
+        self._noticing = NaoqiEvents(body.tactile)
+        self._instruments = NaoqiSensors(self._link, body, clock)
+        self._ground = WalkingArea(stage, self._noticing.pressed, self._echo)
+        self._condition = HealthAlerts()
         self._events: list[Event] = []
-        self._repertoire = Repertoire(self._link, body, self._ground, self._events.append, clock)
+        self._repertoire = NaoqiSkills(self._link, body, self._ground, self._events.append, clock)
         self._executor = Executor(self._begin, lambda command: parts(command, body))
         self._part = part_of(body)
-        self._aimed: Call = Call()
+        self._aimed: NaoqiCall = NaoqiCall()
         self._aim: Aim | None = None
-        self._keeper = Keeper(self._link, self._take_over)
+        self._keeper = Reconnector(self._link, self._take_over)
         self._keeper.open()
         self._senses = {
-            sense: Acquiring(sense, self._link, self._instruments.reader(sense), PERIODS[sense]) for sense in Sense
+            sense: SensePoller(sense, self._link, self._instruments.reader(sense), SENSE_PERIODS[sense])
+            for sense in Sense
         }
 
     def start(self, id: str, command: RobotCommand) -> None:
@@ -100,9 +101,9 @@ class NaoqiRobot:
             self._instruments.end()
         self._link.close()
 
-    def _begin(self, command: RobotCommand, now: float) -> Deed:
+    def _begin(self, command: RobotCommand, now: float) -> CallSequence:
         if not self._link.ready:
-            raise RobotError(CUT)
+            raise RobotError(CONNECTION_LOST)
         return self._repertoire.begin(command, now)
 
     def _take_over(self, again: bool) -> None:

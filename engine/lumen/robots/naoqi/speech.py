@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-NAMES = {
+LANGUAGE_NAMES = {
     "en": "English", "id": "Indonesian", "fr": "French", "de": "German", "es": "Spanish", "it": "Italian",
     "ja": "Japanese", "zh": "Chinese", "ko": "Korean", "nl": "Dutch", "pt": "Portuguese", "ar": "Arabic",
     "ru": "Russian", "tr": "Turkish", "pl": "Polish", "sv": "Swedish", "da": "Danish", "fi": "Finnish",
@@ -22,5 +22,5 @@ def words(text: str) -> str:
 
 def language_of(code: str, spoken: Sequence[str]) -> str:
     """NAOqi's name of the language, empty where the robot has no voice for it; `spoken` are those that it has."""
-    name = NAMES.get(code.partition("-")[0].lower(), code)
+    name = LANGUAGE_NAMES.get(code.partition("-")[0].lower(), code)
     return name if name in spoken else ""

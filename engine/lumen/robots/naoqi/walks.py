@@ -6,34 +6,34 @@ from typing import Any
 
 from lumen.errors import RobotError
 from lumen.language.commands import Move, Walk
-from lumen.robots.naoqi.deeds import Deed, Doing, During
-from lumen.robots.naoqi.ground import DRIFT, Ground, Place
-from lumen.robots.naoqi.link import Call
+from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
+from lumen.robots.naoqi.session import NaoqiCall
+from lumen.robots.naoqi.walking_area import MAX_STAGE_DRIFT, GroundPose, WalkingArea
 
-FARTHEST = 10.0
+MAX_WALK_DISTANCE = 10.0
 """A walk farther than this [m] is a mistake."""
-SHORT, TURNED = 0.1, 0.2
+ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.1, 0.2
 """A walk that ends farther than this from where it should [m], [rad] has failed, where NAOqi does not say itself."""
-LOOK_EVERY = 0.2
+POSITION_CHECK_PERIOD = 0.2
 """Time between two looks at where the robot is [s]."""
-SITTING = ("Sitting", "SittingOnChair", "Belly", "Back", "Left", "Right", "UpsideDown", "Kneeling", "Lifted")
+SITTING_FAMILIES = ("Sitting", "SittingOnChair", "Belly", "Back", "Left", "Right", "UpsideDown", "Kneeling", "Lifted")
 """Families of postures that nobody walks in; those that begin with `Lying` are others."""
 
-Post = Callable[..., Call]
+PostCall = Callable[..., NaoqiCall]
 
 
 def grounded(family: object) -> bool:
     """Whether NAOqi says that the robot is not on its feet."""
-    return str(family) in SITTING or str(family).startswith("Lying")
+    return str(family) in SITTING_FAMILIES or str(family).startswith("Lying")
 
 
-class Watch:
+class WalkMonitor:
     """Looks around while the robot walks, and stops it; `reason` says why."""
 
-    def __init__(self, post: Post, ground: Ground, here: Place) -> None:
+    def __init__(self, post: PostCall, ground: WalkingArea, here: GroundPose) -> None:
         self.reason = ""
         self._post, self._ground, self._here = post, ground, here
-        self._where: Call | None = None
+        self._where: NaoqiCall | None = None
         self._look = 0.0
 
     def __call__(self, now: float) -> None:
@@ -47,37 +47,37 @@ class Watch:
         """Why it must not go on from where it is."""
         if self._where is None:
             if now >= self._look:
-                self._where, self._look = self._post("ALMotion", "getRobotPosition", True), now + LOOK_EVERY
+                self._where, self._look = self._post("ALMotion", "getRobotPosition", True), now + POSITION_CHECK_PERIOD
             return ""
         if not self._where.done:
             return ""
         found, self._where = self._where, None
         try:
-            return self._ground.outside(found.result(), self._here, DRIFT)
+            return self._ground.outside(found.result(), self._here, MAX_STAGE_DRIFT)
         except RobotError as error:
             return f"nobody knows where the robot is ({error})"
 
 
-class Walks:
+class NaoqiWalks:
     """Begins walks; `post` calls NAOqi."""
 
-    def __init__(self, post: Post, ground: Ground) -> None:
+    def __init__(self, post: PostCall, ground: WalkingArea) -> None:
         self._post, self._ground = post, ground
 
-    def begin(self, command: Walk | Move) -> Deed:
+    def begin(self, command: Walk | Move) -> CallSequence:
         """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""
         numbers = (command.x, command.y, command.theta) if isinstance(command, Walk) else (
             command.vx, command.vy, command.vtheta)  # fmt: skip
         if not all(map(isfinite, numbers)):
             raise RobotError(f"there is no way to {numbers}")
-        if isinstance(command, Walk) and hypot(command.x, command.y) > FARTHEST:
-            raise RobotError(f"({command.x:g}, {command.y:g}) is too far: a walk goes {FARTHEST:g} m at most")
+        if isinstance(command, Walk) and hypot(command.x, command.y) > MAX_WALK_DISTANCE:
+            raise RobotError(f"({command.x:g}, {command.y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most")
         if reason := self._ground.danger():
             raise RobotError(f"{reason}: the robot did not set out")
         doing = self._walk(numbers) if isinstance(command, Walk) else self._move(numbers)
-        return Deed(doing, lambda: [self._post("ALMotion", "stopMove")])
+        return CallSequence(doing, lambda: [self._post("ALMotion", "stopMove")])
 
-    def _standing(self) -> Doing:
+    def _standing(self) -> CallSteps:
         """Where the robot stands; raises RobotError where it does not."""
         family = yield self._post("ALRobotPosture", "getPostureFamily")
         if grounded(family):
@@ -88,11 +88,11 @@ class Walks:
         self._ground.meet(here)
         return here
 
-    def _walk(self, way: tuple[float, float, float]) -> Doing:
+    def _walk(self, way: tuple[float, float, float]) -> CallSteps:
         here = yield from self._standing()
         self._ground.check_way(here, way)
-        watch = Watch(self._post, self._ground, here)
-        arrived = yield During(self._post("ALMotion", "moveTo", *map(float, way)), watch)
+        watch = WalkMonitor(self._post, self._ground, here)
+        arrived = yield WhileWaiting(self._post("ALMotion", "moveTo", *map(float, way)), watch)
         if watch.reason:
             raise RobotError(f"{watch.reason}: the walk was ended")
         if arrived is None:
@@ -100,15 +100,15 @@ class Walks:
         if not arrived:
             raise RobotError("the robot stopped before it was there: something is in its way")
 
-    def _arrived(self, here: Place, way: tuple[float, float, float]) -> Doing:
+    def _arrived(self, here: GroundPose, way: tuple[float, float, float]) -> CallSteps:
         """Whether it is where it should be, by its odometry: `moveTo` of NAOqi 2.1 does not say."""
         there = yield self._post("ALMotion", "getRobotPosition", True)
         went, turned = hypot(there[0] - here[0], there[1] - here[1]), there[2] - here[2]
-        return abs(went - hypot(*way[:2])) <= SHORT and abs(turned - way[2]) <= TURNED
+        return abs(went - hypot(*way[:2])) <= ARRIVAL_TOLERANCE and abs(turned - way[2]) <= HEADING_TOLERANCE
 
-    def _move(self, velocity: tuple[float, float, float]) -> Doing:
+    def _move(self, velocity: tuple[float, float, float]) -> CallSteps:
         here = yield from self._standing()
-        watch = Watch(self._post, self._ground, here)
+        watch = WalkMonitor(self._post, self._ground, here)
         yield self._post("ALMotion", "move", *map(float, velocity))
         while any(velocity):
             now: Any = yield None

@@ -4,7 +4,7 @@
 """
 
 from lumen.robots.remote.hall import RemoteHall
-from lumen.robots.remote.host import Host
+from lumen.robots.remote.host import RobotHost
 from lumen.robots.remote.robot import RemoteRobot
 
-__all__ = ["Host", "RemoteHall", "RemoteRobot"]
+__all__ = ["RemoteHall", "RemoteRobot", "RobotHost"]

@@ -6,7 +6,7 @@ from typing import Any, assert_never
 
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.ports import Aim, Battery, Joints, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.motions import data_of
+from lumen.robots.motion_codec import encode_motion
 
 
 def body_of(command: RobotCommand) -> dict[str, Any]:
@@ -15,7 +15,7 @@ def body_of(command: RobotCommand) -> dict[str, Any]:
         case Say(text, language):
             return _body("texttospeech", "say", text=text, language=language)
         case Perform(motion):
-            return _body("motion", "perform", motion=data_of(motion))
+            return _body("motion", "perform", motion=encode_motion(motion))
         case Posture(name, speed):
             return _body("posture", "goToPosture", postureName=name, speed=speed)
         case Walk(x, y, theta):

@@ -11,9 +11,9 @@ from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, Message
 from lumen.robots.remote.bodies import visitor_body
-from lumen.robots.ways import HALL, SEEN, key_of, tell
+from lumen.robots.robot_routes import HALL, SEEN, key_of, tell
 
-LASTING = 2.0
+HALL_MESSAGE_TTL = 2.0
 """For how long what is done in a hall may wait on the bus [s]."""
 
 _log = logging.getLogger(__name__)
@@ -61,7 +61,7 @@ class RemoteHall:
 
     def _do(self, body: dict[str, Any]) -> None:
         try:
-            tell(self._bus, self._project, HALL, body, ttl=LASTING)
+            tell(self._bus, self._project, HALL, body, ttl=HALL_MESSAGE_TTL)
         except BusError as error:
             _log.warning("what the visitor does was not sent: %s", error)
 

@@ -12,17 +12,17 @@ from lumen.language.events import ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, Hall, Message, Robot, RobotCommand
-from lumen.robots.server import Server
-from lumen.robots.ways import HALL, SEEN, key_of, tell
+from lumen.robots.robot_routes import HALL, SEEN, key_of, tell
+from lumen.robots.server import RobotServer
 
-LOOK = 0.1
+FACE_REPORT_PERIOD = 0.1
 """How often it is told at most where the visitor's face is seen [s]."""
-FARTHEST, TALLEST = 100.0, 3.0
+MAX_VISITOR_DISTANCE, MAX_VISITOR_HEIGHT = 100.0, 3.0
 
 _log = logging.getLogger(__name__)
 
 
-class Host:
+class RobotHost:
     """Lumen Server for a robot, and for the hall around it where it is simulated.
 
     Whoever owns the clock calls `tick`; what the robot answered and noticed since is told to everybody, and returned.
@@ -37,11 +37,11 @@ class Host:
         hall: Hall | None = None,
         told: Callable[[RobotCommand], None] = lambda _: None,
     ) -> None:
-        self.server = Server(project, robot, bus, told=told)
+        self.server = RobotServer(project, robot, bus, told=told)
         self._robot, self._bus, self._hall, self._project = robot, bus, hall, project
         self._deeds: deque[Message] = deque(maxlen=1_000)
         self._seen: object = ()
-        self._looked = -LOOK
+        self._looked = -FACE_REPORT_PERIOD
         self._happened: list[Event] = []
         self._key = key_of(project, HALL)
         self._undo: Callable[[], None] = lambda: None
@@ -69,7 +69,7 @@ class Host:
         self._happened = []
         for event in events:
             self.server.answer(event)
-        if self._hall and now >= self._looked + LOOK:
+        if self._hall and now >= self._looked + FACE_REPORT_PERIOD:
             self._look(self._hall, now)
         return events
 
@@ -114,5 +114,5 @@ def _visitor(place: Mapping[str, Any]) -> Visitor | None:
     if not all(isinstance(n, int | float) and not isinstance(n, bool) and isfinite(n) for n in numbers):
         return None
     x, y, height = (float(number) for number in numbers if number is not None)
-    near = abs(x) <= FARTHEST and abs(y) <= FARTHEST and 0.0 < height <= TALLEST
+    near = abs(x) <= MAX_VISITOR_DISTANCE and abs(y) <= MAX_VISITOR_DISTANCE and 0.0 < height <= MAX_VISITOR_HEIGHT
     return Visitor(x, y, height) if near else None

@@ -14,19 +14,19 @@ from lumen.language.commands import Rest, Stop
 from lumen.language.events import CUE, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Message, Perform, Reading, RobotCommand, Sense
+from lumen.robots.command_reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN
 from lumen.robots.remote.bodies import body_of, reading_of
-from lumen.robots.reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN
-from lumen.robots.ways import AIM, COMMAND, NOTICED, REPORT, STOP, key_of, tell
+from lumen.robots.robot_routes import AIM, COMMAND, NOTICED, REPORT, STOP, key_of, tell
 
-AGAIN = 1.0
+RESEND_PERIOD = 1.0
 """How long a command may stay unanswered before it is sent again [s]: the robot performs it once all the same."""
-GIVEN_UP = 5.0
+ANSWER_TIMEOUT = 5.0
 """How long one may stay without any answer [s]: it failed then, and is not wanted any more."""
-SILENCE = 5.0
+OUTCOME_QUERY_PERIOD = 5.0
 """How long after its last news the robot is asked what became of a command [s]."""
-AIM_LASTING = 0.2
-COMMAND_LASTING = 2.0
-WAITING = 10_000
+AIM_TTL = 0.2
+COMMAND_TTL = 2.0
+MAX_PENDING_REPORTS = 10_000
 
 _ENDS = {FINISHED: "done", FAILED: "error", CANCELLED: "cancelled", UNKNOWN: "error"}
 _FORGOTTEN = "the robot has forgotten it: it was restarted"
@@ -75,7 +75,7 @@ class RemoteRobot:
         self._delegate = delegate
         self._pending: dict[str, _Pending] = {}
         self._forsaken: deque[str] = deque(maxlen=1_000)
-        self._came: deque[Message] = deque(maxlen=WAITING)
+        self._came: deque[Message] = deque(maxlen=MAX_PENDING_REPORTS)
         self._events: list[Event] = []
         self._begun: list[str] = []
         self._readings: dict[Sense, tuple[Reading, float]] = {}
@@ -96,7 +96,7 @@ class RemoteRobot:
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Aim):
-            self._send(AIM, body_of(command), AIM_LASTING)
+            self._send(AIM, body_of(command), AIM_TTL)
             return
         now = self._patience()
         whole = f"{self.session}.{id}"
@@ -164,7 +164,7 @@ class RemoteRobot:
         if delegable and isinstance(command, Perform) and self._delegate(whole, command):
             return
         way = STOP if isinstance(command, Rest | Stop) else COMMAND
-        self._send(way, {**body_of(command), "id": whole}, COMMAND_LASTING)
+        self._send(way, {**body_of(command), "id": whole}, COMMAND_TTL)
 
     def _stopping(self) -> bool:
         """Whether something that stops the robot is on its way to it."""
@@ -190,7 +190,7 @@ class RemoteRobot:
                 self._order(whole, pending.command)
 
     def _ask(self, method: str, whole: str) -> None:
-        self._send(COMMAND, {"type": "motion", "method": method, "parameter": {"id": whole}}, COMMAND_LASTING)
+        self._send(COMMAND, {"type": "motion", "method": method, "parameter": {"id": whole}}, COMMAND_TTL)
 
     def _send(self, way: str, body: dict[str, Any], ttl: float) -> None:
         try:
@@ -235,10 +235,10 @@ class RemoteRobot:
             quiet = now - pending.told
             if pending.held:
                 continue
-            if not pending.heard and now - pending.since > GIVEN_UP:
+            if not pending.heard and now - pending.since > ANSWER_TIMEOUT:
                 self._forsaken.append(whole)
                 self._end(whole, "error", "the robot does not answer")
-            elif quiet > (SILENCE if pending.heard and not pending.cancelled else AGAIN):
+            elif quiet > (OUTCOME_QUERY_PERIOD if pending.heard and not pending.cancelled else RESEND_PERIOD):
                 pending.told = now
                 if pending.cancelled:
                     self._ask("cancel", whole)

@@ -5,10 +5,10 @@ from lumen.language.robots import Camera
 from lumen.language.routes import Size
 from lumen.ports import Image
 from lumen.robots.simulation.model import ROBOT
-from lumen.robots.simulation.rendering import CAMERA, Pixels, Scene, Studio, available
+from lumen.robots.simulation.rendering import CAMERA_QUALITY, PixelArray, RenderState, SceneRenderer, available
 from lumen.robots.simulation.world import World
 
-NAME = f"{ROBOT}/CameraTop"
+TOP_CAMERA = f"{ROBOT}/CameraTop"
 
 
 class TopCamera:
@@ -16,22 +16,22 @@ class TopCamera:
 
     def __init__(self, world: World, camera: Camera) -> None:
         self._world, self._camera = world, camera
-        self._studio = None if available() else Studio(world.model, CAMERA)
+        self._studio = None if available() else SceneRenderer(world.model, CAMERA_QUALITY)
 
     def image(self, now: float) -> Image | None:
         """The image of this moment; None where nothing can be drawn."""
         if self._studio is None:
             return None
-        studio, camera, scene = self._studio, self._camera, Scene.of(self._world.model, self._world.data)
+        studio, camera, scene = self._studio, self._camera, RenderState.of(self._world.model, self._world.data)
 
-        def pixels(size: Size | None = None) -> Pixels:
-            return studio.draw(scene, NAME, *(size or (camera.width, camera.height)))
+        def pixels(size: Size | None = None) -> PixelArray:
+            return studio.draw(scene, TOP_CAMERA, *(size or (camera.width, camera.height)))
 
         return Image(now, pixels)
 
     def pixel(self, point: tuple[float, float, float]) -> tuple[float, float] | None:
         """Where a point of the hall [m] appears [px]; None outside the image or behind."""
-        view = self._world.data.camera(NAME)
+        view = self._world.data.camera(TOP_CAMERA)
         right, up, back = view.xmat.reshape(3, 3).T @ (point - view.xpos)
         return project((-float(back), -float(right), float(up)), self._camera)
 

@@ -6,11 +6,11 @@ from pathlib import Path
 import mujoco
 
 from lumen.errors import RobotError
-from lumen.robots.simulation.rendering import FILM, Scene, Studio, available
+from lumen.robots.simulation.rendering import FILM_QUALITY, RenderState, SceneRenderer, available
 from lumen.robots.simulation.robot import SimulatedRobot
 
-RATE = 25
-WIDTH, HEIGHT = 640, 480
+FILM_RATE = 25
+FILM_WIDTH, FILM_HEIGHT = 640, 480
 
 
 class Film:
@@ -25,20 +25,20 @@ class Film:
         if mujoco.mj_name2id(robot.world.model, mujoco.mjtObj.mjOBJ_CAMERA, camera) < 0:
             raise RobotError(f"the hall has no camera `{camera}` to film with")
         self._robot, self._camera = robot, camera
-        self._studio = Studio(robot.world.model, FILM)
+        self._studio = SceneRenderer(robot.world.model, FILM_QUALITY)
         self._writer = _writer(path)
         self.frames = 0
 
     def frame_due(self, now: float) -> bool:
         """Whether it is time [s] for the next frame."""
-        return now + 1e-9 >= self.frames / RATE
+        return now + 1e-9 >= self.frames / FILM_RATE
 
     def tick(self, now: float) -> None:
         """Take the frames that are due by `now` [s]; the run waits for them."""
         if not self.frame_due(now):
             return
         world = self._robot.world
-        pixels = self._studio.draw(Scene.of(world.model, world.data), self._camera, WIDTH, HEIGHT)
+        pixels = self._studio.draw(RenderState.of(world.model, world.data), self._camera, FILM_WIDTH, FILM_HEIGHT)
         while self.frame_due(now):
             self._writer.send(pixels.tobytes())
             self.frames += 1
@@ -53,7 +53,13 @@ def _writer(path: Path) -> Generator[None, bytes, None]:
     import imageio_ffmpeg
 
     writer: Generator[None, bytes, None] = imageio_ffmpeg.write_frames(
-        str(path), (WIDTH, HEIGHT), fps=RATE, codec="libx264", quality=7, macro_block_size=2, ffmpeg_log_level="error"
+        str(path),
+        (FILM_WIDTH, FILM_HEIGHT),
+        fps=FILM_RATE,
+        codec="libx264",
+        quality=7,
+        macro_block_size=2,
+        ffmpeg_log_level="error",
     )
     writer.send(None)  # type: ignore[arg-type]  # starts the generator
     return writer

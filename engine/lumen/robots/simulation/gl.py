@@ -5,7 +5,7 @@ import importlib
 import os
 import sys
 
-REMEDY = "install libegl1 and libgl1 (apt-get install -y --no-install-recommends libegl1 libgl1)"
+OPENGL_HINT = "install libegl1 and libgl1 (apt-get install -y --no-install-recommends libegl1 libgl1)"
 
 _LIBRARIES = {"egl": ("libEGL.so.1", "libGL.so.1"), "osmesa": ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so")}
 
@@ -42,5 +42,5 @@ BACKEND = _settle()
 def missing() -> str | None:
     """Why nothing can be drawn and what to do about it; None where it can."""
     if BACKEND.lower() in ("disable", "off", "false", "0"):
-        return f"there is no OpenGL library: {REMEDY}"
+        return f"there is no OpenGL library: {OPENGL_HINT}"
     return None

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 from lumen.robots.simulation.sonar import Sonars
 
-NEAREST = 0.4
+OBSTACLE_DISTANCE = 0.4
 """Nearer than this to something the robot does not walk [m]."""
 
-BUTTONS = {
+STOP_BUTTONS = {
     "RightBumper": "the right bumper",
     "LeftBumper": "the left bumper",
     "ChestButton": "the chest button",
@@ -22,8 +22,12 @@ class Hazards:
 
     def danger(self) -> str:
         """Why the robot must not walk now; empty where nothing is in the way."""
-        for sensor, name in BUTTONS.items():
+        for sensor, name in STOP_BUTTONS.items():
             if self._pressed.get(sensor):
                 return f"{name} is pressed"
-        distance = min(self._sonars.measure()) if self._sonars else NEAREST
-        return f"something is {distance:.2f} m ahead, nearer than {NEAREST:g} m" if distance < NEAREST else ""
+        distance = min(self._sonars.measure()) if self._sonars else OBSTACLE_DISTANCE
+        return (
+            f"something is {distance:.2f} m ahead, nearer than {OBSTACLE_DISTANCE:g} m"
+            if distance < OBSTACLE_DISTANCE
+            else ""
+        )

@@ -7,14 +7,14 @@ import numpy as np
 
 from lumen.robots.simulation.model import ROBOT
 
-GROUPS: Mapping[str, tuple[str, ...]] = {
+LIGHT_PAIRS: Mapping[str, tuple[str, ...]] = {
     "eyes": ("left_eye", "right_eye"),
     "ears": ("left_ear", "right_ear"),
     "feet": ("left_foot", "right_foot"),
 }
 """Names that stand for several lights; every other light is a material of the MJCF."""
 
-COLOURS: Mapping[str, str] = {
+RENDERED_COLOURS: Mapping[str, str] = {
     "off": "#202428", "black": "#202428", "white": "#f4f6ff", "red": "#ff3020", "green": "#30e040", "blue": "#2060ff",
     "yellow": "#ffe020", "orange": "#ff8810", "cyan": "#20e0f0", "magenta": "#ff30d0", "purple": "#9030ff",
     "pink": "#ff80c0", "turquoise": "#30e0c0", "gold": "#ffc030", "violet": "#a050ff",
@@ -35,13 +35,13 @@ class Lights:
         names = {model.material(i).name: i for i in range(model.nmat)}
         self._ids = {name.removeprefix(prefix): i for name, i in names.items() if name.startswith(prefix)}
         self._first = self._colours.copy()
-        self._ears = [self._ids[name] for name in GROUPS["ears"] if name in self._ids]
+        self._ears = [self._ids[name] for name in LIGHT_PAIRS["ears"] if name in self._ids]
 
     def show(self, colours: Mapping[str, str]) -> None:
         """Give each of these lights its colour, a name or `#rrggbb`; unknown lights and colours change nothing."""
         for name, colour in colours.items():
             rgb = _rgb(colour)
-            for light in GROUPS.get(name, (name,)):
+            for light in LIGHT_PAIRS.get(name, (name,)):
                 if rgb is not None and light in self._ids:
                     self._colours[self._ids[light], :3] = rgb
 
@@ -62,7 +62,7 @@ class Lights:
 
 
 def _rgb(colour: object) -> tuple[float, float, float] | None:
-    text = COLOURS.get(str(colour), str(colour))
+    text = RENDERED_COLOURS.get(str(colour), str(colour))
     try:
         red, green, blue = bytes.fromhex(text.removeprefix("#"))
     except ValueError:

@@ -9,7 +9,7 @@ from dm_control import mjcf
 
 from lumen.errors import RobotError
 from lumen.language.robots import Body
-from lumen.robots.simulation.needs import lacks_of_body, lacks_of_hall, lacks_of_robot
+from lumen.robots.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 
 ROBOT = "nao"
 """What the names of the robot's elements begin with in the hall: `nao/HeadYaw`."""

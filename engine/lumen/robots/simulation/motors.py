@@ -6,10 +6,10 @@ from math import isfinite
 import numpy as np
 
 from lumen.errors import RobotError
-from lumen.robots.simulation.limits import Angles, Envelope
+from lumen.robots.simulation.joint_envelope import JointEnvelope, JointVector
 from lumen.robots.simulation.world import World
 
-LIMP = 0.5
+LIMP_STIFFNESS = 0.5
 """Below this stiffness a joint may be anywhere but at its goal."""
 
 
@@ -25,15 +25,15 @@ class Motors:
         self._world = world
         self.names = tuple(body.joints)
         self.index = {name: i for i, name in enumerate(self.names)}
-        self.envelope = Envelope(body)
+        self.envelope = JointEnvelope(body)
         self._leader = dict(body.shared)
         self._limits = {joint.name: (joint.minimum, joint.maximum) for joint in body.joints.values()}
         self._effort = world.model.actuator_forcerange[world.actuators].copy()
         self.effort = np.zeros(len(self.names))
         self.effort[world.driven] = self._effort[:, 1]
         self.stiffness = np.ones(len(self.names))
-        self.goal: Angles = world.angles.copy()
-        self.command: Angles = self.goal.copy()
+        self.goal: JointVector = world.angles.copy()
+        self.command: JointVector = self.goal.copy()
         self._sway = np.zeros(len(self.names))
 
     def aim(self, targets: Mapping[str, float]) -> None:
@@ -74,13 +74,13 @@ class Motors:
 
     def stiffen(self, stiffness: float) -> None:
         """Let all motors give at most that part (0..1) of their torque; what was limp starts from where it is."""
-        if self.stiffness.max() < LIMP:
+        if self.stiffness.max() < LIMP_STIFFNESS:
             self.goal = np.clip(self._world.angles, self.envelope.low, self.envelope.high)
             self.command = self._world.angles.copy()
         self.stiffness[:] = stiffness
         self._world.model.actuator_forcerange[self._world.actuators] = stiffness * self._effort
 
-    def drive(self, trim: Angles, dt: float) -> None:
+    def drive(self, trim: JointVector, dt: float) -> None:
         """Tell the servos where to be `dt` [s] from now; `trim` [rad] is added to the goal, not kept."""
         self.command = self.envelope.step(self.command, self.goal + trim + self._sway, dt)
         self._sway[:] = 0.0

@@ -6,19 +6,19 @@ from math import isfinite
 from lumen.errors import RobotError
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import Cue, MotionDefinition
-from lumen.robots.cues import Notice, Prompter
+from lumen.robots.cues import CueNotifier, EventSink
+from lumen.robots.simulation.joint_transition import JointTransition
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.transition import Transition
-from lumen.robots.simulation.voice import Voice
+from lumen.robots.simulation.speech_playback import SpeechPlayback
 
-APPROACH, RECOVERY = 1.2, 0.8
+APPROACH_TIME, RECOVERY_TIME = 1.2, 0.8
 """How long it takes to the posture that a motion begins in, and back to it from a cancelled one [s]."""
 
-_NEAR = 0.05
+_START_POSTURE_TOLERANCE = 0.05
 
 
-class Playback:
+class MotionPlayback:
     """A motion: to the posture it begins in where the robot is not there, then along its keys, cues beside them.
 
     `home` holds that posture's angles [rad] of the joints that the motion owns; `notice` is told of words and sounds.
@@ -32,16 +32,16 @@ class Playback:
         motion: MotionDefinition,
         home: Mapping[str, float],
         now: float,
-        notice: Notice = lambda _: None,
+        notice: EventSink = lambda _: None,
     ) -> None:
         _check(motors, motion)
         self._motors, self._lights, self._motion, self._home = motors, lights, motion, home
         self._begin = self._now = now
         self._cues = sorted(motion.cues, key=lambda cue: cue.time)
-        self._prompter = Prompter(motion, notice)
+        self._prompter = CueNotifier(motion, notice)
         self._trajectory: Trajectory | None = None
-        self._approach = Transition(motors, home, now, APPROACH) if self._away() else None
-        self._recovery: Transition | None = None
+        self._approach = JointTransition(motors, home, now, APPROACH_TIME) if self._away() else None
+        self._recovery: JointTransition | None = None
 
     @property
     def reached(self) -> float:
@@ -64,12 +64,12 @@ class Playback:
     def cancel(self) -> None:
         """Back to where it began, which takes `RECOVERY`."""
         self._lights.reset()
-        self._recovery = Transition(self._motors, self._home, self._now, RECOVERY)
+        self._recovery = JointTransition(self._motors, self._home, self._now, RECOVERY_TIME)
 
     def _away(self) -> bool:
         wanted = self._motors.wanted(self._home)
         legs = (n for n in self._home if "Hip" in n or "Knee" in n or "Ankle" in n)
-        return any(abs(wanted[n] - self._home[n]) > _NEAR for n in legs)
+        return any(abs(wanted[n] - self._home[n]) > _START_POSTURE_TOLERANCE for n in legs)
 
     def _play(self, trajectory: Trajectory, t: float) -> bool:
         while self._cues and self._cues[0].time <= t:
@@ -88,10 +88,10 @@ class Playback:
             self._lights.hold((str(cue.value),))
 
 
-class Speech:
+class SpeechActivity:
     """Saying a text; the robot's ears glow meanwhile."""
 
-    def __init__(self, lights: Lights, voice: Voice, text: str, language: str, now: float) -> None:
+    def __init__(self, lights: Lights, voice: SpeechPlayback, text: str, language: str, now: float) -> None:
         self._lights, self._voice, self._now = lights, voice, now
         self._until = now + voice.begin(text, language, now)
         lights.speak(True)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lumen.robots.simulation import gl
 
-Pixels = NDArray[np.uint8]
+PixelArray = NDArray[np.uint8]
 """Shape (height, width, 3), RGB."""
 
 
@@ -21,19 +21,19 @@ def available() -> str | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Quality:
+class RenderQuality:
     """What a picture costs: size of the shadow map and antialiasing samples, 0 for none."""
 
     shadows: int = 0
     samples: int = 0
 
 
-CAMERA = Quality()
-FILM = Quality(shadows=2048)
+CAMERA_QUALITY = RenderQuality()
+FILM_QUALITY = RenderQuality(shadows=2048)
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class RenderState:
     """All that a picture of this moment depends on, copied: drawing it later disturbs nobody."""
 
     positions: NDArray[np.float64]
@@ -45,7 +45,7 @@ class Scene:
     bounds: NDArray[np.float64]
 
     @classmethod
-    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> "Scene":
+    def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> "RenderState":
         """The scene as it is now; about 9 kB are copied."""
         return cls(
             data.qpos.copy(),
@@ -58,14 +58,14 @@ class Scene:
         )
 
 
-class Studio:
+class SceneRenderer:
     """Draws scenes of one model; every thread that uses it gets its own OpenGL context, made at its first picture."""
 
-    def __init__(self, model: mujoco.MjModel, quality: Quality) -> None:
+    def __init__(self, model: mujoco.MjModel, quality: RenderQuality) -> None:
         self._model, self._quality = model, quality
         self._local = threading.local()
 
-    def draw(self, scene: Scene, camera: str | mujoco.MjvCamera, width: int, height: int) -> Pixels:
+    def draw(self, scene: RenderState, camera: str | mujoco.MjvCamera, width: int, height: int) -> PixelArray:
         """The scene through a camera of the model, or one anywhere."""
         cameras: dict[tuple[int, int], _Canvas] = self._local.__dict__.setdefault("canvases", {})
         canvas = cameras.get((width, height))
@@ -82,7 +82,7 @@ class Studio:
 class _Canvas:
     """A renderer with a model and a state of its own, for one thread and one size."""
 
-    def __init__(self, model: mujoco.MjModel, quality: Quality, width: int, height: int) -> None:
+    def __init__(self, model: mujoco.MjModel, quality: RenderQuality, width: int, height: int) -> None:
         self._model = copy.copy(model)
         self._model.vis.quality.shadowsize = quality.shadows
         self._model.vis.quality.offsamples = quality.samples
@@ -93,7 +93,7 @@ class _Canvas:
         atexit.register(self.close)  # after mujoco's own, and so before it: then OpenGL would be gone
         self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = bool(quality.shadows)
 
-    def draw(self, scene: Scene, camera: str | mujoco.MjvCamera) -> Pixels:
+    def draw(self, scene: RenderState, camera: str | mujoco.MjvCamera) -> PixelArray:
         model, data = self._model, self._data
         data.qpos[:] = scene.positions
         data.mocap_pos[:], data.mocap_quat[:] = scene.visitor_place, scene.visitor_turn
@@ -103,7 +103,7 @@ class _Canvas:
         mujoco.mj_comPos(model, data)
         mujoco.mj_camlight(model, data)
         self._renderer.update_scene(data, camera)
-        pixels: Pixels = self._renderer.render()
+        pixels: PixelArray = self._renderer.render()
         return pixels
 
     def close(self) -> None:

@@ -14,32 +14,32 @@ from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.executor import Activity, Executor
-from lumen.robots.simulation.anatomy import Anatomy
-from lumen.robots.simulation.balance import Balance
+from lumen.robots.simulation.aim_controller import AimController
+from lumen.robots.simulation.balance import BalanceController
+from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
 from lumen.robots.simulation.camera import TopCamera
-from lumen.robots.simulation.condition import Condition
-from lumen.robots.simulation.figure import Figure
+from lumen.robots.simulation.force_sensors import ForceSensors
 from lumen.robots.simulation.hazards import Hazards
-from lumen.robots.simulation.instruments import Instruments
 from lumen.robots.simulation.lights import Lights
+from lumen.robots.simulation.mass_model import MassModel
 from lumen.robots.simulation.model import Variation
 from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.repertoire import Repertoire
-from lumen.robots.simulation.soles import Soles
+from lumen.robots.simulation.odometry import Odometry
+from lumen.robots.simulation.sensors import BodySensors
+from lumen.robots.simulation.skills import SimulatedSkills
 from lumen.robots.simulation.sonar import Sonars
-from lumen.robots.simulation.steering import Steering
-from lumen.robots.simulation.touch import Touch
-from lumen.robots.simulation.voice import Voice
-from lumen.robots.simulation.walking import Walker
-from lumen.robots.simulation.whereabouts import Whereabouts
-from lumen.robots.simulation.world import FALLEN, PERIOD, World
+from lumen.robots.simulation.speech_playback import SpeechPlayback
+from lumen.robots.simulation.tactile_sensors import TactileSensors
+from lumen.robots.simulation.visitor_figure import VisitorFigure
+from lumen.robots.simulation.walking import WalkController
+from lumen.robots.simulation.world import CONTROL_PERIOD, FALLEN_TILT, World
 
 _log = logging.getLogger(__name__)
 
 _EMPTY = "battery-empty"
 """The id of the rest that an empty battery takes."""
 
-STEADY = 0.3
+STANDING_TILT = 0.3
 """A torso that leans less than this means that the robot stands [rad]."""
 
 _CONDITION_EVERY = 10
@@ -69,32 +69,32 @@ class SimulatedRobot:
         self.world.set_up(body.postures[posture])
         self.motors = Motors(self.world)
         self.lights = Lights(self.world.model)
-        self.condition = Condition(tuple(body.joints), [joint.effort for joint in body.joints.values()])
+        self.condition = BatteryAndHeat(tuple(body.joints), [joint.effort for joint in body.joints.values()])
         self.greatest_tilt = 0.0
-        self._balance = Balance(self.motors)
-        self._steering = Steering(self.motors)
-        self._instruments = Instruments(self.world, variation.noise if variation else 0.0, seed)
+        self._balance = BalanceController(self.motors)
+        self._steering = AimController(self.motors)
+        self._instruments = BodySensors(self.world, variation.noise if variation else 0.0, seed)
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
-        self._touch = Touch(self.world.model, self.world.data, body.tactile)
-        self._scales = Soles(self.world.model, self.world.data)
+        self._touch = TactileSensors(self.world.model, self.world.data, body.tactile)
+        self._scales = ForceSensors(self.world.model, self.world.data)
         self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
-        self._whereabouts = Whereabouts(stage)
-        walker = Walker(
+        self._whereabouts = Odometry(stage)
+        walker = WalkController(
             self.motors,
             self._balance,
             self._instruments,
             self._whereabouts,
-            Anatomy(body, Path(models)),
+            MassModel(body, Path(models)),
             Hazards(self._sonars, self._pressed),
             self._free,
             lambda: self.condition.hot,
         )
-        self._repertoire = Repertoire(
+        self._repertoire = SimulatedSkills(
             self.world, self.motors, self.lights, walker, self._instruments, posture, self._notice
         )
         self._executor = Executor(self._begin, self._repertoire.parts)
-        self._figure = Figure(self.world.model, self.world.data)
+        self._figure = VisitorFigure(self.world.model, self.world.data)
         self._camera = TopCamera(self.world, body.camera)
         self._events: list[Event] = []
         self._exhausted = False
@@ -104,7 +104,7 @@ class SimulatedRobot:
     @property
     def time(self) -> float:
         """How long the robot has lived [s]."""
-        return self._ticks * PERIOD
+        return self._ticks * CONTROL_PERIOD
 
     @property
     def fallen(self) -> bool:
@@ -115,7 +115,7 @@ class SimulatedRobot:
         """Whether the motors are on."""
         return self._repertoire.awake
 
-    def speak_with(self, voice: Voice) -> None:
+    def speak_with(self, voice: SpeechPlayback) -> None:
         """Say texts with this voice from now on, as long as it takes."""
         self._repertoire.voice = voice
 
@@ -125,7 +125,7 @@ class SimulatedRobot:
         Raises RobotError where the models let the simulation become unstable.
         """
         self._until += dt
-        while self.time + PERIOD <= self._until + 1e-9:
+        while self.time + CONTROL_PERIOD <= self._until + 1e-9:
             self._tick()
 
     def start(self, id: str, command: RobotCommand) -> None:
@@ -204,11 +204,11 @@ class SimulatedRobot:
     def _tick(self) -> None:
         now = self.time
         self._events += [e for e in self._executor.advance(now) if not e.name.endswith(f".command.{_EMPTY}")]
-        self._steering.advance(PERIOD, self._free)
+        self._steering.advance(CONTROL_PERIOD, self._free)
         self._instruments.feel()
         if self.awake:
             gyro = self._instruments.gyro if self._repertoire.upright else (0.0, 0.0)
-            self.motors.drive(self._balance.trim(gyro), PERIOD)
+            self.motors.drive(self._balance.trim(gyro), CONTROL_PERIOD)
         self.world.step()
         self._ticks += 1
         self._watch(self.time)
@@ -224,17 +224,17 @@ class SimulatedRobot:
         upright = self._repertoire.upright
         if not upright or self.fallen:
             self._whereabouts.lose("" if self.fallen else self._repertoire.posture)
-        elif tilt < STEADY:
+        elif tilt < STANDING_TILT:
             self._whereabouts.keep(self._instruments.heading)
         self.greatest_tilt = max(self.greatest_tilt, degrees(tilt)) if upright else self.greatest_tilt
-        if tilt > FALLEN and upright and not self.fallen:
+        if tilt > FALLEN_TILT and upright and not self.fallen:
             self._repertoire.fall()
             self._executor.fail("the robot fell")
             self._events.append(Event("fallen", {}, now))
         if self._ticks % _CONDITION_EVERY == 0:
             world = self.world
             world.check()
-            self._events += self.condition.live(world.torques, world.speeds, _CONDITION_EVERY * PERIOD, now)
+            self._events += self.condition.live(world.torques, world.speeds, _CONDITION_EVERY * CONTROL_PERIOD, now)
             self._exhaust()
 
     def _exhaust(self) -> None:

@@ -14,21 +14,21 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-Points = NDArray[np.float64]
-Section = tuple[float, float, float, float, float, float]
+Vertices = NDArray[np.float64]
+CrossSection = tuple[float, float, float, float, float, float]
 """Place along the axis, centre and half widths (x, y of the ring each), exponent (2 an ellipse, more a box)."""
 
-SEGMENTS, STEPS = 28, 3
+SEGMENTS, BLEND_STEPS = 28, 3
 
 
 @dataclass(frozen=True)
 class Loft:
     """A skin around sections along z, or along x for `axis="x"`, where a ring's x is -z and its y is y."""
 
-    sections: Sequence[Section]
+    sections: Sequence[CrossSection]
     axis: str = "z"
 
-    def skin(self, s: Points, theta: Points, offset: float = 0.0) -> Points:
+    def skin(self, s: Vertices, theta: Vertices, offset: float = 0.0) -> Vertices:
         """Points at the parts `s` (0..1) of the way through the sections and angles `theta`; Shape (s, theta, 3)."""
         along, cx, cy, a, b, n = _through(np.array(self.sections), s).T[:, :, None]
         c, d = np.cos(theta)[None], np.sin(theta)[None]
@@ -39,9 +39,9 @@ class Loft:
         points = (u, v, w) if self.axis == "z" else (w, v, -u)
         return np.stack(points, axis=-1)
 
-    def mesh(self) -> tuple[Points, NDArray[np.int64]]:
+    def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
         """The whole skin, closed at both ends."""
-        s = np.linspace(0, 1, STEPS * (len(self.sections) - 1) + 1)
+        s = np.linspace(0, 1, BLEND_STEPS * (len(self.sections) - 1) + 1)
         theta = np.linspace(0, 2 * np.pi, SEGMENTS, endpoint=False)
         grid = self.skin(s, theta)
         ends = grid[[0, -1]].mean(axis=1)
@@ -56,7 +56,7 @@ class Loft:
 
 
 @dataclass(frozen=True)
-class Panel:
+class ShellPanel:
     """A part of a loft's skin, a little above it: between the parts `span` of its length and the angles `arc` [deg]."""
 
     loft: Loft
@@ -65,7 +65,7 @@ class Panel:
     rise: float = 1.0
     sink: float = 1.5
 
-    def mesh(self) -> tuple[Points, NDArray[np.int64]]:
+    def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
         """A closed slab."""
         s = np.linspace(*self.span, 14)
         theta = np.radians(np.linspace(*self.arc, max(6, round((self.arc[1] - self.arc[0]) / 8))))
@@ -89,7 +89,7 @@ class Ring:
     thick: float
     flat: float
 
-    def mesh(self) -> tuple[Points, NDArray[np.int64]]:
+    def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
         around, across = np.linspace(0, 2 * np.pi, 32, endpoint=False), np.linspace(0, 2 * np.pi, 8, endpoint=False)
         radius = 1000 + self.thick * np.cos(across)[:, None]
         x, y = radius * np.cos(around), radius * np.sin(around)
@@ -99,14 +99,14 @@ class Ring:
         return grid.reshape(-1, 3), faces
 
 
-def _through(sections: Points, s: Points) -> Points:
+def _through(sections: Vertices, s: Vertices) -> Vertices:
     """Sections between the given ones, by Catmull and Rom's spline: Shape (len(s), columns)."""
     position = s * (len(sections) - 1)
     i = np.minimum(position.astype(int), len(sections) - 2)
     t = (position - i)[:, None]
     padded = np.concatenate([2 * sections[:1] - sections[1:2], sections, 2 * sections[-1:] - sections[-2:-1]])
     p0, p1, p2, p3 = (padded[i + k] for k in range(4))
-    curve: Points = p1 + 0.5 * t * (p2 - p0 + t * (2 * p0 - 5 * p1 + 4 * p2 - p3 + t * (3 * (p1 - p2) + p3 - p0)))
+    curve: Vertices = p1 + 0.5 * t * (p2 - p0 + t * (2 * p0 - 5 * p1 + 4 * p2 - p3 + t * (3 * (p1 - p2) + p3 - p0)))
     return curve
 
 
@@ -160,27 +160,27 @@ FOOT = Loft((
     (14, -1, 2, 22, 20, 2.1), (16, -1, 2, 10, 9, 2.0),
 ))  # fmt: skip
 
-SHELLS: dict[str, Loft | Panel | Ring] = {
+SHELLS: dict[str, Loft | ShellPanel | Ring] = {
     "head": HEAD,
-    "crown_left": Panel(HEAD, (0.30, 0.86), (48, 132)),
-    "nape": Panel(HEAD, (0.18, 0.80), (132, 228)),
-    "brow": Panel(HEAD, (0.60, 0.97), (-22, 22)),
+    "crown_left": ShellPanel(HEAD, (0.30, 0.86), (48, 132)),
+    "nape": ShellPanel(HEAD, (0.18, 0.80), (132, 228)),
+    "brow": ShellPanel(HEAD, (0.60, 0.97), (-22, 22)),
     "torso": TORSO,
-    "flank_left": Panel(TORSO, (0.30, 0.86), (38, 150)),
-    "pelvis": Panel(TORSO, (0.06, 0.26), (-180, 180)),
+    "flank_left": ShellPanel(TORSO, (0.30, 0.86), (38, 150)),
+    "pelvis": ShellPanel(TORSO, (0.06, 0.26), (-180, 180)),
     "upper_arm": UPPER_ARM,
-    "shoulder_cap": Panel(UPPER_ARM, (0.06, 0.56), (40, 160)),
+    "shoulder_cap": ShellPanel(UPPER_ARM, (0.06, 0.56), (40, 160)),
     "forearm": FOREARM,
-    "cuff": Panel(FOREARM, (0.42, 0.86), (-180, 180)),
+    "cuff": ShellPanel(FOREARM, (0.42, 0.86), (-180, 180)),
     "hand": HAND,
     "finger": FINGER,
     "thigh": THIGH,
-    "thigh_side": Panel(THIGH, (0.28, 0.84), (25, 130)),
+    "thigh_side": ShellPanel(THIGH, (0.28, 0.84), (25, 130)),
     "tibia": TIBIA,
-    "shin": Panel(TIBIA, (0.16, 0.80), (-48, 48)),
+    "shin": ShellPanel(TIBIA, (0.16, 0.80), (-48, 48)),
     "foot": FOOT,
     "ring": Ring(210, 130),
-    "toe": Panel(FOOT, (0.22, 0.62), (-62, 62)),
+    "toe": ShellPanel(FOOT, (0.22, 0.62), (-62, 62)),
 }
 
 

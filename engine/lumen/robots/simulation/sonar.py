@@ -13,7 +13,7 @@ _ECHOING = np.array([0, 1, 0, 0, 0, 0], dtype=np.uint8)
 """Geom group 1, what stands in the hall; the ground throws sound away from the robot, and it does not hear itself."""
 
 _RINGS = ((0.0, 1), (0.45, 6), (0.9, 8))
-RESOLUTION, NOISE = 0.01, 0.003
+SONAR_RESOLUTION, SONAR_NOISE = 0.01, 0.003
 
 
 class Sonars:
@@ -38,7 +38,7 @@ class Sonars:
             self._model, self._data, site.xpos, rays, _ECHOING, 1, -1, self._hit, found, None, found.size, farthest
         )
         nearest = float(np.min(found, initial=farthest, where=found >= 0))
-        heard = round((nearest + self._noise.normal(0, NOISE)) / RESOLUTION) * RESOLUTION
+        heard = round((nearest + self._noise.normal(0, SONAR_NOISE)) / SONAR_RESOLUTION) * SONAR_RESOLUTION
         return round(min(max(heard, self._sensor.minimum), self._sensor.maximum), 3)
 
 

@@ -11,26 +11,26 @@ from lumen.ports import Sole, Strain
 from lumen.robots.simulation.model import ROBOT, Variation
 from lumen.robots.simulation.robot import SimulatedRobot
 
-PRESSED = 1.0
+CONTACT_FORCE = 1.0
 """With what force two links press on each other that run into each other [N]."""
 
-ALL = 0.98
+EXHAUSTED_TORQUE = 0.98
 """The part of its greatest torque at which a motor gives all it can."""
 
-LATE = 0.05
+LAG_TOLERANCE = 0.05
 """A joint that is nearer to its goal than this is not late [rad]."""
 
-MASS, FRICTION, USUAL = (0.9, 1.1), (0.5, 1.0), 0.8
+MASS_RANGE, FRICTION_RANGE, USUAL_FRICTION = (0.9, 1.1), (0.5, 1.0), 0.8
 """What brothers differ in: a factor of each link's mass; the ground's friction, and what it usually is."""
 
 
-class Examined(SimulatedRobot):
+class ExaminedRobot(SimulatedRobot):
     """A simulated robot that tells how it fares."""
 
     def strain(self) -> Strain:
         motors, playing = self.motors, self._repertoire.playing
         late = np.abs(motors.goal - self.world.angles)
-        full = (np.abs(self.world.torques) >= ALL * motors.effort) & (motors.effort > 0.0)
+        full = (np.abs(self.world.torques) >= EXHAUSTED_TORQUE * motors.effort) & (motors.effort > 0.0)
         turning = [i for i, name in enumerate(motors.names) if name not in self.body.hands]
         return Strain(
             playing.reached if playing else 0.0,
@@ -38,11 +38,11 @@ class Examined(SimulatedRobot):
             self._pressing(),
             self._stands(),
             frozenset(motors.names[i] for i in turning if full[i]),
-            {motors.names[i]: float(late[i]) for i in turning if late[i] > LATE},
+            {motors.names[i]: float(late[i]) for i in turning if late[i] > LAG_TOLERANCE},
         )
 
     def _pressing(self) -> frozenset[tuple[str, str]]:
-        pairs = (sorted(links) for links, force in self._touches() if "" not in links and force > PRESSED)
+        pairs = (sorted(links) for links, force in self._touches() if "" not in links and force > CONTACT_FORCE)
         return frozenset((one, other) for one, other in pairs)
 
     def _touches(self) -> Iterator[tuple[tuple[str, str], float]]:
@@ -67,17 +67,17 @@ class Examined(SimulatedRobot):
         return {side: Sole(float(at[0]), float(at[1]), load[side]) for side, at in places.items()}
 
 
-def subject(body: Body, models: Path, hall: str, brother: int) -> Examined:
+def subject(body: Body, models: Path, hall: str, brother: int) -> ExaminedRobot:
     """The robot as its model has it for `brother` 0; else one whose links, ground and sensors differ, by that seed."""
     if not brother:
-        return Examined(body, models, hall)
+        return ExaminedRobot(body, models, hall)
     draw = np.random.default_rng(brother)
-    variation = Variation(friction=draw.uniform(*FRICTION) / USUAL, noise=1.0)
-    robot = Examined(body, models, hall, seed=brother, variation=variation)
+    variation = Variation(friction=draw.uniform(*FRICTION_RANGE) / USUAL_FRICTION, noise=1.0)
+    robot = ExaminedRobot(body, models, hall, seed=brother, variation=variation)
     model = robot.world.model
     for i in range(model.nbody):
         if model.body(i).name.startswith(f"{ROBOT}/"):
-            factor = draw.uniform(*MASS)
+            factor = draw.uniform(*MASS_RANGE)
             model.body_mass[i] *= factor
             model.body_inertia[i] *= factor
     mujoco.mj_setConst(model, mujoco.MjData(model))

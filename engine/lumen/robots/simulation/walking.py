@@ -9,34 +9,34 @@ from numpy.typing import NDArray
 from lumen.errors import RobotError
 from lumen.interpreters.gait import GENTLE_GAIT, JOINTS, SIDES, Gait, Pose, Velocity, middle
 from lumen.language.commands import Move, Walk
-from lumen.robots.simulation.anatomy import Anatomy
-from lumen.robots.simulation.balance import Balance
+from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.hazards import Hazards
-from lumen.robots.simulation.instruments import Instruments
+from lumen.robots.simulation.joint_transition import JointTransition
+from lumen.robots.simulation.mass_model import MassModel
 from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.transition import Transition
-from lumen.robots.simulation.whereabouts import Whereabouts
+from lumen.robots.simulation.odometry import Odometry
+from lumen.robots.simulation.sensors import BodySensors
 
-FARTHEST = 10.0
+MAX_WALK_DISTANCE = 10.0
 """A walk farther than this [m] is a mistake."""
 
-DRIFT = 0.02
+MAX_STAGE_DRIFT = 0.02
 """How far beyond the stage a step may be planned on the way [m]: each landed foot is a little off its plan."""
 
-SHORT, TURNED = 0.02, 0.05
+ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.02, 0.05
 """A walk that ends farther than this from where it should [m], [rad] has failed."""
 
-INIT, STEADY = 0.8, 0.2
+WALK_POSTURE_TIME, WALK_REST_TIME = 0.8, 0.2
 """How long it takes to get into the walk's posture, and to come to rest there [s]."""
 
-LOOK_EVERY = 0.1
+HAZARD_CHECK_PERIOD = 0.1
 """Time between two looks at what may be in the way [s]."""
 
-SWING, MOST, HANGING = 2.5, 0.35, 1.0
+ARM_SWING_GAIN, MAX_ARM_SWING, HANGING_ARM_PITCH = 2.5, 0.35, 1.0
 """Arms swing that far for each metre between the feet [rad/m], at most so far [rad]; those below this pitch [rad]."""
 
 
-class Walker:
+class WalkController:
     """What walking takes; `begin` makes the activity of a command.
 
     `free` tells whether nothing else moves a joint, `hot` whether the motors should be spared.
@@ -45,10 +45,10 @@ class Walker:
     def __init__(
         self,
         motors: Motors,
-        balance: Balance,
-        instruments: Instruments,
-        whereabouts: Whereabouts,
-        anatomy: Anatomy,
+        balance: BalanceController,
+        instruments: BodySensors,
+        whereabouts: Odometry,
+        anatomy: MassModel,
         hazards: Hazards,
         free: Callable[[str], bool],
         hot: Callable[[], bool],
@@ -59,18 +59,18 @@ class Walker:
         legs = {side + name for side in SIDES for name in JOINTS}
         self._legs = [(name, i) for name, i in motors.index.items() if name in legs]
         self._others = [name for name in motors.names if name not in legs]
-        self._walking: Walking | None = None
+        self._walking: WalkActivity | None = None
 
-    def begin(self, command: Walk, now: float) -> "Walking":
+    def begin(self, command: Walk, now: float) -> "WalkActivity":
         """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""
         x, y, theta = command.x, command.y, command.theta
         if not all(map(isfinite, (x, y, theta))):
             raise RobotError(f"there is no way to ({x}, {y}, {theta})")
-        if abs(complex(x, y)) > FARTHEST:
-            raise RobotError(f"({x:g}, {y:g}) is too far: a walk goes {FARTHEST:g} m at most")
+        if abs(complex(x, y)) > MAX_WALK_DISTANCE:
+            raise RobotError(f"({x:g}, {y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most")
         return self._set_out(Pose(x, y, theta), now)
 
-    def move(self, command: Move, now: float) -> "Walking":
+    def move(self, command: Move, now: float) -> "WalkActivity":
         """The walk at that speed under way; one that goes on already goes on like this.
 
         Raises RobotError, and changes nothing, for one that must not begin.
@@ -82,14 +82,14 @@ class Walker:
             return self._walking
         return self._set_out(velocity, now)
 
-    def _set_out(self, way: Pose | Velocity, now: float) -> "Walking":
+    def _set_out(self, way: Pose | Velocity, now: float) -> "WalkActivity":
         if reason := self.hazards.danger():
             raise RobotError(f"{reason}: the robot did not set out")
         feet = self.whereabouts.feel(self.measured())
         goal = way if isinstance(way, Velocity) else middle(feet).then(way)
         gait = Gait(feet, goal, self._centre_of_mass, GENTLE_GAIT if self._hot() else None)
         self.whereabouts.check(gait.coming)
-        self._walking = Walking(self, gait, now)
+        self._walking = WalkActivity(self, gait, now)
         return self._walking
 
     def measured(self) -> dict[str, float]:
@@ -99,26 +99,26 @@ class Walker:
 
     def swing(self, stride: float) -> None:
         """Swing the arms that hang and do nothing else, against the legs; `stride`: the left foot's lead [m]."""
-        angle = min(max(SWING * stride, -MOST), MOST)
+        angle = min(max(ARM_SWING_GAIN * stride, -MAX_ARM_SWING), MAX_ARM_SWING)
         arms = {"LShoulderPitch": angle, "RShoulderPitch": -angle}
         hanging = self.motors.wanted(arms)
-        self.motors.sway({n: a for n, a in arms.items() if hanging[n] > HANGING and self._free(n)})
+        self.motors.sway({n: a for n, a in arms.items() if hanging[n] > HANGING_ARM_PITCH and self._free(n)})
 
     def _centre_of_mass(self, legs: Mapping[str, float]) -> NDArray[np.float64]:
         return self._anatomy.centre_of_mass({**self.motors.wanted(self._others), **legs})
 
 
-class Walking:
+class WalkActivity:
     """A walk: into its posture, step by step to the place, and to rest.
 
     What gets in the way ends it, as `cancel` does, within the step in the air and one that brings the feet together.
     """
 
-    def __init__(self, walker: Walker, gait: Gait, now: float) -> None:
+    def __init__(self, walker: WalkController, gait: Gait, now: float) -> None:
         self._walker, self._gait, self._now = walker, gait, now
-        self._rising: Transition | None = Transition(walker.motors, gait.angles, now, INIT)
+        self._rising: JointTransition | None = JointTransition(walker.motors, gait.angles, now, WALK_POSTURE_TIME)
         self._steady = now
-        self._look = now + LOOK_EVERY
+        self._look = now + HAZARD_CHECK_PERIOD
         self._landed = 0
         self._reason = ""
         self._cancelled = self._over = False
@@ -147,9 +147,9 @@ class Walking:
         else:
             self._gait.stop()
 
-    def _rise(self, rising: Transition, now: float) -> bool:
+    def _rise(self, rising: JointTransition, now: float) -> bool:
         if rising.advance(now):
-            self._rising, self._steady = None, now + STEADY
+            self._rising, self._steady = None, now + WALK_REST_TIME
             return self._cancelled and self._end()
         return False
 
@@ -169,12 +169,12 @@ class Walking:
         if self._cancelled:
             return
         if now >= self._look:
-            self._look += LOOK_EVERY
+            self._look += HAZARD_CHECK_PERIOD
             self._reason = self._walker.hazards.danger()
         if self._gait.steps > self._landed and not self._reason:
             self._landed = self._gait.steps
             try:
-                drift = 0.0 if isinstance(self._gait.goal, Velocity) else DRIFT
+                drift = 0.0 if isinstance(self._gait.goal, Velocity) else MAX_STAGE_DRIFT
                 self._walker.whereabouts.check(self._gait.coming, drift)
             except RobotError as error:
                 self._reason = str(error)
@@ -187,6 +187,6 @@ class Walking:
         if self._reason:
             raise RobotError(f"{self._reason}: the walk was ended")
         far, turned = self._gait.left
-        if not self._cancelled and (far > SHORT or turned > TURNED):
+        if not self._cancelled and (far > ARRIVAL_TOLERANCE or turned > HEADING_TOLERANCE):
             raise RobotError(f"the robot did not get there: {100 * far:.0f} cm and {turned:.2f} rad are left")
         return True

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from lumen.errors import RobotError
 from lumen.language.robots import Body
-from lumen.robots.simulation.limits import Angles
+from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.model import ROBOT, Variation, compiled, load
 
-PERIOD = 0.01
+CONTROL_PERIOD = 0.01
 """Time between two commands to the joints [s]."""
 
 _UNSTABLE = [
@@ -46,7 +46,7 @@ class World:
         self._gyro = self.model.sensor(f"{ROBOT}/gyro").adr[0]
         self._accelerometer = self.model.sensor(f"{ROBOT}/accelerometer").adr[0]
         self._torso_axes = self.data.xmat[self.torso]
-        self._substeps = round(PERIOD / self.model.opt.timestep)
+        self._substeps = round(CONTROL_PERIOD / self.model.opt.timestep)
         self._warnings = self.data.warning.number
         self._start: NDArray[np.float64] = self.data.qpos[self._root : self._root + 7].copy()
 
@@ -62,19 +62,19 @@ class World:
             raise RobotError("the simulation has become unstable: look at the places, sizes and forces in models/")
 
     @property
-    def angles(self) -> Angles:
+    def angles(self) -> JointVector:
         """Where the joints are."""
-        measured: Angles = self.data.qpos[self._angles]
+        measured: JointVector = self.data.qpos[self._angles]
         return measured
 
     @property
-    def speeds(self) -> Angles:
+    def speeds(self) -> JointVector:
         """How fast they turn, per second."""
-        measured: Angles = self.data.qvel[self._speeds]
+        measured: JointVector = self.data.qvel[self._speeds]
         return measured
 
     @property
-    def torques(self) -> Angles:
+    def torques(self) -> JointVector:
         """What the motors give [N m]; nothing at a joint that shares another's motor."""
         torques = np.zeros(len(self.body.joints))
         torques[self.driven] = self.data.actuator_force[self.actuators]
@@ -145,5 +145,5 @@ def _upright(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[n
     return quaternion
 
 
-FALLEN = pi / 4
+FALLEN_TILT = pi / 4
 """The torso leans farther than anything it does on purpose [rad]."""

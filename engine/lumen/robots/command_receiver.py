@@ -1,0 +1,285 @@
+"""Commands that come over the bus: begun at the next tick, reported on until they are over."""
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from itertools import count
+from typing import Any, NamedTuple
+
+from lumen.errors import BusError, RobotError
+from lumen.language.commands import Language, Rest, Say, Stop
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.ports import Aim, Bus, Joints, Message, Perform, Robot, RobotCommand, Sense
+from lumen.robots.command_codec import command_from, method_of, own_id, stops, stops_all
+from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, UNKNOWN, CommandRecord, CommandReports
+from lumen.robots.deduplication_log import DeduplicationLog
+from lumen.robots.robot_routes import AIM, COMMAND, KEYS, REPORT, STOP, key_of, tell
+
+KEY, ROUTE = KEYS[COMMAND], COMMAND
+MAX_WAITING_COMMANDS = 1_000
+MAX_WAITING_AIMS = 100
+MAX_AIM_AGE = 0.5
+"""How old an aim may be [s]: there is a newer one by then."""
+MAX_RUNNING_COMMANDS = 100
+ENDED = "the robot takes no more commands"
+RESTARTED = "the robot was restarted since it began that"
+QUERY_METHODS = ("cancel", "outcome")
+
+_log = logging.getLogger(__name__)
+
+
+class _Arrival(NamedTuple):
+    """A message, and when it came [s]."""
+
+    message: Message
+    at: float
+
+
+class CommandReceiver:
+    """Takes what modules send to the robot's keys for commands, under the ids `m1`, `m2`, …
+
+    Messages may come on any thread; the robot is touched by `begin` alone. Everybody gets an answer, as `Reports` has
+    it. What rests or stops the robot is begun before everything that came with it, and what came before it is not
+    begun at all. As many commands wait for `begin` as their route keeps, as long as its time to live; what stops is
+    never one too many, nor too late. A command with an `id` is performed once, however often it comes. `clock` [s]
+    tells how long they have waited; `begins` is told of each that begins.
+    """
+
+    def __init__(
+        self,
+        project: Project,
+        robot: Robot,
+        bus: Bus,
+        clock: Callable[[], float] = time.monotonic,
+        begins: Callable[[RobotCommand], None] = lambda _: None,
+    ) -> None:
+        self._project, self._robot, self._bus, self._clock, self._begins = project, robot, bus, clock, begins
+        self._came: deque[_Arrival] = deque()
+        self._aims: deque[_Arrival] = deque(maxlen=MAX_WAITING_AIMS)
+        self._coming = threading.Lock()
+        self._refused, self._closed = 0, False
+        self._reports = CommandReports(self._tell, self._reply)
+        self._numbers = count(1)
+        self._language = ""
+        self._ledger = DeduplicationLog()
+        self._undo: dict[str, tuple[str, Callable[[], None]]] = {}
+        for route in (COMMAND, STOP, AIM):
+            self._undo[route] = self._listen(route)
+
+    def recall(self, ledger: DeduplicationLog) -> None:
+        """Note what is begun from now on; what the process before began has failed, and is not begun again.
+
+        What rests or stops the robot is not noted: that may be done twice.
+        """
+        self._ledger = ledger
+        for id in ledger.before:
+            self._reports.remember(CommandRecord(Message("", None), id, state=FAILED, reason=RESTARTED))
+
+    def begin(self) -> None:
+        """Start what has come, and tell of what the robot has begun.
+
+        What can't be understood, or has waited too long, is answered at once.
+        """
+        for arrival in self._taken(self._aims):
+            self._aim(arrival)
+        came = self._taken(self._came)
+        last = max((i for i, arrival in enumerate(came) if stops_all(arrival.message.body)), default=-1)
+        before, after = came[: last + 1], came[last + 1 :]
+        for arrival in [a for a in before if stops(a.message.body)]:
+            self._take(arrival)
+        for arrival in [a for a in before if not stops(a.message.body)]:
+            self._take(arrival, overtaken=True)
+        for arrival in after:
+            self._take(arrival)
+        for id in self._robot.begun():
+            self._reports.begun(id)
+        if self._refused:
+            _log.warning("%d commands were refused: too many came at once", self._refused)
+            self._refused = 0
+
+    def answer(self, event: Event) -> bool:
+        """Report where this is the end of a command of ours; whether it is."""
+        kind, _, id = event.name.partition(".command.")
+        reason = event.data.get("reason", "") if isinstance(event.data, dict) else ""
+        return self._reports.answered(kind, id, str(reason))
+
+    def use(self, project: Project) -> None:
+        """Understand commands by another bundle from now on, and take them under its keys.
+
+        A new key is listened to before the old one is given up. Where the bus refuses the new one, that is logged,
+        and the old one stays: the robot is never out of reach.
+        """
+        self._project = project
+        for route, (key, undo) in list(self._undo.items()):
+            if key_of(project, route) == key:
+                continue
+            try:
+                self._undo[route] = self._listen(route)
+            except BusError as error:
+                _log.warning("commands are still taken under `%s`: %s", key, error)
+                continue
+            undo()
+
+    def close(self) -> None:
+        """Take no more commands; who still waits for an answer gets one."""
+        for _, undo in self._undo.values():
+            undo()
+        with self._coming:
+            self._closed = True
+        for arrival in self._taken(self._came):
+            self._refuse(arrival.message, ENDED)
+        self._reports.end()
+
+    def _listen(self, route: str) -> tuple[str, Callable[[], None]]:
+        key = key_of(self._project, route)
+        receive = self._receive_aim if route == AIM else self._receive
+        return key, self._bus.subscribe(key, receive)
+
+    def _receive(self, message: Message) -> None:
+        """On whichever thread the bus has."""
+        with self._coming:
+            refusal = ENDED if self._closed else self._full(message)
+            if not refusal:
+                self._came.append(_Arrival(message, self._clock()))
+        if refusal:
+            self._refused += 1
+            self._refuse(message, refusal)
+
+    def _receive_aim(self, message: Message) -> None:
+        self._aims.append(_Arrival(message, self._clock()))
+
+    @staticmethod
+    def _taken(waiting: deque[_Arrival]) -> list[_Arrival]:
+        return [waiting.popleft() for _ in range(len(waiting))]
+
+    def _full(self, message: Message) -> str:
+        """Why there is no room for this one; empty where there is."""
+        route = self._project.routes.get(COMMAND)
+        keep = route.keep if route and route.keep else MAX_WAITING_COMMANDS
+        waiting = len(self._came)
+        if waiting >= MAX_WAITING_COMMANDS or (waiting >= keep and not stops(message.body)):
+            return f"{waiting} commands are waiting already"
+        return ""
+
+    def _refuse(self, message: Message, reason: str) -> None:
+        """Answer a command that was not even looked at; it may be sent again."""
+        errand = CommandRecord(message, own_id(message.body), method_of(message.body), state=FAILED, reason=reason)
+        self._reply(message, errand.report() if errand.id else errand.text())
+
+    def _take(self, arrival: _Arrival, *, overtaken: bool = False) -> None:
+        """Do what a message asks, or report why not; `overtaken` by a command that stops everything."""
+        message = arrival.message
+        errand = CommandRecord(message, own_id(message.body), method_of(message.body))
+        if errand.method in QUERY_METHODS:
+            self._ask(message)
+            return
+        if known := self._reports.find(errand.id):
+            self._reports.repeat(known, message)
+            return
+        self._reports.remember(errand)
+        try:
+            self._check_age(arrival)
+            if overtaken:
+                self._reports.change(errand, CANCELLED)
+            else:
+                self._perform(errand, command_from(message.body, self._project, self._angles))
+        except RobotError as error:
+            _log.warning("a command was refused: %s", error)
+            self._reports.change(errand, FAILED, str(error))
+
+    def _ask(self, message: Message) -> None:
+        """`cancel` or `outcome` of the command whose `id` the parameter names.
+
+        One that is unknown counts as cancelled from then on: it may still be on its way.
+        """
+        parameter = message.body.get("parameter")
+        id = own_id(parameter)
+        if not id:
+            _log.warning("a command was refused: `%s` needs the `id` of a command", method_of(message.body))
+            self._reply(message, "command failed: which command? `id` names it")
+            return
+        errand = self._reports.find(id)
+        cancelled = method_of(message.body) == "cancel"
+        if errand is None:
+            errand = CommandRecord(message, id, state=CANCELLED if cancelled else UNKNOWN)
+            if cancelled:
+                self._reports.remember(errand)
+        elif cancelled and not errand.over:
+            self._robot.cancel(errand.at)
+        self._reports.repeat(errand, message)
+
+    def _check_age(self, arrival: _Arrival) -> None:
+        route = self._project.routes.get(COMMAND)
+        if route and route.ttl and self._clock() - arrival.at > route.ttl and not stops(arrival.message.body):
+            raise RobotError("it came too late")
+
+    def _perform(self, errand: CommandRecord, command: RobotCommand | Language) -> None:
+        if isinstance(command, Language):
+            self._language = command.language
+            self._reports.change(errand, FINISHED)
+            return
+        if isinstance(command, Say) and not command.language:
+            command = replace(command, language=self._language)
+        if self._reports.running >= MAX_RUNNING_COMMANDS and not isinstance(command, Rest | Stop):
+            raise RobotError(f"{MAX_RUNNING_COMMANDS} commands are waiting already")
+        if errand.id and not isinstance(command, Rest | Stop):
+            self._ledger.note(errand.id)
+        if isinstance(command, Aim):
+            self._robot.start(self._number(), command)
+            self._reports.change(errand, FINISHED)
+            return
+        if errand.asker.body.get("replace") is True:
+            self._clear(command)
+        errand.at = self._number()
+        self._reports.accept(errand)
+        self._robot.start(errand.at, command)
+        self._begins(command)
+
+    def _clear(self, command: RobotCommand) -> None:
+        """End what is of the same kind: this one is to take its place."""
+        if isinstance(command, Say):
+            self._robot.start(self._number(), Stop("say"))
+        elif isinstance(command, Perform):
+            self._robot.start(self._number(), Stop("play"))
+
+    def _aim(self, arrival: _Arrival) -> None:
+        """Aims stream in, and nobody waits for an answer."""
+        if self._clock() - arrival.at > MAX_AIM_AGE:
+            return
+        try:
+            command = command_from(arrival.message.body, self._project, self._angles)
+        except RobotError as error:
+            _log.debug("an aim was refused: %s", error)
+            return
+        if isinstance(command, Aim):
+            self._robot.start("", command)
+
+    def _number(self) -> str:
+        return f"m{next(self._numbers)}"
+
+    def _angles(self) -> dict[str, float]:
+        """Where the joints stand."""
+        reading = self._robot.read(Sense.JOINT)
+        return dict(zip(reading.names, reading.angles, strict=True)) if isinstance(reading, Joints) else {}
+
+    def _tell(self, report: dict[str, Any]) -> None:
+        self._safely(partial(tell, self._bus, self._project, REPORT, report))
+
+    def _reply(self, message: Message, body: Any) -> None:
+        self._safely(partial(self._bus.reply, message, body))
+
+    def _safely(self, send: Callable[[], None]) -> None:
+        try:
+            send()
+        except BusError as error:
+            _log.warning("an answer to a command was not sent: %s", error)
+
+
+def command_key(project: Project) -> str:
+    """Under which key a project's robot takes commands."""
+    return key_of(project, COMMAND)

@@ -1,0 +1,77 @@
+"""Which commands a robot has begun, for the process that takes over from one that was killed."""
+
+import json
+import logging
+import os
+import time
+from collections import deque
+from contextlib import suppress
+from pathlib import Path
+
+DEDUPLICATION_FILE = "commands.jsonl"
+"""Its name, among what an exhibition keeps from run to run."""
+MAX_LOGGED_IDS = 1_000
+"""How many ids are kept."""
+DEDUPLICATION_WINDOW = 60.0
+"""For how long [s] a command may still come again: longer than a broker keeps one and a brain waits for its answer."""
+
+_log = logging.getLogger(__name__)
+
+
+class DeduplicationLog:
+    """The ids of commands in a file, one to a line, each written before its command is begun; without a file none.
+
+    `before` are those of the process before that are `RECENT`, the oldest first: who counts its commands from 1 at each
+    start may do so. The system has what is written, so that a process that
+    is killed loses nothing; a disk that takes nothing is told of once, and the robot obeys all the same.
+    """
+
+    def __init__(self, file: Path | None = None) -> None:
+        self._file, self._lines, self._told = file, 0, False
+        since = time.time() - DEDUPLICATION_WINDOW
+        self.before = tuple(id for at, id in self._read() if at >= since)
+
+    def note(self, id: str) -> None:
+        """This command is begun now."""
+        if self._file is None:
+            return
+        if self._lines >= 2 * MAX_LOGGED_IDS:
+            self._shorten()
+        self._write(_line(time.time(), id), os.O_APPEND)
+        self._lines += 1
+
+    def _read(self) -> list[tuple[float, str]]:
+        """When each was begun (Unix), and its id; a line that was cut short is none."""
+        found: deque[tuple[float, str]] = deque(maxlen=MAX_LOGGED_IDS)
+        if self._file is not None:
+            with suppress(OSError), self._file.open(encoding="utf-8", errors="replace") as lines:
+                for line in lines:
+                    self._lines += 1
+                    with suppress(ValueError, TypeError):
+                        at, id = json.loads(line)
+                        found.append((float(at), str(id)))
+        return list(found)
+
+    def _shorten(self) -> None:
+        self._lines = 0
+        kept = self._read()
+        self._write("".join(_line(at, id) for at, id in kept), os.O_TRUNC)
+        self._lines = len(kept)
+
+    def _write(self, text: str, how: int) -> None:
+        assert self._file is not None
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            file = os.open(self._file, os.O_WRONLY | os.O_CREAT | how, 0o600)
+            try:
+                os.write(file, text.encode())
+            finally:
+                os.close(file)
+        except OSError as error:
+            if not self._told:
+                self._told = True
+                _log.warning("which commands were begun can't be kept in %s: %s", self._file, error.strerror)
+
+
+def _line(at: float, id: str) -> str:
+    return json.dumps([round(at, 3), id]) + "\n"

@@ -1,0 +1,104 @@
+"""A command as steps, none of which waits: each hands over a call, and goes on when NAOqi has answered."""
+
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+from lumen.errors import RobotError
+from lumen.robots.naoqi.session import NaoqiCall
+
+CANCEL_TIMEOUT = 1.5
+"""How long what was cancelled may go on [s]: a walk ends after the step in the air."""
+
+ABORT_RETRY_PERIOD = 0.25
+"""How often what does not end is told to [s]: NAOqi may hear of the end before it hears of the beginning."""
+
+
+@dataclass(frozen=True)
+class WhileWaiting:
+    """Wait for this call, and meanwhile do that at each tick."""
+
+    call: NaoqiCall
+    each: Callable[[float], None]
+
+
+Awaited = NaoqiCall | WhileWaiting | None
+CallSteps = Generator[Awaited, Any, Any]
+"""What is waited for comes back as its result; `None` waits for the next tick and comes back as its time [s]."""
+
+
+class CallSequence:
+    """An activity of the executor made of steps.
+
+    `abort` tells NAOqi to end it, `recover` are the steps thereafter. What does not end within `patience` [s] has
+    failed, so that nothing waits for it for ever.
+    """
+
+    def __init__(
+        self,
+        doing: CallSteps,
+        abort: Callable[[], Sequence[NaoqiCall]] = lambda: (),
+        recover: Callable[[], CallSteps] | None = None,
+        patience: float = CANCEL_TIMEOUT,
+    ) -> None:
+        self._doing, self._abort, self._recover, self._patience = doing, abort, recover, patience
+        self._wait: Awaited = None
+        self._begun = self._cancelled = False
+        self._aborting: list[NaoqiCall] = []
+        self._until = self._again = inf
+
+    def advance(self, now: float) -> bool:
+        if self._cancelled:
+            if not self._quiet(now):
+                return False
+            self._doing.close()
+            if self._recover is None:
+                return True
+            self._doing, self._recover, self._cancelled, self._wait = self._recover(), None, False, None
+            self._begun, self._abort = False, lambda: ()
+        return self._go(now)
+
+    def cancel(self) -> None:
+        if not self._cancelled:
+            self._cancelled = True
+            self._aborting = list(self._abort())
+
+    def _quiet(self, now: float) -> bool:
+        """Whether NAOqi has ended it. Raises RobotError where it does not."""
+        if self._until == inf:
+            self._until, self._again = now + self._patience, now + ABORT_RETRY_PERIOD
+        call = self._wait.call if isinstance(self._wait, WhileWaiting) else self._wait
+        if (call is None or call.done) and all(c.done for c in self._aborting):
+            return True
+        if now >= self._until:
+            raise RobotError(f"it was told to end, and has not within {self._patience:g} s")
+        if now >= self._again:
+            self._again = now + ABORT_RETRY_PERIOD
+            self._aborting = [c for c in self._aborting if not c.done] or list(self._abort())
+        return False
+
+    def _go(self, now: float) -> bool:
+        """Take the steps that can be taken by now; whether that was the last."""
+        try:
+            if not self._begun:
+                self._begun, self._wait = True, next(self._doing)
+            elif self._wait is None:
+                self._wait = self._doing.send(now)
+            while self._wait is not None:
+                call = self._wait.call if isinstance(self._wait, WhileWaiting) else self._wait
+                if isinstance(self._wait, WhileWaiting):
+                    self._wait.each(now)
+                if not call.done:
+                    return False
+                self._wait = self._answer(call)
+        except StopIteration:
+            return True
+        return False
+
+    def _answer(self, call: NaoqiCall) -> Awaited:
+        try:
+            value = call.result()
+        except RobotError as error:
+            return self._doing.throw(error)
+        return self._doing.send(value)

@@ -1,0 +1,158 @@
+"""Motions: checked, begun where the robot stands, and sent as one call."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from math import isfinite
+
+from lumen.errors import RobotError
+from lumen.interpreters.choreography import joined
+from lumen.interpreters.limits import TOLERANCE
+from lumen.interpreters.postures import UPRIGHT
+from lumen.interpreters.trajectory import JointTrack, Trajectory
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.motions import MotionDefinition
+from lumen.language.robots import Body
+from lumen.robots.cues import EventSink
+from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
+from lumen.robots.naoqi.cue_player import CuePlayer
+from lumen.robots.naoqi.curves import curves
+from lumen.robots.naoqi.session import NaoqiCall
+from lumen.robots.naoqi.walks import PostCall, grounded
+
+APPROACH_TIME, RECOVERY_TIME = 1.2, 0.8
+"""How long it takes to the posture that a motion begins in, and back to it from a cancelled one [s]."""
+START_POSTURE_TOLERANCE = 0.1
+"""Legs that are nearer than this to the posture that a motion begins in need no way there [rad]."""
+APPROACH_SPEED = 0.8
+"""Which part of its greatest speed a joint uses at most on the ways that are ours."""
+
+
+def fitted(motion: MotionDefinition, body: Body, start: Mapping[str, float]) -> MotionDefinition:
+    """The motion from these angles on [rad], begun so much later that no joint has to hurry to its first key.
+
+    Raises RobotError for joints that the body lacks, and for angles and speeds that it can't have.
+    """
+    for joint, keys in motion.tracks.items():
+        if joint not in body.joints:
+            raise RobotError(f"`{joint}` is not a joint of this robot: {did_you_mean(joint, body.joints)}")
+        if not all(isfinite(x) for key in keys for x in (key.time, key.angle, *key.handle_in, *key.handle_out)):
+            raise RobotError(f"`{motion.name}` holds an angle or a time that is no number")
+    if not isfinite(motion.duration):
+        raise RobotError(f"`{motion.name}` has no duration")
+    late = max((_late(track, motion, body) for track in Trajectory(motion, start).tracks), default=0.0)
+    if not late:
+        return motion
+    later = joined([(late, motion)], motion.duration + late)
+    return replace(motion, duration=later.duration, tracks=later.tracks, cues=later.cues)
+
+
+def _late(track: JointTrack, motion: MotionDefinition, body: Body) -> float:
+    """How much more time the joint needs to its first key [s]. Raises RobotError for what it can't do later on."""
+    limit, late = body.joints[track.joint], 0.0
+    for i, segment in enumerate(track.segments):
+        low, high = segment.extremes()
+        if low < limit.minimum - TOLERANCE or high > limit.maximum + TOLERANCE:
+            raise RobotError(
+                f"`{motion.name}` takes {track.joint} to {low if low < limit.minimum else high:.3f} rad,"
+                f" which reaches from {limit.minimum:.3f} to {limit.maximum:.3f} rad"
+            )
+        if (speed := segment.peak_speed()) > limit.speed * (1 + TOLERANCE):
+            if i:
+                raise RobotError(f"`{motion.name}` turns {track.joint} at {speed:.1f} rad/s, {limit.speed:.1f} at most")
+            late = segment.duration * (speed / (APPROACH_SPEED * limit.speed) - 1.0)
+    return late
+
+
+class MotionPlayer:
+    """Begins motions; `post` calls NAOqi, `notice` is told of what a motion says and sounds, `clock` is in [s]."""
+
+    def __init__(self, post: PostCall, body: Body, notice: EventSink, clock: Callable[[], float]) -> None:
+        self._post, self._body, self._notice, self._clock = post, body, notice, clock
+        self._silent: set[str] = set()
+
+    def begin(self, motion: MotionDefinition, owned: Sequence[str]) -> CallSequence:
+        """The motion under way; `owned` are the joints that it may bring to its posture before and after.
+
+        Raises RobotError, and moves nothing, for a motion that this body can't play.
+        """
+        fitted(motion, self._body, {})
+        start, shared = self._body.postures.get(motion.start, {}), self._body.shared
+        home = {joint: start[joint] for joint in owned if joint in start and joint not in shared}
+        joints = list(dict.fromkeys(shared.get(joint, joint) for joint in (*motion.tracks, *home)))
+        playing: list[CuePlayer] = []
+
+        def abort() -> list[NaoqiCall]:
+            stops = [self._post("ALMotion", "killTasksUsingResources", joints)] if joints else []
+            return [*stops, *(stop for beside in playing for stop in beside.end())]
+
+        return CallSequence(self._perform(motion, home, joints, playing), abort, lambda: self._recover(home))
+
+    def _perform(
+        self, motion: MotionDefinition, home: Mapping[str, float], joints: list[str], playing: list[CuePlayer]
+    ) -> CallSteps:
+        yield from self._ready(motion)
+        here = yield from self._stand(joints)
+        if self._away(home, here):
+            yield self._go(home, here, APPROACH_TIME)
+            here = yield from self._stand(joints)
+        start = self._inside(motion, here)
+        motion = fitted(motion, self._body, start)
+        beside = CuePlayer(self._post, motion, self._notice, self._silent)
+        playing.append(beside)
+        way = curves(self._driven(Trajectory(motion, start).tracks))
+        begin = self._clock()
+        beside.begin(begin)
+        if way.names:
+            yield WhileWaiting(self._post("ALMotion", "angleInterpolationBezier", *way), beside)
+        while (now := self._clock()) < begin + motion.duration:
+            beside(now)
+            yield None
+        beside(now)
+
+    def _ready(self, motion: MotionDefinition) -> CallSteps:
+        """Raises RobotError where the robot is not in a posture to begin in."""
+        if not (yield self._post("ALMotion", "robotIsWakeUp")):
+            raise RobotError("the motors are off: `wake` first")
+        if motion.start in UPRIGHT:
+            family = yield self._post("ALRobotPosture", "getPostureFamily")
+            if grounded(family):
+                raise RobotError(
+                    f"`{motion.name}` begins in {motion.start}; the robot is {family}: send it there first"
+                )
+
+    def _stand(self, joints: list[str]) -> CallSteps:
+        """Where these joints were told to be, which is where NAOqi begins."""
+        if not joints:
+            return {}
+        angles = yield self._post("ALMotion", "getAngles", joints, False)
+        return dict(zip(joints, angles, strict=True))
+
+    def _away(self, home: Mapping[str, float], here: Mapping[str, float]) -> bool:
+        return any(
+            abs(here[j] - home[j]) > START_POSTURE_TOLERANCE for j in self._body.parts.get("legs", ()) if j in home
+        )
+
+    def _recover(self, home: Mapping[str, float]) -> CallSteps:
+        """Back to where it began: killed on its way, a joint stops where it is."""
+        if home:
+            here = yield from self._stand(list(home))
+            yield self._go(home, here, RECOVERY_TIME)
+
+    def _go(self, goal: Mapping[str, float], here: Mapping[str, float], seconds: float) -> NaoqiCall:
+        """Straight there, in that time or as long as the slowest joint needs."""
+        needed = max(abs(goal[j] - here[j]) / (APPROACH_SPEED * self._body.joints[j].speed) for j in goal)
+        times = [[max(seconds, needed)]] * len(goal)
+        return self._post("ALMotion", "angleInterpolation", list(goal), [[a] for a in goal.values()], times, True)
+
+    def _inside(self, motion: MotionDefinition, here: Mapping[str, float]) -> dict[str, float]:
+        """Where each joint of the motion stands, inside its limits; one without a motor stands as its leader does."""
+        found = {}
+        for joint in motion.tracks:
+            limit = self._body.joints[joint]
+            found[joint] = min(max(float(here[self._body.shared.get(joint, joint)]), limit.minimum), limit.maximum)
+        return found
+
+    def _driven(self, tracks: Sequence[JointTrack]) -> list[JointTrack]:
+        """The tracks under the names of motors; where one has two, its own joint decides."""
+        shared, moved = self._body.shared, {track.joint for track in tracks}
+        return [t._replace(joint=shared.get(t.joint, t.joint)) for t in tracks if shared.get(t.joint) not in moved]

@@ -1,0 +1,100 @@
+"""What the robot notices by itself, as NAOqi tells of it, and the thresholds of battery and heat."""
+
+import logging
+from collections import deque
+from collections.abc import Iterable, Mapping
+from functools import partial
+from typing import Any
+
+from lumen.errors import RobotError
+from lumen.language.events import Event
+from lumen.ports import Tactile
+from lumen.robots.naoqi.session import NaoqiSession
+
+FALLEN = "robotHasFallen"
+FALLING = ("robotIsFalling", "ALMotion/RobotIsFalling")
+"""What NAOqi 2.1 and 2.8 call the beginning of a fall."""
+
+FULL = "BatteryFullChargedFlagChanged"
+
+BATTERY_LOW, BATTERY_RECOVERED = 20, 25
+"""Charge [%] at which the robot speaks up, and may do so again."""
+MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
+"""Temperatures [degrees Celsius] at which it speaks up, and may do so again."""
+
+EVENT_SETTLE_TIME = 0.3
+"""How much younger than an event a look at the sensors has to be, to count more [s]."""
+
+_log = logging.getLogger(__name__)
+
+
+def event_of(sensor: str) -> str:
+    """What ALMemory calls the touch of a sensor."""
+    return f"{sensor}{'Pressed' if sensor.endswith(('Bumper', 'Button')) else 'Touched'}"
+
+
+class NaoqiEvents:
+    """Hears of touches, falls and a full battery, on threads of qi's; `take` is for the robot's own.
+
+    `pressed` says of every tactile sensor whether it is touched.
+    """
+
+    def __init__(self, sensors: Iterable[str]) -> None:
+        self.pressed = dict.fromkeys(sensors, False)
+        self.heard = 0
+        self._since = dict.fromkeys(self.pressed, 0.0)
+        self._came: deque[tuple[str, bool]] = deque(maxlen=1_000)
+        self._kept: list[Any] = []
+
+    def listen(self, link: NaoqiSession) -> None:
+        """Subscribe to everything, in a new session; what can't be heard is logged."""
+        self._kept = []
+        for name in (*self.pressed, FALLEN, *FALLING, FULL):
+            event = event_of(name) if name in self.pressed else name
+            try:
+                self._kept.append(link.subscribe(event, partial(self._hear, name)))
+            except RobotError as error:
+                _log.warning("the robot will not tell of `%s`: %s", event, error)
+
+    def take(self, now: float, felt: Tactile | None) -> list[tuple[str, bool]]:
+        """What has changed by `now` [s]: sensors pressed or let go of, falls, and the battery.
+
+        Two events may overtake each other on their way; what was `felt` since puts that right.
+        """
+        if felt:
+            for name, value in zip(felt.names, felt.values, strict=True):
+                if felt.time > self._since[name] + EVENT_SETTLE_TIME and self.pressed[name] != bool(value):
+                    self._came.append((name, bool(value)))
+        changed = []
+        while self._came:
+            name, value = self._came.popleft()
+            if name not in self.pressed or self.pressed[name] != value:
+                if name in self.pressed:
+                    self.pressed[name], self._since[name] = value, now
+                changed.append((name, value))
+        return changed
+
+    def _hear(self, name: str, value: Any) -> None:
+        self._came.append((name, bool(value)))
+        self.heard += 1
+
+
+class HealthAlerts:
+    """Speaks up once about a battery that is low and motors that are hot, and again after they have recovered."""
+
+    def __init__(self) -> None:
+        self._low = False
+        self._hot: set[str] = set()
+
+    def battery(self, percentage: int, now: float) -> list[Event]:
+        self._low = self._low and percentage < BATTERY_RECOVERED
+        if self._low or percentage > BATTERY_LOW:
+            return []
+        self._low = True
+        return [Event("battery.low", {"percentage": percentage}, now)]
+
+    def motors(self, temperatures: Mapping[str, float], now: float) -> list[Event]:
+        self._hot = {joint for joint in self._hot if temperatures.get(joint, MOTOR_HOT) > MOTOR_COOLED}
+        newly = [j for j, t in temperatures.items() if t >= MOTOR_HOT and j not in self._hot]
+        self._hot.update(newly)
+        return [Event("motors.hot", {"joint": j, "temperature": round(temperatures[j], 1)}, now) for j in newly]

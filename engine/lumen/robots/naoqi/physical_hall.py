@@ -1,0 +1,21 @@
+"""The place around a real robot: nothing in it can be moved from here."""
+
+from lumen.errors import UsageError
+from lumen.language.stories import Visitor
+
+
+class PhysicalHall:
+    """A `Hall` in which visitors are real: whoever types speaks, and is seen only where a visual module sees them."""
+
+    def place(self, visitor: Visitor | None) -> None:
+        """They stand wherever they stand."""
+
+    def face(self) -> tuple[float, float] | None:
+        """The visual module says so, and not the hall."""
+        return None
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        raise UsageError(f"`{sensor}` of a real robot is touched with a hand")
+
+    def plug(self, plugged: bool) -> None:
+        raise UsageError("a real robot is plugged in by hand")

@@ -1,0 +1,87 @@
+"""Keeps the connection: makes it again where it breaks, and tells of both."""
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple
+
+from lumen.errors import RobotError
+from lumen.robots.naoqi.session import NaoqiSession
+
+FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 10.0
+"""How long until the first try to connect again, and at most until the next [s]: each waits twice as long."""
+
+_log = logging.getLogger(__name__)
+
+
+class ConnectionChange(NamedTuple):
+    """`robot.lost` or `robot.back`, how long the robot was away by then [s], and why."""
+
+    name: str
+    seconds: float
+    reason: str
+
+
+class Reconnector:
+    """Opens a link and keeps it open; `take_over` settles what has to be, told whether it was open before."""
+
+    def __init__(self, link: NaoqiSession, take_over: Callable[[bool], None], first: float = FIRST_RETRY_DELAY) -> None:
+        self._link, self._take_over, self._first = link, take_over, first
+        self._changes: deque[ConnectionChange] = deque(maxlen=100)
+        self._broken, self._ending = threading.Event(), threading.Event()
+        self._lost_at = 0.0
+        self._thread = threading.Thread(target=self._keep, name="lumen-naoqi", daemon=True)
+
+    def open(self) -> None:
+        """Connect for the first time. Raises RobotError where that is not possible."""
+        try:
+            self._link.open()
+            self._take_over(False)
+            self._link.ready = self._link.up
+        except RobotError:
+            self._link.close()
+            raise
+        self._thread.start()
+
+    def lose(self, reason: str) -> None:
+        """The connection broke; on whichever thread found out."""
+        self._lost_at = time.monotonic()
+        self._changes.append(ConnectionChange("robot.lost", 0.0, reason))
+        if not self._ending.is_set():
+            _log.warning("the robot is lost: %s; trying to reach it again", reason)
+        self._broken.set()
+
+    def changes(self) -> list[ConnectionChange]:
+        """What has changed since this was last asked."""
+        return [self._changes.popleft() for _ in range(len(self._changes))]
+
+    def close(self) -> None:
+        self._ending.set()
+        self._broken.set()
+        if self._thread.is_alive():
+            self._thread.join(2.0)
+
+    def _keep(self) -> None:
+        while not self._ending.is_set():
+            self._broken.wait()
+            self._broken.clear()
+            pause = self._first
+            while not self._link.up and not self._ending.wait(pause):
+                pause = min(2 * pause, MAX_RETRY_DELAY)
+                self._try()
+
+    def _try(self) -> None:
+        lost_at = self._lost_at
+        try:
+            self._link.open()
+            self._take_over(True)
+            self._link.ready = self._link.up
+        except RobotError as error:
+            self._link.close()
+            _log.info("the robot is still away: %s", error)
+            return
+        away = time.monotonic() - lost_at
+        self._changes.append(ConnectionChange("robot.back", away, ""))
+        _log.warning("the robot is back, after %.0f s", away)

@@ -1,0 +1,218 @@
+"""How each sense is asked for: ALMemory's keys, and the camera."""
+
+import logging
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from lumen.errors import RobotError
+from lumen.language.robots import Body
+from lumen.language.routes import SIZES, Size
+from lumen.ports import Battery, Image, Joints, Reading, Sense, Sonar, Tactile
+from lumen.robots.naoqi.session import NaoqiSession
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+SUBSCRIBER_NAME = "lumen"
+TOP_CAMERA, RGB_COLOUR_SPACE = 0, 11
+RESOLUTIONS = {size: number for number, size in enumerate(SIZES)}
+CAMERA_RATE = 30
+"""Images a second: the route says how many of them are fetched."""
+CLOCK_OFFSET_FRAMES = 100
+"""Of how many images the fastest tells how the robot's clock stands to ours."""
+
+_log = logging.getLogger(__name__)
+
+_DEVICE = "Device/SubDeviceList/{}/Value"
+TOUCH_DEVICES = {
+    "RightBumper": ("RFoot/Bumper/Left", "RFoot/Bumper/Right"),
+    "LeftBumper": ("LFoot/Bumper/Left", "LFoot/Bumper/Right"),
+    "ChestButton": ("ChestBoard/Button",),
+    "FrontTactil": ("Head/Touch/Front",),
+    "MiddleTactil": ("Head/Touch/Middle",),
+    "RearTactil": ("Head/Touch/Rear",),
+    "HandRightBack": ("RHand/Touch/Back",),
+    "HandRightLeft": ("RHand/Touch/Left",),
+    "HandRightRight": ("RHand/Touch/Right",),
+    "HandLeftBack": ("LHand/Touch/Back",),
+    "HandLeftLeft": ("LHand/Touch/Left",),
+    "HandLeftRight": ("LHand/Touch/Right",),
+}
+"""The devices behind each tactile sensor: a bumper has two."""
+
+CHARGE, PLUGGED, CHARGING = (
+    _DEVICE.format("Battery/Charge/Sensor"),
+    "BatteryPowerPluggedChanged",
+    "BatteryChargingFlagChanged",
+)
+
+
+INERTIAL = tuple(f"{kind}{axis}" for kind in ("Angle", "Gyroscope", "Accelerometer") for axis in "XYZ")
+FORCE_SENSORS = tuple(
+    f"{foot}/FSR/{where}"
+    for foot in ("LFoot", "RFoot")
+    for where in ("FrontLeft", "FrontRight", "RearLeft", "RearRight", "TotalWeight")
+)
+
+
+def device(name: str) -> str:
+    """ALMemory's key of what a sensor measures."""
+    return _DEVICE.format(f"{name}/Sensor")
+
+
+class NaoqiSensors:
+    """Reads a robot's senses; every method waits for NAOqi, and raises RobotError where it can't be read.
+
+    `heat` is how hot each motor was when the joints were read last [degrees Celsius].
+    """
+
+    def __init__(self, link: NaoqiSession, body: Body, clock: Callable[[], float]) -> None:
+        self._link, self._body, self._clock = link, body, clock
+        self.heat: dict[str, float] = {}
+        self._numb = False
+        self._names = list(body.joints)
+        motors = [device(f"{body.shared.get(name, name)}/Temperature") for name in self._names]
+        self._felt = [*motors, *(device(f"InertialSensor/{name}") for name in INERTIAL), *map(device, FORCE_SENSORS)]
+        self._touches = {
+            name: [device(d) for d in TOUCH_DEVICES[name]] for name in body.tactile if name in TOUCH_DEVICES
+        }
+        self._handle = ""
+        self._own = Size(body.camera.width, body.camera.height)
+        self._size = self._wanted = self._own
+        self._behind: deque[float] = deque(maxlen=CLOCK_OFFSET_FRAMES)
+
+    def reader(self, sense: Sense) -> Callable[[], Reading]:
+        readers: dict[Sense, Callable[[], Reading]] = {
+            Sense.IMAGE: self.image, Sense.JOINT: self.joints, Sense.SONAR: self.sonar,
+            Sense.TACTILE: self.tactile, Sense.BATTERY: self.battery,
+        }  # fmt: skip
+        return readers[sense]
+
+    def begin(self) -> None:
+        """Forget what another session was about; what was left over of our own cameras is let go."""
+        self._handle, self._numb = "", False
+        self._behind.clear()
+        if self._link.has("ALVideoDevice"):
+            for handle in self._link.ask("ALVideoDevice", "getSubscribers") or ():
+                if str(handle).startswith(SUBSCRIBER_NAME):
+                    self._link.post("ALVideoDevice", "unsubscribe", handle)
+        if self._link.has("ALSonar"):
+            self._link.post("ALSonar", "subscribe", SUBSCRIBER_NAME)
+
+    def end(self) -> None:
+        """Let go of camera and sonars."""
+        self._let_go(0.5)
+        if self._link.has("ALSonar"):
+            self._link.post("ALSonar", "unsubscribe", SUBSCRIBER_NAME).wait(0.5)
+
+    def joints(self) -> Joints:
+        now = self._clock()
+        angles = self._numbers(self._link.ask("ALMotion", "getAngles", self._names, True), "getAngles")
+        stiffness = self._numbers(self._link.ask("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
+        return Joints(now, tuple(self._names), angles, stiffness, *self._feelings())
+
+    def sonar(self) -> Sonar:
+        if not self._link.has("ALSonar"):
+            raise RobotError("this robot has no ALSonar")
+        now = self._clock()
+        left, right = self._memory([device("US/Left"), device("US/Right")])
+        if not isinstance(left, int | float) or not isinstance(right, int | float):
+            raise RobotError("ALMemory knows of no sonars")
+        return Sonar(now, float(left), float(right))
+
+    def tactile(self) -> Tactile:
+        now = self._clock()
+        found = iter(self._memory([key for keys in self._touches.values() for key in keys]))
+        pressed = {name: sum(bool(next(found)) for _ in keys) > 0 for name, keys in self._touches.items()}
+        return Tactile(now, self._body.tactile, tuple(int(pressed.get(name, False)) for name in self._body.tactile))
+
+    def battery(self) -> Battery:
+        now = self._clock()
+        charge, plugged, charging = self._memory([CHARGE, PLUGGED, CHARGING])
+        if not isinstance(charge, int | float):
+            raise RobotError("ALMemory does not know how full the battery is")
+        percentage = round(100 * min(max(float(charge), 0.0), 1.0))
+        return Battery(now, percentage, plugged=bool(plugged) or bool(charging), charging=bool(charging))
+
+    def image(self) -> Image:
+        """The newest frame of the top camera, at its time on our clock."""
+        if self._wanted != self._size:
+            self._let_go()
+            self._size = self._wanted
+        handle = self._handle or self._subscribe()
+        try:
+            found = self._link.ask("ALVideoDevice", "getImageRemote", handle)
+            pixels, stamp = self._pixels(found)
+        except RobotError:
+            self._handle = ""
+            raise
+        self._link.post("ALVideoDevice", "releaseImage", handle)
+        self._behind.append(self._clock() - stamp)
+        width, height = self._size
+
+        def shaped(size: Size | None = None) -> "NDArray[np.uint8]":
+            import numpy as np
+
+            self._wanted = size or self._own
+            return np.frombuffer(pixels, np.uint8).reshape(height, width, 3)
+
+        return Image(stamp + min(self._behind), shaped)
+
+    def _feelings(self) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
+        """Motors' temperatures, inertial unit and soles, read at once; what this robot does not feel is left out."""
+        try:
+            found, motors = self._memory(self._felt), len(self._names)
+        except RobotError as error:
+            if self._link.up and not self._numb:
+                self._numb = True
+                _log.warning("the robot does not feel its heat, balance and weight: %s", error)
+            return (), {}, {}
+        inertial, soles = found[motors : motors + len(INERTIAL)], found[motors + len(INERTIAL) :]
+        self.heat = _known(n for n in zip(self._names, found, strict=False) if n[0] not in self._body.shared)
+        temperature = tuple(float(t) for t in found[:motors] if isinstance(t, int | float))
+        whole = temperature if len(temperature) == motors else ()
+        return whole, _known(zip(INERTIAL, inertial, strict=True)), _known(zip(FORCE_SENSORS, soles, strict=True))
+
+    def _let_go(self, patience: float = 0.0) -> None:
+        """Unsubscribe from the camera, and wait so long [s] for that."""
+        if self._handle:
+            self._link.post("ALVideoDevice", "unsubscribe", self._handle).wait(patience)
+        self._handle = ""
+
+    def _subscribe(self) -> str:
+        if self._size not in RESOLUTIONS:
+            raise RobotError(f"NAO's camera has no images of {self._size}")
+        arguments = (SUBSCRIBER_NAME, TOP_CAMERA, RESOLUTIONS[self._size], RGB_COLOUR_SPACE, CAMERA_RATE)
+        self._handle = str(self._link.ask("ALVideoDevice", "subscribeCamera", *arguments) or "")
+        if not self._handle:
+            raise RobotError("the camera can't be subscribed to: too many others have it")
+        return self._handle
+
+    def _pixels(self, found: Any) -> tuple[bytes, float]:
+        """The bytes of a frame, and its time on the robot's clock [s]."""
+        if not isinstance(found, Sequence) or len(found) < 7:
+            raise RobotError("the camera gave no image: somebody else has unsubscribed it, or it is not there")
+        width, height, layers, _, seconds, microseconds, pixels = found[:7]
+        if (width, height, layers) != (*self._size, 3):
+            raise RobotError(f"the camera gave an image of {width} x {height} x {layers}, not of {self._size} x 3")
+        if not isinstance(pixels, bytes | bytearray) or len(pixels) != width * height * layers:
+            raise RobotError(f"the camera gave {len(pixels) if pixels else 0} bytes for {width} x {height} x {layers}")
+        return bytes(pixels), float(seconds) + float(microseconds) / 1e6
+
+    def _memory(self, keys: list[str]) -> list[Any]:
+        found = self._link.ask("ALMemory", "getListData", keys)
+        if not isinstance(found, Sequence) or len(found) != len(keys):
+            raise RobotError("ALMemory did not answer for every key")
+        return list(found)
+
+    def _numbers(self, found: Any, method: str) -> tuple[float, ...]:
+        if not isinstance(found, Sequence) or len(found) != len(self._names):
+            raise RobotError(f"ALMotion.{method} did not answer for every joint")
+        return tuple(map(float, found))
+
+
+def _known(found: Iterable[tuple[str, Any]]) -> dict[str, float]:
+    """What is a number of what ALMemory has."""
+    return {name: round(float(value), 4) for name, value in found if isinstance(value, int | float)}

@@ -1,0 +1,209 @@
+"""The connection to NAOqi: calls that nobody waits for, and calls that a thread of its own may wait for."""
+
+import re
+import threading
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from lumen.errors import RobotError
+
+NAOQI_PORT = 9559
+CALL_TIMEOUT = 2.0
+"""How long a call that somebody waits for may take [s]: a robot that is silent for longer is taken for lost."""
+CONNECT_TIMEOUT = 5.0
+MAX_ERROR_LENGTH = 200
+
+QI_MISSING = (
+    "a NAO is reached through the package `qi`: pip install lumen-robot[naoqi]"
+    " (there are wheels for CPython up to 3.12 on Linux, x86-64)"
+)
+
+CONNECTION_LOST = "the connection to the robot is lost"
+_QI_CONNECTION_LOST = ("Service removed", "Socket is not connected", "Socket disconnected", "Session closed")
+"""How qi says so."""
+
+_SCHEME = re.compile(r"^[a-z]+://")
+
+
+def qi() -> Any:
+    """The package `qi`, which keeps its own log to itself. Raises RobotError, saying how to get it."""
+    try:
+        import qi as package
+    except ImportError as error:
+        raise RobotError(QI_MISSING) from error
+    package.logging.setLevel(package.logging.FATAL)
+    return package
+
+
+def address(url: str) -> str:
+    """The whole address: `nao.local` is `tcp://nao.local:9559`. Raises RobotError for what is none."""
+    text = url.strip()
+    whole = text if _SCHEME.match(text) else f"tcp://{text}"
+    host, colon, port = whole.partition("://")[2].rpartition(":")
+    if not colon:
+        host, port, whole = port, str(NAOQI_PORT), f"{whole}:{NAOQI_PORT}"
+    if not host or not port.isdecimal() or not whole.startswith(("tcp://", "tcps://")):
+        raise RobotError(f"`{url}` is no address of a robot: write tcp://nao.local:{NAOQI_PORT}")
+    return whole
+
+
+def plain(error: object) -> str:
+    """NAOqi's words about what went wrong, in one line and without where in its code that was."""
+    text = " ".join(str(error).partition("\n\nAt:")[0].split())
+    if text in _QI_CONNECTION_LOST:
+        return CONNECTION_LOST
+    return text.removeprefix("RuntimeError: ")[:MAX_ERROR_LENGTH] or "it said nothing about it"
+
+
+class NaoqiCall:
+    """A call under way; `result` raises RobotError where NAOqi raised, or can't be reached any more."""
+
+    def __init__(self, future: Any = None, value: Any = None, error: str = "") -> None:
+        self._future, self._value, self._error = future, value, error
+
+    @property
+    def done(self) -> bool:
+        return self._future is None or bool(self._future.isFinished())
+
+    @property
+    def failed(self) -> bool:
+        """Whether it is over, and NAOqi raised."""
+        return bool(self._error) or (self._future is not None and self.done and bool(self._future.hasError()))
+
+    def wait(self, seconds: float) -> bool:
+        """Whether it was done within so many seconds."""
+        if self._future is not None:
+            self._future.wait(int(1000 * seconds))
+        return self.done
+
+    def result(self) -> Any:
+        if self._error:
+            raise RobotError(self._error)
+        if self._future is None:
+            return self._value
+        if self._future.hasError():
+            raise RobotError(plain(self._future.error()))
+        return self._future.value()
+
+
+class NaoqiSession:
+    """A session with the NAOqi at `url`, to be opened again after it was lost.
+
+    `up` is whether it stands, `ready` whether all is settled with the robot as well; `lost` is called once for each
+    time that it breaks, on any thread, with the reason. A robot that is silent for longer than `patience` [s] is lost.
+    """
+
+    def __init__(self, url: str, lost: Callable[[str], None] = lambda _: None, patience: float = CALL_TIMEOUT) -> None:
+        self.url, self._patience = address(url), patience
+        self.pending = 0
+        self.ready = False
+        self._lost, self._qi = lost, qi()
+        self._session: Any = None
+        self._services: dict[str, Any] = {}
+        self._serving: dict[str, NaoqiCall] = {}
+        self._lock = threading.Lock()
+
+    @property
+    def up(self) -> bool:
+        return self._session is not None
+
+    def open(self) -> None:
+        """Connect. Raises RobotError where nobody answers."""
+        session = self._qi.Session()
+        future = session.connect(self.url, _async=True)
+        future.wait(int(1000 * max(CONNECT_TIMEOUT, self._patience)))
+        if not future.isFinished():
+            raise RobotError(f"no robot answers at {self.url}: is it switched on, and on this network?")
+        if future.hasError():
+            raise RobotError(
+                f"no robot at {self.url} ({plain(future.error())}): is it switched on, and on this network?"
+            )
+        session.disconnected.connect(lambda *_: self._broken(session, "the connection was closed"))
+        self._services, self._serving = {}, {}
+        self._session = session
+
+    def find(self, names: Iterable[str]) -> list[str]:
+        """Reach these services; those that the robot lacks."""
+        missing = []
+        for name in names:
+            future = self._session.service(name, _async=True)
+            future.wait(int(1000 * max(CONNECT_TIMEOUT, self._patience)))
+            if not future.isFinished() or future.hasError():
+                missing.append(name)
+            else:
+                self._services[name] = future.value()
+        return missing
+
+    def has(self, service: str) -> bool:
+        """Whether the robot has that service, and can be reached."""
+        return self.up and service in self._services
+
+    def post(self, service: str, method: str, *arguments: Any) -> NaoqiCall:
+        """Call, without waiting; trouble of any kind is in the answer."""
+        proxy = self._services.get(service)
+        if not self.up:
+            return NaoqiCall(error=CONNECTION_LOST)
+        if proxy is None:
+            return NaoqiCall(error=f"this robot has no {service}")
+        try:
+            future = getattr(proxy, method)(*arguments, _async=True)
+        except (AttributeError, RuntimeError) as error:
+            return NaoqiCall(error=f"{service}.{method} can't be called: {plain(error)}")
+        return self._called(future)
+
+    def serve(self, name: str, make: Callable[[Any], object]) -> NaoqiCall:
+        """Be a service of that name to NAOqi, once in each session; `make` gets the package `qi`."""
+        if not self.up:
+            return NaoqiCall(error=CONNECTION_LOST)
+        if name not in self._serving or self._serving[name].failed:
+            future = self._session.registerService(name, make(self._qi), _async=True)
+            self._serving[name] = self._called(future)
+        return self._serving[name]
+
+    def ask(self, service: str, method: str, *arguments: Any, patience: float = 0.0) -> Any:
+        """What NAOqi answers; for threads that may wait, `patience` [s] where it takes longer than others.
+
+        Raises RobotError; a silent robot counts as lost.
+        """
+        call, session, patience = self.post(service, method, *arguments), self._session, max(patience, self._patience)
+        if not call.wait(patience):
+            reason = f"the robot has not answered for {patience:g} s"
+            self._broken(session, reason)
+            raise RobotError(reason)
+        return call.result()
+
+    def subscribe(self, event: str, heard: Callable[[Any], None]) -> Any:
+        """Have `heard` called, on a thread of qi's, for each time that ALMemory tells of that event.
+
+        It ends when what is returned is let go of. Raises RobotError.
+        """
+        subscriber = self.ask("ALMemory", "subscriber", event)
+        try:
+            subscriber.signal.connect(heard)
+        except (AttributeError, RuntimeError) as error:
+            raise RobotError(f"`{event}` can't be heard: {plain(error)}") from error
+        return subscriber
+
+    def close(self) -> None:
+        """Let go; `lost` hears nothing of it."""
+        session, self._session, self.ready = self._session, None, False
+        if session is not None:
+            session.close()
+
+    def _called(self, future: Any) -> NaoqiCall:
+        with self._lock:
+            self.pending += 1
+        future.addCallback(self._settled)
+        return NaoqiCall(future)
+
+    def _settled(self, _: Any) -> None:
+        with self._lock:
+            self.pending -= 1
+
+    def _broken(self, session: Any, reason: str) -> None:
+        with self._lock:
+            if session is None or session is not self._session:
+                return
+            self._session, self.ready = None, False
+        threading.Thread(target=session.close, daemon=True).start()  # it may wait for what does not answer
+        self._lost(reason)

@@ -1,0 +1,144 @@
+"""What a real NAO can do: how each command begins, and how it ends early."""
+
+import logging
+from collections.abc import Callable, Mapping
+from math import inf, isfinite
+from typing import assert_never
+
+from lumen.errors import RobotError
+from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.robots import Body
+from lumen.ports import Aim, Perform, Record, RobotCommand
+from lumen.robots.body_parts import part_of, parts
+from lumen.robots.cues import EventSink
+from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
+from lumen.robots.naoqi.microphones import Microphones
+from lumen.robots.naoqi.motion_player import MotionPlayer
+from lumen.robots.naoqi.session import NaoqiSession
+from lumen.robots.naoqi.speech import language_of, words
+from lumen.robots.naoqi.walking_area import WalkingArea
+from lumen.robots.naoqi.walks import NaoqiWalks
+
+LOOK_SPEED = 1.5
+"""How fast the head turns [rad/s]."""
+LOOK_TOLERANCE = 0.03
+"""A head that is nearer than this to where it should look is there [rad]."""
+LOOK_GRACE = 1.0
+"""How much longer than it needs a look may take [s]."""
+WAKE_SPEED = 0.5
+
+_log = logging.getLogger(__name__)
+
+
+class NaoqiSkills:
+    """Begins activities; `fallen` is whether the robot lies where it fell."""
+
+    def __init__(
+        self, link: NaoqiSession, body: Body, ground: WalkingArea, notice: EventSink, clock: Callable[[], float]
+    ) -> None:
+        post = self._post = link.post
+        self._body, self._clock = body, clock
+        self._microphones = Microphones(link, notice, clock)
+        self._walks = NaoqiWalks(post, ground)
+        self._player = MotionPlayer(post, body, notice, clock)
+        self._part = part_of(body)
+        self._unspoken: set[str] = set()
+        self.fallen = False
+
+    def begin(self, command: RobotCommand, now: float) -> CallSequence:
+        """The command under way. Raises RobotError where the robot can't."""
+        match command:
+            case Say(text, language):
+                return CallSequence(self._say(text, language), lambda: [self._post("ALTextToSpeech", "stopAll")])
+            case Record():
+                return self._microphones.begin(command)
+            case Rest():
+                return CallSequence(self._rest(), patience=inf)
+            case Posture(name, speed):
+                return self._posture(name, speed)
+            case Wake():
+                return CallSequence(self._wake(), lambda: [self._post("ALRobotPosture", "stopMove")])
+            case Stop() | Aim():
+                raise RobotError(f"{type(command).__name__} does not last")
+        if self.fallen:
+            raise RobotError("the robot has fallen: `wake` it first")
+        match command:
+            case Perform(motion):
+                owned = parts(command, self._body)
+                return self._player.begin(motion, [j for j in self._body.joints if self._part.get(j) in owned])
+            case Look(yaw, pitch):
+                return self._look(self.inside({"HeadYaw": yaw, "HeadPitch": pitch}))
+            case Walk() | Move():
+                return self._walks.begin(command)
+            case _:
+                assert_never(command)
+
+    def inside(self, angles: Mapping[str, float]) -> dict[str, float]:
+        """The nearest angles inside the joints' limits. Raises RobotError for what is no joint, or no angle."""
+        found = {}
+        for name, angle in angles.items():
+            if name not in self._body.joints:
+                raise RobotError(f"`{name}` is not a joint of this robot: {did_you_mean(name, self._body.joints)}")
+            if not isfinite(angle):
+                raise RobotError(f"`{name}` can't be moved to {angle}")
+            joint = self._body.joints[name]
+            found[name] = float(min(max(angle, joint.minimum), joint.maximum))
+        return found
+
+    def _say(self, text: str, language: str) -> CallSteps:
+        spoken = yield self._post("ALTextToSpeech", "getAvailableLanguages")
+        name = language_of(language, list(map(str, spoken or ()))) if language else ""
+        if language and not name and language not in self._unspoken:
+            self._unspoken.add(language)
+            _log.warning(
+                "the robot has no voice for `%s` (it has %s): it reads the text in the language that it is set to",
+                language, ", ".join(map(str, spoken or ())) or "none",
+            )  # fmt: skip
+        if said := words(text):
+            yield self._post("ALTextToSpeech", "say", said, *([name] if name else []))
+
+    def _posture(self, name: str, speed: float) -> CallSequence:
+        if not 0 < speed <= 1:
+            raise RobotError(f"a speed lies above 0 and up to 1, not at {speed}")
+        if name not in self._body.postures:
+            raise RobotError(f"no posture `{name}`: {did_you_mean(name, self._body.postures, 'it knows')}")
+        return CallSequence(self._go(name, speed), lambda: [self._post("ALRobotPosture", "stopMove")])
+
+    def _go(self, name: str, speed: float) -> CallSteps:
+        if not (yield self._post("ALMotion", "robotIsWakeUp")):
+            if not self.fallen:
+                raise RobotError("the motors are off: `wake` first")
+            yield self._post("ALMotion", "setStiffnesses", "Body", 1.0)  # the fall manager had let go of the motors
+        if not (yield self._post("ALRobotPosture", "goToPosture", name, float(speed))):
+            raise RobotError(f"the robot could not get into the posture {name}")
+        self.fallen = False
+
+    def _wake(self) -> CallSteps:
+        yield self._post("ALMotion", "wakeUp")
+        if not (yield self._post("ALRobotPosture", "goToPosture", "Stand", WAKE_SPEED)):
+            raise RobotError("the robot could not stand up")
+        self.fallen = False
+
+    def _rest(self) -> CallSteps:
+        yield self._post("ALMotion", "rest")
+
+    def _look(self, target: Mapping[str, float]) -> CallSequence:
+        names = list(target)
+        return CallSequence(self._turn(target), lambda: [self._post("ALMotion", "killTasksUsingResources", names)])
+
+    def _turn(self, target: Mapping[str, float]) -> CallSteps:
+        names, goal = list(target), list(target.values())
+        if not (yield self._post("ALMotion", "robotIsWakeUp")):
+            raise RobotError("the motors are off: `wake` first")
+        here = yield self._post("ALMotion", "getAngles", names, True)
+        way = max(abs(a - b) for a, b in zip(here, goal, strict=True))
+        slowest = min(self._body.joints[name].speed for name in names)
+        yield self._post("ALMotion", "setAngles", names, goal, min(1.0, LOOK_SPEED / slowest))
+        until = self._clock() + way / LOOK_SPEED + LOOK_GRACE
+        while self._clock() < until:
+            here = yield self._post("ALMotion", "getAngles", names, True)
+            if all(abs(a - b) < LOOK_TOLERANCE for a, b in zip(here, goal, strict=True)):
+                return
+            yield None
+        raise RobotError("the head did not get there: something holds it, or its motors are off")

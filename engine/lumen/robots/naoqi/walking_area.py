@@ -1,0 +1,84 @@
+"""Where the robot may go: its stage, by its own odometry, and what must not be in its way."""
+
+from collections.abc import Callable, Mapping, Sequence
+from math import cos, sin
+
+from lumen.errors import RobotError
+from lumen.language.projects import Stage
+from lumen.ports import Sonar
+
+OBSTACLE_DISTANCE = 0.4
+"""Nearer than this to something the robot does not walk [m]."""
+SOLE_REACH = 0.1
+"""How far a sole reaches from the point between the feet [m]."""
+MAX_STAGE_DRIFT = 0.03
+"""By how much the way to a place may leave the stage [m]."""
+
+STOP_BUTTONS = {
+    "RightBumper": "the right bumper",
+    "LeftBumper": "the left bumper",
+    "ChestButton": "the chest button",
+}
+
+GroundPose = Sequence[float]
+"""x, y [m] and theta [rad] as `ALMotion.getRobotPosition` has them."""
+
+
+class WalkingArea:
+    """Knows where the robot was when it was met first, which is the origin of the stage.
+
+    `pressed` says which sensors are touched, `echo` what the sonars hear now, None where they are silent.
+    """
+
+    def __init__(self, stage: Stage | None, pressed: Mapping[str, bool], echo: Callable[[], Sonar | None]) -> None:
+        self.stage = stage
+        self._pressed, self._echo = pressed, echo
+        self._origin: GroundPose | None = None
+
+    def meet(self, place: GroundPose) -> None:
+        """The robot stands there; the first time counts."""
+        self._origin = self._origin or place
+
+    def danger(self) -> str:
+        """Why the robot must not walk now; empty where nothing is in the way."""
+        for sensor, name in STOP_BUTTONS.items():
+            if self._pressed.get(sensor):
+                return f"{name} is pressed"
+        echo = self._echo()
+        near = (
+            min((d for d in (echo.left, echo.right) if d > 0.0), default=OBSTACLE_DISTANCE)
+            if echo
+            else OBSTACLE_DISTANCE
+        )
+        return (
+            f"something is {near:.2f} m ahead, nearer than {OBSTACLE_DISTANCE:g} m" if near < OBSTACLE_DISTANCE else ""
+        )
+
+    def check_way(self, here: GroundPose, way: GroundPose) -> None:
+        """Raises RobotError where a walk by `way` from `here` would leave the stage, farther than the robot has."""
+        x, y, theta = here
+        ahead = x + way[0] * cos(theta) - way[1] * sin(theta), y + way[0] * sin(theta) + way[1] * cos(theta)
+        if reason := self.outside((*ahead, theta), here):
+            raise RobotError(f"{reason}: the robot did not set out")
+
+    def outside(self, there: GroundPose, before: GroundPose, drift: float = 0.0) -> str:
+        """Why it must not be `there`; empty where the stage has room, or it is no farther out than it was `before`."""
+        if self.stage is None or self._origin is None:
+            return ""
+        reached, stood = self._on_stage(there), self._on_stage(before)
+        for axis, (low, high), now, then in (
+            ("x", self.stage.x, reached[0], stood[0]),
+            ("y", self.stage.y, reached[1], stood[1]),
+        ):
+            if (
+                now - SOLE_REACH < min(low, then - SOLE_REACH) - drift
+                or now + SOLE_REACH > max(high, then + SOLE_REACH) + drift
+            ):
+                return f"a foot would leave the stage: the robot would be at {axis} = {now:.2f} m"
+        return ""
+
+    def _on_stage(self, place: GroundPose) -> tuple[float, float]:
+        assert self._origin is not None
+        x0, y0, theta = self._origin
+        dx, dy = place[0] - x0, place[1] - y0
+        return dx * cos(theta) + dy * sin(theta), dy * cos(theta) - dx * sin(theta)

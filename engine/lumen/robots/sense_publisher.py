@@ -1,0 +1,158 @@
+"""A sense's own thread: it encodes and publishes what it is handed, and never keeps anybody waiting."""
+
+import logging
+import re
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumen.errors import BusError, RobotError
+from lumen.ports import Reading
+
+MAX_LOGGED_REASONS = 20
+
+_DIGITS = re.compile(r"\d+")
+_log = logging.getLogger(__name__)
+
+
+@dataclass
+class PublishCounts:
+    """What became of a sense's readings: `dropped` for a newer one, `refused` by the bus; `off` says why none come."""
+
+    published: int = 0
+    dropped: int = 0
+    refused: int = 0
+    off: str = ""
+
+
+@dataclass(eq=False)
+class PendingReading:
+    """A reading on its way; it is published after the one handed over before it, if there is one to wait for.
+
+    `begun` is set when its turn to be published has come, at `began` [s, monotonic], `done` when that is over.
+    """
+
+    reading: Reading
+    after: "PendingReading | None" = None
+    began: float = 0.0
+    begun: threading.Event = field(default_factory=threading.Event)
+    done: threading.Event = field(default_factory=threading.Event)
+
+    def begin(self) -> None:
+        self.began = time.monotonic()
+        self.begun.set()
+
+    def end(self) -> None:
+        self.after = None
+        self.done.set()
+        self.begun.set()
+
+
+class SensePublisher:
+    """One thread for one sense, with room for one reading: the newest wins, the others are counted as dropped.
+
+    `encode` makes the body and `publish` sends it, both on this thread. A body that the bus refuses (BusError) costs
+    that body alone, and each reason a line in the log. Where the robot can't give the sense (RobotError: a camera
+    without OpenGL) it switches itself off, with a line in the log, until `arm`.
+    """
+
+    PATIENCE = 1.0
+
+    def __init__(self, name: str, encode: Callable[[Any], dict[str, Any]], publish: Callable[[Any], None]) -> None:
+        self.name = name
+        self.count = PublishCounts()
+        self._encode, self._publish = encode, publish
+        self._next: PendingReading | None = None
+        self._changed = threading.Condition()
+        self._ending = False
+        self._said: set[str] = set()
+        self._thread = self._started()
+
+    def hand(self, handed: PendingReading) -> None:
+        """Take this reading next; the one that still waits gives way."""
+        with self._changed:
+            if self.count.off:
+                handed.end()
+                return
+            if self._next:
+                self.count.dropped += 1
+                self._next.end()
+            self._next = handed
+            self._changed.notify()
+
+    def arm(self) -> None:
+        """Try again where the sense is off, and tell again of what is refused: the cause may be gone."""
+        with self._changed:
+            self._said.clear()
+            off, self.count.off = self.count.off, ""
+            if off and not self._ending:
+                self._thread = self._started()
+
+    def close(self, timeout: float) -> bool:
+        """Publish what waits and end; whether that was done within `timeout` [s]."""
+        with self._changed:
+            self._ending = True
+            self._changed.notify()
+        self._thread.join(max(0.0, timeout))
+        return not self._thread.is_alive()
+
+    def _started(self) -> threading.Thread:
+        thread = threading.Thread(target=self._run, name=f"lumen-{self.name}", daemon=True)
+        thread.start()
+        return thread
+
+    def _run(self) -> None:
+        while (handed := self._take()) and self._perform(handed):
+            pass
+
+    def _take(self) -> PendingReading | None:
+        with self._changed:
+            self._changed.wait_for(lambda: self._next or self._ending)
+            handed, self._next = self._next, None
+            return handed
+
+    def _perform(self, handed: PendingReading) -> bool:
+        """Encode and publish one reading; whether the sense goes on."""
+        try:
+            self._send(handed)
+        except BusError as error:
+            self._refused(str(error))
+        except RobotError as error:
+            self._off(str(error))
+            return False
+        except Exception as error:
+            self._off(repr(error))
+            raise
+        finally:
+            handed.end()
+        return True
+
+    def _send(self, handed: PendingReading) -> None:
+        body = self._encode(handed.reading)
+        if handed.after:
+            handed.after.done.wait(self.PATIENCE)
+        handed.begin()
+        self._publish(body)
+        self.count.published += 1
+
+    def _refused(self, reason: str) -> None:
+        """Once per reason, whatever the numbers in it."""
+        self.count.refused += 1
+        with self._changed:
+            kind = _DIGITS.sub("#", reason)
+            new = kind not in self._said and len(self._said) < MAX_LOGGED_REASONS and not self._ending
+            if new:
+                self._said.add(kind)
+        if new:
+            _log.warning("a reading of the sense `%s` was refused: %s", self.name, reason)
+
+    def _off(self, reason: str) -> None:
+        with self._changed:
+            self.count.off = reason
+            if self._next:
+                self._next.end()
+                self._next = None
+        if not self._ending:
+            _log.warning("the sense `%s` is switched off: %s", self.name, reason)

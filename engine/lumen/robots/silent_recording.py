@@ -1,0 +1,24 @@
+"""Recording where nobody makes a sound: in a simulated hall visitors' words are typed."""
+
+from lumen.language.events import RECORDED, Event
+from lumen.ports import Record
+from lumen.robots.cues import EventSink
+from lumen.robots.sense_codec import RECORDING_RATE, recording_body
+
+
+class SilentRecording:
+    """Tells `notice` of silence, as long as was asked for, once it is `until` [s]; of nothing where it is cancelled."""
+
+    def __init__(self, command: Record, until: float, notice: EventSink) -> None:
+        self._command, self._until, self._notice = command, until, notice
+        self._cancelled = False
+
+    def advance(self, now: float) -> bool:
+        if self._cancelled or now < self._until:
+            return self._cancelled
+        silence = bytes(2 * round(self._command.duration * RECORDING_RATE))
+        self._notice(Event(RECORDED, recording_body(self._command.name, silence), now))
+        return True
+
+    def cancel(self) -> None:
+        self._cancelled = True

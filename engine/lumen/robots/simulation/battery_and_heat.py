@@ -1,0 +1,96 @@
+"""How the robot fares: battery and the heat of its motors."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.language.events import Event
+
+BATTERY_CAPACITY = 48.6 * 3600
+"""A full battery [J]: 48.6 Wh, from NAO V5's data sheet."""
+
+IDLE_POWER = 30.0
+"""What computer and sensors take [W]; so that a charge lasts a good hour and a half of standing and talking."""
+
+CHARGING_POWER = 50.0
+"""What the charger gives [W]; so that an empty battery is full after an hour, if the robot rests. Chosen, not measured.
+
+While plugged in, the robot lives on the charger, and motors that take more take the rest from the battery.
+"""
+
+STALL_POWER = 6.0
+"""What a motor takes [W] to give its greatest torque without moving."""
+
+BATTERY_LOW, BATTERY_RECOVERED, BATTERY_USED = 20, 25, 95
+"""Charge [%] at which the robot speaks up, may do so again, and may say again that the battery is full."""
+
+MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
+"""Temperatures [degrees Celsius] at which the robot speaks up, and may do so again."""
+
+MOTOR_AMBIENT, MOTOR_RISE, MOTOR_TIME_CONSTANT = 38.0, 300.0, 600.0
+"""Where motors begin, how far they heat up at their greatest torque, in what time [s]. Chosen, not measured."""
+
+
+class BatteryAndHeat:
+    """Integrates what the motors do; `temperatures` [degrees Celsius] in the order of the joints.
+
+    `plugged` is whether the charger is in.
+    """
+
+    def __init__(self, names: Sequence[str], efforts: Sequence[float], charge: float = 1.0) -> None:
+        self._names = names
+        self._efforts = np.array(efforts)
+        self._energy = charge * BATTERY_CAPACITY
+        self.plugged = False
+        self._low, self._full = False, charge > BATTERY_USED / 100
+        self._hot: set[int] = set()
+        self.temperatures: NDArray[np.float64] = np.full(len(names), MOTOR_AMBIENT)
+
+    @property
+    def percentage(self) -> int:
+        return max(0, round(100 * self._energy / BATTERY_CAPACITY))
+
+    @property
+    def charging(self) -> bool:
+        """Whether the charger is in and the battery takes more."""
+        return self.plugged and self._energy < BATTERY_CAPACITY
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is nothing left for the motors."""
+        return self._energy <= 0.0
+
+    @property
+    def hot(self) -> bool:
+        """Whether a motor has spoken up and not cooled down since."""
+        return bool(self._hot)
+
+    def live(self, torques: NDArray[np.float64], speeds: NDArray[np.float64], dt: float, now: float) -> list[Event]:
+        """Spend energy and heat up for `dt` [s] of such torques [N m] and speeds [rad/s]; the events of it."""
+        load = np.square(torques / self._efforts)
+        power = IDLE_POWER + STALL_POWER * float(load.sum()) + float(np.abs(torques * speeds).sum())
+        given = IDLE_POWER + CHARGING_POWER if self.plugged else 0.0
+        self._energy = min(max(0.0, self._energy + (given - power) * dt), BATTERY_CAPACITY)
+        self.temperatures += (MOTOR_AMBIENT + MOTOR_RISE * load - self.temperatures) * (dt / MOTOR_TIME_CONSTANT)
+        return [*self._battery(now), *self._motors(now)]
+
+    def _battery(self, now: float) -> list[Event]:
+        self._low = self._low and self.percentage < BATTERY_RECOVERED
+        self._full = self._full and self.percentage > BATTERY_USED
+        if not self._full and self._energy >= BATTERY_CAPACITY:
+            self._full = True
+            return [Event("battery.full", {"percentage": 100}, now)]
+        if self._low or self.percentage > BATTERY_LOW:
+            return []
+        self._low = True
+        return [Event("battery.low", {"percentage": self.percentage}, now)]
+
+    def _motors(self, now: float) -> list[Event]:
+        self._hot = {i for i in self._hot if self.temperatures[i] > MOTOR_COOLED}
+        newly = [int(i) for i in np.flatnonzero(self.temperatures >= MOTOR_HOT) if i not in self._hot]
+        self._hot.update(newly)
+        return [
+            Event("motors.hot", {"joint": self._names[i], "temperature": round(float(self.temperatures[i]), 1)}, now)
+            for i in newly
+        ]

@@ -1,0 +1,46 @@
+"""What a body allows its joints: the envelope that no command can leave."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.interpreters.limits import coupled_range
+from lumen.language.robots import Body
+
+JointVector = NDArray[np.float64]
+"""[rad; hands 0..1], Shape (joints,), in the order of `body.joints`."""
+
+
+class JointEnvelope:
+    """Limits, coupled limits, greatest speeds and shared motors of one body."""
+
+    def __init__(self, body: Body) -> None:
+        names = list(body.joints)
+        joints = body.joints.values()
+        self.low = np.array([j.minimum for j in joints])
+        self.high = np.array([j.maximum for j in joints])
+        self.speed = np.array([j.speed for j in joints])
+        self._shared = [(names.index(follower), names.index(leader)) for follower, leader in body.shared.items()]
+        self._coupled = [(names.index(c.joint), names.index(c.on), c) for c in body.coupled]
+
+    def step(self, last: JointVector, goal: JointVector, dt: float) -> JointVector:
+        """The next command on the way from the last one to `goal`, `dt` [s] later.
+
+        Every joint stays inside its limits and below its greatest speed, whatever the goal is; where a joint can't
+        follow a coupled limit in time, the joint that narrows it waits.
+        """
+        reach = self.speed * dt
+        result: JointVector = np.maximum(np.minimum(goal, last + reach), last - reach)
+        np.minimum(np.maximum(result, self.low, out=result), self.high, out=result)
+        for joint, on, limit in self._coupled:
+            before, held, most = last.item(on), last.item(joint), reach.item(joint)
+            way, wanted = result.item(on) - before, result.item(joint)
+            for share in (1.0, 0.5, 0.25, 0.0):
+                low, high = coupled_range(limit, before + share * way)
+                inside = min(max(wanted, low), high)
+                if share == 0.0 or abs(inside - held) <= most:
+                    break
+            result[on] = before + share * way
+            result[joint] = min(max(inside, held - most), held + most)
+        for follower, leader in self._shared:
+            result[follower] = result[leader]
+        return result

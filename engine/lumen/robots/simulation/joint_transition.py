@@ -1,0 +1,64 @@
+"""From one posture to another, safely."""
+
+from collections.abc import Callable, Mapping
+
+from lumen.robots.simulation.motors import Motors
+
+MIN_TRANSITION_TIME, MAX_TRANSITION_TIME = 0.6, 2.0
+"""How long a change of posture takes [s] at speed 1 and when slow: between these it never fell."""
+
+_MARGIN = 0.8
+_PEAK = 1.5
+_HALT = 0.4
+
+
+def duration(speed: float) -> float:
+    """How long a change of posture takes [s] at that fraction of the greatest speed."""
+    return min(MAX_TRANSITION_TIME, MIN_TRANSITION_TIME / speed)
+
+
+class JointTransition:
+    """All of `targets` together along a smoothstep, `seconds` long or as much longer as the slowest joint needs.
+
+    `after` is called once when it has arrived; a cancelled one halts on its way within 0.4 s.
+    """
+
+    def __init__(
+        self,
+        motors: Motors,
+        targets: Mapping[str, float],
+        now: float,
+        seconds: float,
+        after: Callable[[], None] | None = None,
+    ) -> None:
+        motors.check(targets)
+        self._motors, self._begin, self._after = motors, now, after
+        self._start = motors.wanted(targets)
+        self._way = {name: targets[name] - angle for name, angle in self._start.items()}
+        slowest = max((abs(d) / motors.envelope.speed[motors.index[n]] for n, d in self._way.items()), default=0.0)
+        self._seconds = max(seconds, float(slowest) * _PEAK / _MARGIN)
+        self._now = now
+        self._halt: tuple[float, float, float] | None = None
+
+    def advance(self, now: float) -> bool:
+        self._now = now
+        if self._halt:
+            return self._come_to_rest(now, *self._halt)
+        u = min(1.0, (now - self._begin) / self._seconds)
+        self._go(u * u * (3 - 2 * u))
+        if u >= 1.0 and self._after:
+            self._after()
+        return u >= 1.0
+
+    def cancel(self) -> None:
+        u = min(1.0, (self._now - self._begin) / self._seconds)
+        self._halt = self._now, u * u * (3 - 2 * u), 6 * u * (1 - u) / self._seconds
+
+    def _come_to_rest(self, now: float, since: float, done: float, rate: float) -> bool:
+        """Slow down evenly from `rate` [1/s], having gone the part `done` of the way."""
+        t = min(now - since, _HALT)
+        self._go(min(1.0, done + rate * t * (1 - t / (2 * _HALT))))
+        return t >= _HALT
+
+    def _go(self, part: float) -> None:
+        self._motors.aim({name: angle + part * self._way[name] for name, angle in self._start.items()})

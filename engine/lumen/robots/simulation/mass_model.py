@@ -1,0 +1,38 @@
+"""What the robot knows of its own weight: its published masses, whatever it carries today."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from lumen.errors import RobotError
+from lumen.language.robots import Body
+
+
+class MassModel:
+    """The robot's model without a world, to compute with: nothing of it moves or is seen."""
+
+    def __init__(self, body: Body, models: Path) -> None:
+        try:
+            spec = mujoco.MjSpec.from_file(str(models / body.mjcf))
+            spec.compiler.discardvisual = True
+            for name, link in body.links.items():
+                differs = spec.body(name)
+                differs.mass, differs.ipos, differs.fullinertia = link.mass, link.centre, link.inertia
+            self._model: mujoco.MjModel = spec.compile()
+        except ValueError as error:
+            raise RobotError(f"{body.mjcf} is not MJCF: {' '.join(str(error).split())}") from error
+        self._data = mujoco.MjData(self._model)
+        self._places = {name: self._model.joint(name).qposadr[0] for name in body.joints}
+        self._torso = self._model.body("Torso").id
+
+    def centre_of_mass(self, angles: Mapping[str, float]) -> NDArray[np.float64]:
+        """Where it is (3,) [m] in the torso's frame; joints that are not named [rad] stay as they were last."""
+        for name, angle in angles.items():
+            self._data.qpos[self._places[name]] = angle
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_comPos(self._model, self._data)
+        mass: NDArray[np.float64] = self._data.subtree_com[self._torso].copy()
+        return mass

@@ -1,0 +1,91 @@
+"""Where the robot believes its feet to be, from where it began: by its encoders, never by looking."""
+
+from collections.abc import Iterable, Mapping
+
+from lumen.errors import RobotError
+from lumen.interpreters.gait import Feet, Footstep, Pose, corners, foot_from, middle
+from lumen.interpreters.gait.poses import wrap
+from lumen.interpreters.postures import lies
+from lumen.language.projects import Stage
+
+_FEET = {"L": "left", "R": "right"}
+
+
+DRIFT_AFTER_SITTING, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_FALL = 0.1, 0.25, 0.6
+"""How far the robot may have moved when it stands again [m], after sitting, after lying on its back, and after lying on
+its belly or falling. Six robots of any weight on any floor were off by 0.05, 0.13 and 0.47 m at most."""
+
+
+class Odometry:
+    """Both soles in the frame of the robot's start. `stage`, in the same frame, bounds where they may go.
+
+    `doubt` is how far from there the robot may really be [m]: nothing tells it how it slid while it was down.
+    """
+
+    def __init__(self, stage: Stage | None) -> None:
+        self._stage = stage
+        self._down = False
+        self.doubt, self._before = 0.0, 0.0
+        self._here, self._heading = Pose(), 0.0
+        self.feet: Feet = {"L": Pose(), "R": Pose()}
+
+    def lose(self, posture: str) -> None:
+        """The robot is down, in that posture or on its way from it; or it has fallen, where that is empty."""
+        if not self._down:
+            self._down, self._before = True, self.doubt
+        self.doubt = max(self.doubt, self._before + drift_after(posture))
+
+    def keep(self, heading: float) -> None:
+        """The robot stands, heading there as the gyrometer feels it [rad]; what it has turned meanwhile counts."""
+        if self._down:
+            self._down, (x, y, theta) = False, self._here
+            self._here = Pose(x, y, wrap(theta + heading - self._heading))
+        self._heading = heading
+
+    def feel(self, angles: Mapping[str, float]) -> Feet:
+        """Both feet, standing as the legs' angles [rad] say; the point between them is where it was."""
+        seen: Feet = {"L": Pose(), "R": foot_from("L", angles)}
+        between = middle(seen)
+        self.feet = {side: self._here.then(foot.seen_from(between)) for side, foot in seen.items()}
+        return self.feet
+
+    def pass_by(self, feet: Feet) -> None:
+        """Believe that the robot has come there, on its way."""
+        self._here = middle(feet)
+
+    def land(self, feet: Feet) -> None:
+        """Believe that the feet stand there."""
+        self.feet, self._here = feet, middle(feet)
+
+    def check(self, steps: Iterable[Footstep], drift: float = 0.0) -> None:
+        """Raises RobotError for a step farther beyond the stage than `drift` [m], or than the feet stand already.
+
+        In doubt, the stage is that much smaller on every side: wherever the robot really is, it stays on it. A stage
+        with no room left for that keeps the robot where it is.
+        """
+        if self._stage is None:
+            return
+        stand = [corner for side, pose in self.feet.items() for corner in corners(Footstep(side, pose))]
+        for step in steps:
+            reached = corners(step)
+            for axis, (low, high), before, after in (
+                ("x", self._stage.x, [p.real for p in stand], [p.real for p in reached]),
+                ("y", self._stage.y, [p.imag for p in stand], [p.imag for p in reached]),
+            ):
+                least, most = low + self.doubt, high - self.doubt
+                if min(after) < min(least, *before) - drift or max(after) > max(most, *before) + drift:
+                    farthest = min(after) if min(after) < least else max(after)
+                    raise RobotError(
+                        f"the {_FEET[step.side]} foot {'might' if self.doubt else 'would'} leave the stage: "
+                        f"it would reach {axis} = {farthest:.2f} m, and the stage is {low:g} to {high:g} m{self._but()}"
+                    )
+
+    def _but(self) -> str:
+        return f"; the robot has been down since, and may be {self.doubt:g} m off" if self.doubt else ""
+
+
+def drift_after(posture: str) -> float:
+    """How far a robot that was in that posture may be from where it was [m]; empty is after a fall."""
+    if posture == "LyingBack":
+        return DRIFT_AFTER_LYING_BACK
+    return DRIFT_AFTER_SITTING if posture and not lies(posture) else DRIFT_AFTER_FALL

@@ -1,0 +1,163 @@
+"""From posture to posture along the ways that do not fall, down to the floor and up again."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import cos, pi
+from typing import Protocol
+
+from lumen.errors import RobotError
+from lumen.interpreters.postures import UPRIGHT, lies, passage, route
+from lumen.interpreters.trajectory import Trajectory
+from lumen.language.motions import MotionDefinition
+from lumen.language.robots import Body
+from lumen.robots.simulation.joint_transition import JointTransition, duration
+from lumen.robots.simulation.motors import Motors
+
+MAX_ATTEMPTS = 3
+"""How often a robot that ends on the floor tries again."""
+
+LYING_TILT = pi / 3
+"""A torso that leans farther than this lies [rad]; a relaxed one that sits leans half as far."""
+
+SETTLING_TIME, REST_TIME = 1.5, 0.4
+"""How long the joints take to the posture that a robot lies in, or sits in, before it moves on [s]; and to rest [s]."""
+
+
+class UprightSensor(Protocol):
+    """What the accelerometer tells of the torso: where up is, in its own axes (forward, left, up)."""
+
+    @property
+    def up(self) -> tuple[float, float, float]: ...
+
+
+@dataclass
+class PostureState:
+    """In which posture the robot is; between two of them, on which passage, and how far along it [s]."""
+
+    posture: str
+    passage: MotionDefinition | None = None
+    reached: float = 0.0
+
+    @property
+    def upright(self) -> bool:
+        """Whether it stands on both feet."""
+        return self.posture in UPRIGHT and self.passage is None
+
+
+def lying(feeling: UprightSensor) -> str:
+    """The posture on the floor that a robot is in or next to; empty where its torso does not lie."""
+    forward, _, up = feeling.up
+    if up > cos(LYING_TILT):
+        return ""
+    return "LyingBack" if forward > 0 else "LyingBelly"
+
+
+class PosturePlanner:
+    """The robot's way to the nearest of `goals`: each passage to its end, and after it a look whether it went well.
+
+    Where it did not, the robot lies; it begins again from there, `ATTEMPTS` times in all. A cancelled way halts where
+    it is, and the next one goes on from there. `settle` is for a robot whose joints may be anywhere. Raises RobotError
+    where no way leads to a goal.
+    """
+
+    def __init__(
+        self,
+        motors: Motors,
+        body: Body,
+        feeling: UprightSensor,
+        stance: PostureState,
+        goals: tuple[str, ...],
+        now: float,
+        *,
+        speed: float = 1.0,
+        settle: bool = False,
+        after: Callable[[], None] | None = None,
+    ) -> None:
+        self._motors, self._body, self._feeling, self._stance = motors, body, feeling, stance
+        self._goals, self._speed, self._after = goals, speed, after
+        self._left = MAX_ATTEMPTS
+        self._cancelled = False
+        self._step = self._settled(now) if settle else self._next(now)
+
+    @property
+    def passing(self) -> bool:
+        """Whether the robot is between two postures that no straight way connects."""
+        return isinstance(self._step, _Passing)
+
+    def advance(self, now: float) -> bool:
+        if self._step is not None and not self._step.advance(now):
+            return False
+        if self._cancelled:
+            self._step = None
+            return True
+        if self._step is not None:
+            self._step = self._next(now) if self._arrived() else self._settled(now)
+        if self._step is None and self._after:
+            self._after()
+        return self._step is None
+
+    def cancel(self) -> None:
+        if isinstance(self._step, _Passing):
+            self._stance.passage, self._stance.reached = self._step.motion, self._step.reached
+            self._step = None
+        elif self._step is not None:
+            self._step.cancel()
+        self._cancelled = True
+
+    def _arrived(self) -> bool:
+        """Take note of where the robot has come to, and whether that is where it was to come."""
+        step, stance = self._step, self._stance
+        stance.posture, stance.passage = step.end if step else stance.posture, None
+        down = lying(self._feeling)
+        if down == (stance.posture if lies(stance.posture) else ""):
+            return True
+        self._left -= 1
+        if not self._left or not down:
+            raise RobotError(f"the robot did not come to {stance.posture}" + (": it lies" if down else ""))
+        stance.posture = down
+        return False
+
+    def _next(self, now: float) -> "_Passing | _Straight | None":
+        stance = self._stance
+        if stance.passage:
+            return _Passing(self._motors, stance.passage, now, stance.reached)
+        path = route(self._body, stance.posture, *self._goals)
+        if path is None:
+            raise RobotError(f"no way leads from {stance.posture} to {' or '.join(self._goals)}")
+        if not path:
+            return None
+        motion = passage(self._body, stance.posture, path[0])
+        if motion:
+            return _Passing(self._motors, motion, now)
+        return _Straight(self._motors, self._body, path[0], now, duration(self._speed))
+
+    def _settled(self, now: float) -> "_Straight":
+        return _Straight(self._motors, self._body, self._stance.posture, now, SETTLING_TIME)
+
+
+class _Straight:
+    """All joints together to a posture."""
+
+    def __init__(self, motors: Motors, body: Body, end: str, now: float, seconds: float) -> None:
+        self.end = end
+        self._transition = JointTransition(motors, body.postures[end], now, seconds)
+
+    def advance(self, now: float) -> bool:
+        return self._transition.advance(now)
+
+    def cancel(self) -> None:
+        self._transition.cancel()
+
+
+class _Passing:
+    """Along a passage, from the time `reached` [s] of it; then it comes to rest."""
+
+    def __init__(self, motors: Motors, motion: MotionDefinition, now: float, reached: float = 0.0) -> None:
+        self.motion, self.end, self.reached = motion, motion.end, reached
+        self._motors, self._begin = motors, now - reached
+        self._trajectory = Trajectory(motion, motors.wanted(motion.tracks) if not reached else None)
+
+    def advance(self, now: float) -> bool:
+        self.reached = min(now - self._begin, self.motion.duration)
+        self._motors.aim(self._trajectory.sample(self.reached))
+        return now - self._begin >= self.motion.duration + REST_TIME

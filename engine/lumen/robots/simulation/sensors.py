@@ -1,0 +1,77 @@
+"""What the robot feels of itself: encoders and gyrometer, with their noise."""
+
+from math import atan2, hypot
+
+import mujoco
+import numpy as np
+
+from lumen.interpreters.gait.poses import wrap
+from lumen.robots.simulation.joint_envelope import JointVector
+from lumen.robots.simulation.world import CONTROL_PERIOD, World
+
+ENCODER_NOISE, GYRO_NOISE = 0.0017, 0.03
+"""Standard deviations of an encoder [rad], whose step is 0.1 degrees, and of the gyrometer [rad/s]; at noise 1."""
+
+
+class BodySensors:
+    """Reads joint angles and turning speeds as the robot's own computer would; the same seed gives the same noise.
+
+    `gyro` is how fast the torso rolls to the right and pitches forward [rad/s], `turning` how fast it turns left,
+    `heading` how far it has turned there since the start [rad], all as felt last. It is right again to 3 degrees when
+    the robot stands after it was down: the attitude follows the gyrometer, and where up is keeps it level.
+    """
+
+    def __init__(self, world: World, noise: float = 0.0, seed: int = 0) -> None:
+        self._world, self._level = world, noise
+        self._random = np.random.default_rng(seed)
+        self.gyro, self.turning = (0.0, 0.0), 0.0
+        self.heading = 0.0
+        self._attitude, self._axes, self._rates = np.array([1.0, 0.0, 0.0, 0.0]), np.eye(3).ravel(), np.zeros(3)
+
+    @property
+    def up(self) -> tuple[float, float, float]:
+        """Where up is, in the torso's axes (forward, left, up), as the inertial unit tells."""
+        return self._world.up
+
+    @property
+    def inertial(self) -> dict[str, float]:
+        """The inertial unit as NAOqi names it: angles [rad], speeds [rad/s], accelerations [m/s^2] in the torso's axes.
+
+        X is forward, Y left, Z up; AngleX is roll, AngleY pitch, AngleZ how far the robot has turned since the start.
+        At rest the accelerometer feels the floor push upwards: Z is 9.81.
+        """
+        forward, left, up = self._world.up
+        turning, pushed = (self.gyro[0], self.gyro[1], self.turning), self._world.acceleration
+        angles = atan2(left, up), atan2(-forward, hypot(left, up)), self.heading
+        values = zip(("Angle", "Gyroscope", "Accelerometer"), (angles, turning, pushed), strict=True)
+        return {f"{kind}{axis}": round(v, 4) for kind, three in values for axis, v in zip("XYZ", three, strict=True)}
+
+    @property
+    def angles(self) -> JointVector:
+        """Where the encoders say the joints are."""
+        measured = self._world.angles
+        return (
+            measured + self._random.normal(0, self._level * ENCODER_NOISE, measured.shape) if self._level else measured
+        )
+
+    def feel(self) -> None:
+        """Read the gyrometer, once in each control period."""
+        roll, pitch, yaw = self._world.gyro
+        if self._level:
+            errors = self._random.normal(0, self._level * GYRO_NOISE, 3).tolist()
+            roll, pitch, yaw = roll + errors[0], pitch + errors[1], yaw + errors[2]
+        self.gyro, self.turning = (roll, pitch), yaw
+        self._turn(roll, pitch, yaw)
+
+    def _turn(self, roll: float, pitch: float, yaw: float) -> None:
+        """Turn the believed attitude as fast as the gyrometer says, and about level axes to where up is felt."""
+        axes, (x, y, z) = self._axes, self._world.up
+        _, _, _, _, _, _, u, v, w = axes.tolist()
+        self._rates[:] = (
+            roll + (y * w - z * v) / CONTROL_PERIOD,
+            pitch + (z * u - x * w) / CONTROL_PERIOD,
+            yaw + (x * v - y * u) / CONTROL_PERIOD,
+        )
+        mujoco.mju_quatIntegrate(self._attitude, self._rates, CONTROL_PERIOD)
+        mujoco.mju_quat2Mat(axes, self._attitude)
+        self.heading += wrap(atan2(axes[3], axes[0]) - self.heading)

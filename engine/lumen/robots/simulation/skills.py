@@ -1,0 +1,185 @@
+"""What the simulated NAO can do: each command's parts of the body, and how it begins."""
+
+from collections.abc import Callable
+from math import pi
+from typing import assert_never
+
+from lumen.errors import RobotError
+from lumen.interpreters.postures import RESTFUL, UPRIGHT
+from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.diagnostics import did_you_mean
+from lumen.ports import Aim, Perform, Record, RobotCommand
+from lumen.robots.body_parts import part_of, parts
+from lumen.robots.cues import EventSink
+from lumen.robots.executor import Activity
+from lumen.robots.silent_recording import SilentRecording
+from lumen.robots.simulation.joint_transition import JointTransition
+from lumen.robots.simulation.lights import Lights
+from lumen.robots.simulation.motors import Motors
+from lumen.robots.simulation.playback import MotionPlayback, SpeechActivity
+from lumen.robots.simulation.posture_planner import PosturePlanner, PostureState, lying
+from lumen.robots.simulation.sensors import BodySensors
+from lumen.robots.simulation.speech_playback import SilentPlayback, SpeechPlayback
+from lumen.robots.simulation.walking import WalkController
+from lumen.robots.simulation.world import World
+
+FALLEN_STIFFNESS = 0.1
+"""Stiffness of a robot that has fallen."""
+
+_LOOK_SPEED = 1.5
+_REST_SPEED, _WAKE_SPEED = 0.3, 0.4
+_UPRIGHT = pi / 9
+
+
+class SimulatedSkills:
+    """Begins activities; knows whether the motors are on, in which posture the robot is and whether it has fallen.
+
+    `notice` is told of what a motion says and sounds; `playing` is the motion begun last.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        motors: Motors,
+        lights: Lights,
+        walker: WalkController,
+        instruments: BodySensors,
+        posture: str,
+        notice: EventSink,
+    ) -> None:
+        self._world, self._motors, self._lights, self._walker = world, motors, lights, walker
+        self._instruments, self._notice = instruments, notice
+        self._postures = world.body.postures
+        self._part = part_of(world.body)
+        self._stance = PostureState(posture)
+        self._way: PosturePlanner | None = None
+        self.playing: MotionPlayback | None = None
+        self.awake, self.fallen = True, False
+        self.voice: SpeechPlayback = SilentPlayback()
+
+    @property
+    def upright(self) -> bool:
+        """Whether the robot is on both feet, and means to stay there."""
+        return self._stance.upright and not (self._way and self._way.passing)
+
+    @property
+    def posture(self) -> str:
+        """The posture that the robot is in, or on its way from."""
+        return self._stance.posture
+
+    def parts(self, command: RobotCommand) -> frozenset[str]:
+        """Which parts of the body a command owns."""
+        return parts(command, self._world.body)
+
+    def part(self, joint: str) -> str:
+        """The part of the body that a joint belongs to."""
+        return self._part.get(joint, "")
+
+    def begin(self, command: RobotCommand, now: float) -> Activity:
+        """The command under way. Raises RobotError where the robot can't."""
+        if not isinstance(command, Say | Record | Rest | Wake | Posture):
+            self._ready()
+        match command:
+            case Say(text, language):
+                return SpeechActivity(self._lights, self.voice, text, language, now)
+            case Record(_, duration):
+                return SilentRecording(command, now + duration, self._notice)
+            case Perform():
+                return self._perform(command, now)
+            case Posture(name, speed):
+                return self._posture(name, speed, now)
+            case Look(yaw, pitch):
+                return self._look(yaw, pitch, now)
+            case Rest():
+                return self._rest(now)
+            case Wake():
+                return self._wake(now)
+            case Walk() | Move():
+                if not self.upright:
+                    raise RobotError(f"the robot is in {self._stance.posture}: send it to Stand first")
+                return (
+                    self._walker.begin(command, now) if isinstance(command, Walk) else self._walker.move(command, now)
+                )
+            case Stop() | Aim():
+                raise RobotError(f"{type(command).__name__} does not last")
+            case _:
+                assert_never(command)
+
+    def fall(self) -> None:
+        """Give way: the fall is over sooner than a motor could help."""
+        self.fallen, self._way = True, None
+        self._motors.stiffen(FALLEN_STIFFNESS)
+        self._lights.reset()
+
+    def _ready(self) -> None:
+        if self.fallen:
+            raise RobotError("the robot has fallen: `wake` it first")
+        if not self.awake:
+            raise RobotError("the motors are off: `wake` first")
+
+    def _perform(self, command: Perform, now: float) -> Activity:
+        motion, owned = command.motion, self.parts(command)
+        start = self._postures.get(motion.start, {})
+        home = {name: angle for name, angle in start.items() if self._part[name] in owned}
+        here = self._stance.posture
+        if motion.start and motion.start != here and not (self.upright and motion.start in UPRIGHT):
+            raise RobotError(f"`{motion.name}` begins in {motion.start}; the robot is in {here}: send it there first")
+        self.playing = MotionPlayback(self._motors, self._lights, motion, home, now, self._notice)
+        return self.playing
+
+    def _posture(self, name: str, speed: float, now: float) -> Activity:
+        if not 0 < speed <= 1:
+            raise RobotError(f"a speed lies above 0 and up to 1, not at {speed}")
+        if name not in self._postures:
+            raise RobotError(f"no posture `{name}`: {did_you_mean(name, self._postures, 'it knows')}")
+        if not self.awake and not self.fallen:
+            raise RobotError("the motors are off: `wake` first")
+        return self._go((name,), now, speed)
+
+    def _go(
+        self, goals: tuple[str, ...], now: float, speed: float, after: Callable[[], None] | None = None
+    ) -> PosturePlanner:
+        """The way to one of these postures; a robot that has fallen, or was limp, begins with where it lies or sits."""
+        limp, down = self.fallen or not self.awake, lying(self._instruments)
+        if limp and down:
+            self._stance = PostureState(down)
+        elif self.fallen:
+            if self._world.tilt > _UPRIGHT:
+                raise RobotError("the robot has fallen, but does not lie: put it on its feet first")
+            self._stance = PostureState(UPRIGHT[0])
+        if limp:
+            self._motors.stiffen(1.0)
+            self.awake, self.fallen = True, False
+        self._way = PosturePlanner(
+            self._motors,
+            self._world.body,
+            self._instruments,
+            self._stance,
+            goals,
+            now,
+            speed=speed,
+            settle=limp and not self._stance.upright,
+            after=after,
+        )
+        return self._way
+
+    def _look(self, yaw: float, pitch: float, now: float) -> Activity:
+        self._motors.check({"HeadYaw": yaw, "HeadPitch": pitch})
+        target = {n: self._motors.inside(n, a) for n, a in (("HeadYaw", yaw), ("HeadPitch", pitch))}
+        wanted = self._motors.wanted(target)
+        farthest = max(abs(target[name] - wanted[name]) for name in target)
+        return JointTransition(self._motors, target, now, max(0.3, farthest / _LOOK_SPEED))
+
+    def _rest(self, now: float) -> Activity:
+        if self.fallen or not self.awake:
+            self._sleep()
+            return JointTransition(self._motors, {}, now, 0.01)
+        return self._go(RESTFUL, now, _REST_SPEED, self._sleep)
+
+    def _wake(self, now: float) -> Activity:
+        return self._go(("Stand",), now, _WAKE_SPEED)
+
+    def _sleep(self) -> None:
+        self.awake = False
+        self._motors.stiffen(0.0)
+        self._lights.reset()

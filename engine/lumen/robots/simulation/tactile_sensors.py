@@ -1,0 +1,40 @@
+"""The tactile sensors: what stands in the hall presses those that it touches."""
+
+from collections.abc import Iterable
+
+import mujoco
+import numpy as np
+
+from lumen.robots.simulation.model import ROBOT
+
+_SOLID = 2
+"""The collision type of what stands in a hall and is not its ground."""
+
+
+class TactileSensors:
+    """Looks at the contacts of the robot with what stands in the hall.
+
+    A sensor is the box that the model's site of its name spans; those of `sensors` without a site feel nothing.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, sensors: Iterable[str]) -> None:
+        self._model, self._data = model, data
+        self._solid = set(np.flatnonzero(model.geom_contype == _SOLID).tolist())
+        sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{ROBOT}/{name}") for name in sensors}
+        self._sites = {name: site for name, site in sites.items() if site >= 0}
+
+    def pressed(self) -> set[str]:
+        """Those that are pressed now."""
+        touching = self._data.contact.geom
+        if self._solid.isdisjoint(touching.ravel().tolist()):
+            return set()
+        at = [(i, pair) for i, pair in enumerate(touching.tolist()) if not self._solid.isdisjoint(pair)]
+        return {name for i, pair in at for name, site in self._sites.items() if self._in(site, i, pair)}
+
+    def _in(self, site: int, contact: int, pair: list[int]) -> bool:
+        """Whether a contact of the site's body is inside of the site's box."""
+        if self._model.site_bodyid[site] not in self._model.geom_bodyid[pair]:
+            return False
+        away = self._data.contact.pos[contact] - self._data.site_xpos[site]
+        inside = np.abs(away @ self._data.site_xmat[site].reshape(3, 3)) <= self._model.site_size[site]
+        return bool(inside.all())
