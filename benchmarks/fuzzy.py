@@ -69,7 +69,7 @@ def fuzzylite(head: Controller, points: int) -> One:
     """pyfuzzylite, from our own export."""
     import fuzzylite as fl
 
-    from lumen.formats.findings import dotted
+    from lumen.formats.conversion_findings import dotted
     from lumen.formats.fll import write_fll
 
     text = write_fll(head, dotted("head"))[0].replace("Centroid 1000", f"Centroid {points}")

@@ -26,7 +26,7 @@ from tests.fuzzy.nao import TOP  # noqa: E402
 from tests.fuzzy.test_physics import cases, within_reach  # noqa: E402
 
 import lumen  # noqa: E402
-from lumen.formats.plots import Axis, Line, Mark, Panel, Sheet, draw  # noqa: E402
+from lumen.formats.plots import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet, draw  # noqa: E402
 from lumen.interpreters.projection import Vector3, centring  # noqa: E402
 from lumen.language.projects import Project  # noqa: E402
 from lumen.language.stories import Visitor  # noqa: E402
@@ -83,7 +83,7 @@ def anybody(project: Project, count: int) -> str:
     return f"{count} visitors: overshoot {beyond:.1f} %, settled {settled:.2f} s, rest {rest:.2f} deg at worst"
 
 
-def sheet(found: dict[tuple[str, float, float], Run]) -> Sheet:
+def sheet(found: dict[tuple[str, float, float], Run]) -> PlotSheet:
     """A panel for each loop and axis: how far beside the face the head looks, by time, a line for each latency."""
     panels = []
     for (loop, tick), (axis, name) in product((("kinematic", 0.1), ("physics", 0.1)), enumerate(("yaw", "pitch"))):
@@ -91,11 +91,11 @@ def sheet(found: dict[tuple[str, float, float], Run]) -> Sheet:
         for style, latency in enumerate(LATENCIES):
             poses = found[loop, latency, tick].poses
             points = tuple(degrees(pose[1 + axis]) for pose in poses)
-            lines.append(Line(tuple(pose[0] for pose in poses), points, f"{1000 * latency:.0f} ms late", style))
-        marks = (Mark(0.5, level=True), Mark(-0.5, level=True))
-        y = Axis("beside the face [deg]")
-        panels.append(Panel(f"{name}, {loop}", Axis("time [s]", 0.0, DURATION), y, tuple(lines), marks))
-    return Sheet("The head turns to a face, an image every 100 ms", tuple(panels), 2, "Level lines: 0.5 deg.")
+            lines.append(PlotLine(tuple(pose[0] for pose in poses), points, f"{1000 * latency:.0f} ms late", style))
+        marks = (PlotMark(0.5, level=True), PlotMark(-0.5, level=True))
+        y = PlotAxis("beside the face [deg]")
+        panels.append(PlotPanel(f"{name}, {loop}", PlotAxis("time [s]", 0.0, DURATION), y, tuple(lines), marks))
+    return PlotSheet("The head turns to a face, an image every 100 ms", tuple(panels), 2, "Level lines: 0.5 deg.")
 
 
 def main() -> None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lumen.formats.findings import ForeignFileError
+from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.scxml import read_scxml
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.loading.source import parse

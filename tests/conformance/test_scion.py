@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from lumen.formats.findings import dotted
+from lumen.formats.conversion_findings import dotted
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.xstate import read_xstate, write_xstate
 from lumen.statechart import Machine

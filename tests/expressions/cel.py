@@ -9,8 +9,8 @@ from cel_expr_python import cel
 from cel_expr_python.ext import ext_strings
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions import Node, Scope, compile_expression, unparse
-from lumen.interpreters.expressions.tree import Binary, Call, Field, Span, children
+from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, unparse
+from lumen.interpreters.expressions.tree import Binary, FieldAccess, FunctionCall, SourceSpan, children
 
 ENVIRONMENT = cel.NewEnv(
     variables=dict.fromkeys(("context", "event", "state"), cel.Type.DYN), extensions=[ext_strings.ExtStrings()]
@@ -46,11 +46,11 @@ def by_cel(source: str, scope: Scope) -> Outcome:
 def in_cel(part: Any) -> Any:
     """A tree, or a part of one, with CEL's methods in place of our functions."""
     match part:
-        case Call(function=function, arguments=arguments) if function in METHODS:
-            return Call(f".{METHODS[function]}", in_cel(arguments))
+        case FunctionCall(function=function, arguments=arguments) if function in METHODS:
+            return FunctionCall(f".{METHODS[function]}", in_cel(arguments))
         case tuple():
             return tuple(map(in_cel, part))
-        case Span():
+        case SourceSpan():
             return type(part)(*(in_cel(getattr(part, name)) for name in type(part).__match_args__))
     return part
 
@@ -69,7 +69,7 @@ def _ordered(value: Any) -> Any:
     return value
 
 
-def compare(node: Node, scope: Scope) -> bool:
+def compare(node: ExpressionNode, scope: Scope) -> bool:
     """Whether the expression has the same outcome in both.
 
     AssertionError where it has not, though all its parts have, and it is not in the table of docs/expressions.md.
@@ -82,7 +82,7 @@ def compare(node: Node, scope: Scope) -> bool:
     return False
 
 
-def is_meant(node: Node, scope: Scope, ours: Outcome, theirs: Outcome) -> bool:
+def is_meant(node: ExpressionNode, scope: Scope, ours: Outcome, theirs: Outcome) -> bool:
     """Whether this one step from the values of its parts is among the differences that the table promises."""
     values = [by_lumen(unparse(child), scope)[1:] for child in children(node)]
     flat = [leaf for value in values for leaf in leaves(list(value))]
@@ -98,10 +98,10 @@ def is_meant(node: Node, scope: Scope, ours: Outcome, theirs: Outcome) -> bool:
             return kinds >= {int, float} and any(type(v) is int and abs(v) > 2**53 for v in flat)
         case Binary(sign="in") if isinstance(values[1][0], Mapping) and not isinstance(values[0][0], str):
             return theirs == ("error",) and ours == ("value", False)
-        case Call(function="has", arguments=(Field(base=base),)):
+        case FunctionCall(function="has", arguments=(FieldAccess(base=base),)):
             found = by_lumen(unparse(base), scope)
             return theirs == ("error",) and ours == ("value", False) and not isinstance(found[-1], Mapping)
-        case Call(function="lower"):
+        case FunctionCall(function="lower"):
             return not flat[0].isascii()
     return False
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 
-from lumen.interpreters.expressions import Node, Scope
+from lumen.interpreters.expressions import ExpressionNode, Scope
 from tests.expressions.cel import Outcome, by_cel, by_lumen, compare, same
 from tests.expressions.typed import expressions, scopes
 
@@ -100,7 +100,7 @@ def test_the_table_has_these_rows() -> None:
 @seed(2015)
 @settings(BUSY, max_examples=300)
 @given(expressions(), scopes)
-def test_three_hundred_expressions(tree: Node, scope: Scope) -> None:
+def test_three_hundred_expressions(tree: ExpressionNode, scope: Scope) -> None:
     compare(tree, scope)
 
 
@@ -137,7 +137,7 @@ def test_twenty_thousand_expressions() -> None:
         @seed(thousand)
         @settings(BUSY, max_examples=1_000)
         @given(expressions(), scopes, flat())
-        def everything(tree: Node, scope: Scope, row: str) -> None:
+        def everything(tree: ExpressionNode, scope: Scope, row: str) -> None:
             tally["expressions"] += 1
             tally["the same" if compare(tree, scope) else "different on purpose"] += 1
             assert same(by_lumen(row, SCOPE), readable(row))

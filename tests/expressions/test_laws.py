@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from lumen.interpreters.expressions import (
     ExpressionError,
-    Node,
+    ExpressionNode,
     Scope,
     check_expression,
     check_template,
@@ -22,15 +22,15 @@ from lumen.interpreters.expressions import (
 from lumen.interpreters.expressions.functions import FUNCTIONS
 from lumen.interpreters.expressions.tree import (
     Binary,
-    Call,
-    Choice,
-    Entries,
-    Field,
-    Index,
-    Items,
+    Conditional,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    IndexAccess,
+    ListLiteral,
     Literal,
     Logic,
-    Name,
+    MapLiteral,
     Unary,
 )
 from tests.expressions.scopes import SCOPE
@@ -45,12 +45,12 @@ LITERALS = st.one_of(
     st.none(), st.booleans(), st.integers(-(2**63), 2**63 - 1), st.integers(-3, 3), st.text(max_size=5),
     st.floats(allow_nan=False, allow_infinity=False),
 ).map(Literal)  # fmt: skip
-ROOTS = st.sampled_from(["context", "event", "state"]).map(Name)
-PATHS = st.recursive(ROOTS, lambda base: st.builds(Field, base, WORDS), max_leaves=4)
+ROOTS = st.sampled_from(["context", "event", "state"]).map(Identifier)
+PATHS = st.recursive(ROOTS, lambda base: st.builds(FieldAccess, base, WORDS), max_leaves=4)
 SIGNS = st.sampled_from(["==", "!=", "<", "<=", ">", ">=", "in", "+", "-", "*", "/", "%"])
 
 
-def _minus(operand: Node) -> bool:
+def _minus(operand: ExpressionNode) -> bool:
     """`-` before a number is read as a part of it, so that the tree of it can't come from a text."""
     return not (isinstance(operand, Literal) and type(operand.value) in (int, float))
 
@@ -64,15 +64,15 @@ def _larger(nodes: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
     )
     unary = st.builds(Unary, st.just("!"), nodes) | st.builds(Unary, st.just("-"), nodes.filter(_minus))
     return st.one_of(
-        st.builds(Field, nodes, WORDS),
-        st.builds(Index, nodes, nodes),
-        st.lists(nodes, max_size=3).map(tuple).map(Items),
-        entries.map(lambda e: Entries(*e)),
+        st.builds(FieldAccess, nodes, WORDS),
+        st.builds(IndexAccess, nodes, nodes),
+        st.lists(nodes, max_size=3).map(tuple).map(ListLiteral),
+        entries.map(lambda e: MapLiteral(*e)),
         unary,
         st.builds(Binary, SIGNS, nodes, nodes),
         st.builds(Logic, st.sampled_from(["&&", "||"]), several),
-        st.builds(Choice, nodes, nodes, nodes),
-        calls.map(lambda c: Call(*c)),
+        st.builds(Conditional, nodes, nodes, nodes),
+        calls.map(lambda c: FunctionCall(*c)),
     )
 
 
@@ -100,10 +100,10 @@ def attempt(source: str, action: Callable[[], Any]) -> Any:
 @PATIENT
 @given(TREES)
 @example(Literal("\x7f\u2028\"'\\\n"))
-@example(Field(Literal(-1), "a"))
-@example(Unary("-", Field(Literal(1), "a")))
+@example(FieldAccess(Literal(-1), "a"))
+@example(Unary("-", FieldAccess(Literal(1), "a")))
 @example(Logic("&&", (Logic("&&", (Literal(True), Literal(False))), Literal(True))))
-def test_printed_and_parsed_it_is_the_same_tree(tree: Node) -> None:
+def test_printed_and_parsed_it_is_the_same_tree(tree: ExpressionNode) -> None:
     assert repr_without_places(parse_expression(unparse(tree))) == repr_without_places(tree)
 
 
@@ -120,9 +120,9 @@ def repr_without_places(tree: Any) -> Any:
 @PATIENT
 @given(TREES)
 @example(Binary("==", Literal(1), Literal(None)))
-@example(Field(Items((Literal(1),)), "a"))
-@example(Index(Literal("a"), Literal("a")))
-def test_evaluation_gives_a_value_or_an_expression_error(tree: Node) -> None:
+@example(FieldAccess(ListLiteral((Literal(1),)), "a"))
+@example(IndexAccess(Literal("a"), Literal("a")))
+def test_evaluation_gives_a_value_or_an_expression_error(tree: ExpressionNode) -> None:
     run(unparse(tree), SCOPE)
     run(unparse(tree), Scope())
     check_expression(unparse(tree), context={"n": {"type": "integer"}, "map": {"type": "object"}}, events={"heard": {}})
@@ -130,7 +130,7 @@ def test_evaluation_gives_a_value_or_an_expression_error(tree: Node) -> None:
 
 @PATIENT
 @given(TREES)
-def test_evaluation_is_pure(tree: Node) -> None:
+def test_evaluation_is_pure(tree: ExpressionNode) -> None:
     before = repr(SCOPE)
     first = run(unparse(tree), SCOPE)
     assert repr(run(unparse(tree), SCOPE)) == repr(first)
@@ -139,7 +139,7 @@ def test_evaluation_is_pure(tree: Node) -> None:
 
 @PATIENT
 @given(TREES)
-def test_what_is_found_wrong_has_no_value(tree: Node) -> None:
+def test_what_is_found_wrong_has_no_value(tree: ExpressionNode) -> None:
     """A type mismatch at the top that lint is sure of is an error at run time, or a comparison decided before."""
     source = unparse(Binary("-", tree, Literal(1)))
     found = check_expression(source, context=None)
@@ -149,8 +149,8 @@ def test_what_is_found_wrong_has_no_value(tree: Node) -> None:
 
 @PATIENT
 @given(st.lists(TREES, min_size=2, max_size=4))
-def test_the_order_of_a_conjunction_does_not_matter(trees: list[Node]) -> None:
-    def decided(operands: list[Node]) -> Any:
+def test_the_order_of_a_conjunction_does_not_matter(trees: list[ExpressionNode]) -> None:
+    def decided(operands: list[ExpressionNode]) -> Any:
         return run(unparse(Logic("&&", tuple(operands))), SCOPE)
 
     assert decided(trees) is decided(trees[::-1])

@@ -4,18 +4,18 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from lumen.interpreters.expressions import Node, Scope
+from lumen.interpreters.expressions import ExpressionNode, Scope
 from lumen.interpreters.expressions.tree import (
     Binary,
-    Call,
-    Choice,
-    Entries,
-    Field,
-    Index,
-    Items,
+    Conditional,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    IndexAccess,
+    ListLiteral,
     Literal,
     Logic,
-    Name,
+    MapLiteral,
     Unary,
 )
 
@@ -52,7 +52,7 @@ LETTERS = {"number": "n", "text": "t", "boolean": "b", "list": "l", "map": "m"}
 
 
 @st.composite
-def expressions(draw: st.DrawFn, depth: int = 4) -> Node:
+def expressions(draw: st.DrawFn, depth: int = 4) -> ExpressionNode:
     return Writer(draw).any(depth)
 
 
@@ -65,10 +65,10 @@ class Writer:
     def pick(self, *options: Any) -> Any:
         return self.draw(st.sampled_from(options))
 
-    def any(self, depth: int) -> Node:
+    def any(self, depth: int) -> ExpressionNode:
         return self.of(self.pick(*KINDS), depth)
 
-    def of(self, kind: str, depth: int) -> Node:
+    def of(self, kind: str, depth: int) -> ExpressionNode:
         """An expression of that kind; one in twelve is of any kind, or of none known."""
         stray = self.draw(st.integers(0, 11)) == 11
         if stray:
@@ -76,13 +76,13 @@ class Writer:
         if depth == 0 or self.draw(st.integers(0, 4)) == 4:
             return self.leaf(kind)
         if self.draw(st.integers(0, 7)) == 7:
-            return Choice(self.of("boolean", depth - 1), self.of(kind, depth - 1), self.of(kind, depth - 1))
-        written: Node = getattr(self, kind)(depth - 1)
+            return Conditional(self.of("boolean", depth - 1), self.of(kind, depth - 1), self.of(kind, depth - 1))
+        written: ExpressionNode = getattr(self, kind)(depth - 1)
         return written
 
-    def leaf(self, kind: str) -> Node:
+    def leaf(self, kind: str) -> ExpressionNode:
         if self.draw(st.booleans()):
-            return Field(Name("context"), LETTERS[kind])
+            return FieldAccess(Identifier("context"), LETTERS[kind])
         match kind:
             case "number":
                 return Literal(self.draw(NUMBERS))
@@ -91,37 +91,37 @@ class Writer:
             case "boolean":
                 return Literal(self.draw(st.booleans()))
             case "list":
-                return Items(tuple(Literal(value) for value in self.draw(st.lists(SCALARS, max_size=3))))
+                return ListLiteral(tuple(Literal(value) for value in self.draw(st.lists(SCALARS, max_size=3))))
         values = self.draw(st.dictionaries(st.sampled_from("abc"), SCALARS, max_size=3))
-        return Entries(tuple(values), tuple(map(Literal, values.values())))
+        return MapLiteral(tuple(values), tuple(map(Literal, values.values())))
 
-    def path(self) -> Node:
+    def path(self) -> ExpressionNode:
         """A path that may lead nowhere."""
-        node: Node = Field(Name("context"), self.pick("any", "m", "l", "n", "none"))
+        node: ExpressionNode = FieldAccess(Identifier("context"), self.pick("any", "m", "l", "n", "none"))
         if self.draw(st.booleans()):
-            node = Field(Name("event"), "data")
+            node = FieldAccess(Identifier("event"), "data")
         for _ in range(self.draw(st.integers(0, 2))):
-            node = Field(node, self.pick("a", "b", "c"))
+            node = FieldAccess(node, self.pick("a", "b", "c"))
         return node
 
-    def number(self, depth: int) -> Node:
+    def number(self, depth: int) -> ExpressionNode:
         match self.draw(st.integers(0, 5)):
             case 0:
-                return Call("size", (self.of(self.pick("text", "list", "map"), depth),))
+                return FunctionCall("size", (self.of(self.pick("text", "list", "map"), depth),))
             case 1:
                 operand = self.of("number", depth)
                 return operand if isinstance(operand, Literal) else Unary("-", operand)
         return Binary(self.pick("+", "-", "*", "/", "%"), self.of("number", depth), self.of("number", depth))
 
-    def text(self, depth: int) -> Node:
+    def text(self, depth: int) -> ExpressionNode:
         match self.draw(st.integers(0, 3)):
             case 0:
-                return Call(self.pick("lower", "trim"), (self.of("text", depth),))
+                return FunctionCall(self.pick("lower", "trim"), (self.of("text", depth),))
             case 1:
-                return Call("replace", tuple(self.of("text", depth) for _ in range(3)))
+                return FunctionCall("replace", tuple(self.of("text", depth) for _ in range(3)))
         return Binary("+", self.of("text", depth), self.of("text", depth))
 
-    def boolean(self, depth: int) -> Node:
+    def boolean(self, depth: int) -> ExpressionNode:
         match self.draw(st.integers(0, 7)):
             case 0 | 1:
                 operands = [self.of("boolean", depth) for _ in range(self.draw(st.integers(2, 3)))]
@@ -133,29 +133,29 @@ class Writer:
             case 4:
                 return Binary(self.pick("==", "!="), self.any(depth), self.any(depth))
             case 5:
-                return Call("contains", (self.of("text", depth), self.of("text", depth)))
+                return FunctionCall("contains", (self.of("text", depth), self.of("text", depth)))
             case 6:
                 path = self.path()
-                asked = self.draw(st.booleans()) and isinstance(path, Field)
+                asked = self.draw(st.booleans()) and isinstance(path, FieldAccess)
                 return (
-                    Call("has", (path,))
+                    FunctionCall("has", (path,))
                     if asked
-                    else Call("matches", (self.of("text", depth), Literal(self.pick(*PATTERNS))))
+                    else FunctionCall("matches", (self.of("text", depth), Literal(self.pick(*PATTERNS))))
                 )
         kind = self.pick("number", "text", "boolean")
         return Binary(self.pick("==", "!=", "<", "<=", ">", ">="), self.of(kind, depth), self.of(kind, depth))
 
-    def list(self, depth: int) -> Node:
+    def list(self, depth: int) -> ExpressionNode:
         if self.draw(st.booleans()):
             return Binary("+", self.of("list", depth), self.of("list", depth))
-        return Items(tuple(self.any(depth) for _ in range(self.draw(st.integers(0, 3)))))
+        return ListLiteral(tuple(self.any(depth) for _ in range(self.draw(st.integers(0, 3)))))
 
-    def map(self, depth: int) -> Node:
+    def map(self, depth: int) -> ExpressionNode:
         keys = self.draw(st.lists(st.sampled_from("abc"), unique=True, max_size=3))
-        entries = Entries(tuple(keys), tuple(self.any(depth) for _ in keys))
+        entries = MapLiteral(tuple(keys), tuple(self.any(depth) for _ in keys))
         match self.draw(st.integers(0, 3)):
             case 0:
-                return Index(self.of("list", depth), self.of("number", depth))
+                return IndexAccess(self.of("list", depth), self.of("number", depth))
             case 1:
-                return Index(self.of("map", depth), Literal(self.pick("a", "b", "c")))
+                return IndexAccess(self.of("map", depth), Literal(self.pick("a", "b", "c")))
         return entries

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.cli.main import main
+from lumen.formats.conversion_findings import ForeignFileError, dotted
 from lumen.formats.fcl import read_fcl
-from lumen.formats.findings import ForeignFileError, dotted
 from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll, write_fll
-from lumen.formats.fll.formulas import Trouble, read_formula, write_formula
+from lumen.formats.fll.infix_formulas import Trouble, read_formula, write_formula
 from lumen.fuzzy import Controller
 from lumen.interpreters.inference.arithmetic import NUMBERS
 from lumen.interpreters.inference.formulas import formula

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 import lumen
 from lumen.cli.main import main
-from lumen.formats.document import document_yaml
-from lumen.formats.findings import ForeignFileError
+from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.gestures import read_gesture
+from lumen.formats.yaml_document import document_yaml
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.motions import MotionDefinition

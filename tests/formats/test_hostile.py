@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import ProjectError
-from lumen.formats.findings import ForeignFileError
+from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.scxml import read_scxml
 from lumen.formats.xstate import read_xstate
 from lumen.language.diagnostics import has_errors

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from lumen.formats.document import document_yaml
+from lumen.formats.conversion_findings import ForeignFileError, dotted
 from lumen.formats.dot import dot
-from lumen.formats.findings import ForeignFileError, dotted
 from lumen.formats.mermaid import mermaid
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.xstate import read_xstate, write_xstate
+from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import has_errors
 from lumen.statechart import Machine
 

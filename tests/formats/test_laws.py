@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from lumen.formats.document import document_yaml
-from lumen.formats.findings import dotted
+from lumen.formats.conversion_findings import dotted
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.xstate import read_xstate, write_xstate
+from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import has_errors
 from lumen.loading.source import parse
 from lumen.statechart import Machine

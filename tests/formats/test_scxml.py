@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from lumen.formats.findings import dotted
+from lumen.formats.conversion_findings import dotted
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.statechart import Machine
 

@@ -8,9 +8,9 @@ from typing import Any
 
 from hypothesis import given, settings
 
-from lumen.formats.findings import dotted
+from lumen.formats.conversion_findings import dotted
 from lumen.formats.scxml import write_scxml
-from lumen.formats.scxml.elements import SCXML
+from lumen.formats.scxml.xml_elements import SCXML_NAMESPACE
 from lumen.statechart import Machine
 from tests.formats.making import charts
 
@@ -45,7 +45,9 @@ def faults(text: str) -> list[str]:
 
 
 def _name(element: ET.Element) -> str:
-    return element.tag.removeprefix(f"{{{SCXML}}}") if element.tag.startswith(f"{{{SCXML}}}") else ""
+    return (
+        element.tag.removeprefix(f"{{{SCXML_NAMESPACE}}}") if element.tag.startswith(f"{{{SCXML_NAMESPACE}}}") else ""
+    )
 
 
 def _faults(element: ET.Element) -> Iterator[str]:
@@ -79,7 +81,8 @@ def test_the_tour_and_what_invokes() -> None:
 
 
 def test_faults_are_found() -> None:
-    text = f'<scxml xmlns="{SCXML}" initial="b"><state id="1"><onentry><state/></onentry><transition/></state></scxml>'
+    state = '<state id="1"><onentry><state/></onentry><transition/></state>'
+    text = f'<scxml xmlns="{SCXML_NAMESPACE}" initial="b">{state}</scxml>'
     assert set(faults(text)) == {
         "onentry/state", "a transition without anything", "`1` is no id", "`` is no id", "there is no `b`",
     }  # fmt: skip

@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from lumen.formats.findings import dotted
+from lumen.formats.conversion_findings import dotted
 from lumen.formats.xstate import read_xstate, write_xstate
 from lumen.statechart import Machine, initial
 

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from lumen.formats.findings import dotted
+from lumen.formats.conversion_findings import dotted
 from lumen.formats.xstate import write_xstate
 from lumen.statechart import Interpreter, Machine, VirtualClock
 from tests.fetched import fetched

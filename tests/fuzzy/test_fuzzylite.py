@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.formats.findings import dotted
+from lumen.formats.conversion_findings import dotted
 from lumen.formats.fll import read_fll, write_fll
 from lumen.fuzzy import Controller
 from lumen.interpreters.inference.arithmetic import NUMBERS

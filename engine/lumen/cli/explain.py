@@ -5,9 +5,9 @@ import json
 from collections.abc import Collection, Iterator
 from typing import Any
 
-from lumen.cli.render.words import COLOURS
+from lumen.cli.render.terminal_text import SEVERITY_COLOURS
 from lumen.cli.terminal import coloured, paint
-from lumen.formats.findings import MEANINGS
+from lumen.formats.conversion_findings import CODE_MEANINGS
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.pages import Example, Page, page
 from lumen.rules.selection import selected
@@ -25,8 +25,8 @@ def run(options: argparse.Namespace) -> int:
     if word in CODES:
         found = page(word)
         print(json.dumps(_as_json(found), indent=2) if json_wanted else _text(found, coloured()))
-    elif word in MEANINGS:
-        what = MEANINGS[word]
+    elif word in CODE_MEANINGS:
+        what = CODE_MEANINGS[word]
         print(json.dumps({"code": word, "what": what}, indent=2) if json_wanted else f"{word}\n\n{what}")
     else:
         codes = selected([word]) if word else CODES.keys()
@@ -44,7 +44,7 @@ def _list(wanted: Collection[str], on: bool) -> str:
     blocks = []
     for name, codes in FAMILIES.items():
         rows = [
-            f"  {paint(f'{code:{width}}', COLOURS[entry.severity], on=on)}  {entry.summary}"
+            f"  {paint(f'{code:{width}}', SEVERITY_COLOURS[entry.severity], on=on)}  {entry.summary}"
             for code, entry in codes.items()
             if code in wanted
         ]
@@ -73,7 +73,7 @@ def _as_json(found: Page) -> dict[str, Any]:
 
 def _text(found: Page, on: bool) -> str:
     severity = CODES[found.code].severity
-    title = f"{paint(found.code, 'bold', COLOURS[severity], on=on)}  {severity}, {family(found.code)}"
+    title = f"{paint(found.code, 'bold', SEVERITY_COLOURS[severity], on=on)}  {severity}, {family(found.code)}"
     wrong = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.wrong)
     right = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.right)
     return "\n\n".join(

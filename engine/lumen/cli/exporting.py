@@ -12,8 +12,8 @@ from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
 from lumen.formats.asyncapi import write_asyncapi
+from lumen.formats.conversion_findings import PlaceOfPath
 from lumen.formats.dot import dot
-from lumen.formats.findings import Placing
 from lumen.formats.fll import write_fll
 from lumen.formats.mermaid import mermaid
 from lumen.formats.scxml import write_scxml
@@ -24,7 +24,7 @@ from lumen.language.projects import Project
 from lumen.loading.packaged import find_project
 from lumen.loading.source import Document, parse
 
-Writer = Callable[[MachineDefinition, Placing], tuple[str, list[Diagnostic]]]
+Writer = Callable[[MachineDefinition, PlaceOfPath], tuple[str, list[Diagnostic]]]
 
 WRITERS: Mapping[str, Writer] = {
     "scxml": write_scxml,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from lumen.cli.findings import Findings
 from lumen.cli.linting import Asked, Wanted, checked
-from lumen.cli.render.words import clean, counted
+from lumen.cli.render.terminal_text import clean, counted
 from lumen.cli.terminal import paint
 from lumen.errors import UsageError
 from lumen.rules.repairs import Repair, repaired

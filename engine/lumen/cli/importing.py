@@ -14,15 +14,15 @@ from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.formats.document import document_yaml
+from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.fcl import read_fcl
-from lumen.formats.findings import ForeignFileError
 from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll
-from lumen.formats.gestures import ENDINGS, read_gesture
+from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
 from lumen.formats.scxml import read_scxml
-from lumen.formats.scxml.elements import MAX_BYTES
+from lumen.formats.scxml.xml_elements import MAX_XML_BYTES
 from lumen.formats.xstate import read_xstate
+from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.robots import Body
@@ -62,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
     """0 where everything was carried over, 1 where something is left out, 2 where the file can't be read."""
     content = foreign_content(options.file)
     title = _title(options.output or options.file)
-    body = lumen.load(options.project).body if options.file.suffix.lower() in ENDINGS else None
+    body = lumen.load(options.project).body if options.file.suffix.lower() in GESTURE_ENDINGS else None
     fuzzy = CONTROLLERS.get(options.file.suffix.lower())
     kind = "motion" if body else "controller" if fuzzy else "behavior"
     read = partial(_gesture, body, options.timeline) if body else fuzzy or _chart(options.file, content)
@@ -86,8 +86,8 @@ def _gesture(body: Body, timeline: str, file: str, content: bytes, _: str) -> tu
 def foreign_content(path: Path) -> bytes:
     """What the file holds; raises UsageError where it can't be read, or is too large to be one of these."""
     try:
-        if path.is_file() and path.stat().st_size > MAX_BYTES:
-            raise UsageError(f"{path} is larger than {MAX_BYTES // 1_000_000} MB: too large to be imported")
+        if path.is_file() and path.stat().st_size > MAX_XML_BYTES:
+            raise UsageError(f"{path} is larger than {MAX_XML_BYTES // 1_000_000} MB: too large to be imported")
         return path.read_bytes()
     except OSError as error:
         raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
@@ -103,7 +103,7 @@ def _chart(path: Path, content: bytes) -> Reader:
         return CHARTS[path.suffix.lower()]
     start = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
     if start not in (b"<", b"{"):
-        endings = ", ".join((*ENDINGS, *CONTROLLERS))
+        endings = ", ".join((*GESTURE_ENDINGS, *CONTROLLERS))
         raise UsageError(f"{path} is neither SCXML, the JSON of XState, nor a motion or a controller ({endings})")
     return read_scxml if start == b"<" else read_xstate
 

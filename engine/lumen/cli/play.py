@@ -9,8 +9,8 @@ from lumen.cli.cast import SPEEDS, cast
 from lumen.cli.importing import foreign_content, one_line
 from lumen.cli.run import film_path
 from lumen.errors import ProjectError, UsageError
-from lumen.formats.findings import ForeignFileError
-from lumen.formats.gestures import ENDINGS, read_gesture
+from lumen.formats.conversion_findings import ForeignFileError
+from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
 from lumen.interpreters.limits import overspeed
 from lumen.language.commands import Posture
 from lumen.language.diagnostics import did_you_mean, has_errors
@@ -99,7 +99,7 @@ def _reason(event: Event) -> str:
 
 def _motion(project: Project, name: str, timeline: str) -> MotionDefinition:
     path = Path(name)
-    if path.suffix.lower() in ENDINGS:
+    if path.suffix.lower() in GESTURE_ENDINGS:
         return _foreign(project, path, timeline)
     if path.suffix in (".yaml", ".yml"):
         from lumen.motion import Motion as MotionFile
@@ -108,7 +108,9 @@ def _motion(project: Project, name: str, timeline: str) -> MotionDefinition:
             raise UsageError(f"no file {path}")
         return MotionFile.load(path)
     if path.is_file():
-        raise UsageError(f"{path} is no motion: a file ends in .yaml, {', '.join(ENDINGS[:-1])} or {ENDINGS[-1]}")
+        raise UsageError(
+            f"{path} is no motion: a file ends in .yaml, {', '.join(GESTURE_ENDINGS[:-1])} or {GESTURE_ENDINGS[-1]}"
+        )
     if name not in project.motions:
         raise UsageError(f"no motion `{name}`: {did_you_mean(name, project.motions, 'motions/ has')}")
     return project.motions[name]

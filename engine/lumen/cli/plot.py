@@ -5,7 +5,7 @@ from pathlib import Path
 
 import lumen
 from lumen.errors import UsageError
-from lumen.formats.plots import ENDINGS, Sheet, controller_sheet, draw, explained_sheet, motion_sheet
+from lumen.formats.plots import PLOT_ENDINGS, PlotSheet, controller_sheet, draw, explained_sheet, motion_sheet
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import did_you_mean
 from lumen.loading.packaged import find_project
@@ -25,8 +25,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     path = _found(options.file)
     output = options.output or Path(f"{path.stem}.png")
-    if (ending := output.suffix.lower()) not in ENDINGS:
-        raise UsageError(f"can't draw {output}: the name has to end in {' or '.join(ENDINGS)}")
+    if (ending := output.suffix.lower()) not in PLOT_ENDINGS:
+        raise UsageError(f"can't draw {output}: the name has to end in {' or '.join(PLOT_ENDINGS)}")
     if not output.parent.is_dir():
         raise UsageError(f"can't write {output}: there is no folder {output.parent}")
     sheet = _motion(path, options.at) if path.absolute().parent.name == "motions" else _controller(path, options.at)
@@ -51,7 +51,7 @@ def _found(name: str) -> Path:
     raise UsageError(f"no file {name}: {did_you_mean(name, there, 'there are')}")
 
 
-def _controller(path: Path, at: list[str]) -> Sheet:
+def _controller(path: Path, at: list[str]) -> PlotSheet:
     controller = Controller.load(path)
     if not at:
         return controller_sheet(controller)
@@ -66,7 +66,7 @@ def _given(text: str) -> tuple[str, float]:
         raise UsageError(f"`--at {text}` is no input with a number: write it like FaceXLoc=80") from None
 
 
-def _motion(path: Path, at: list[str]) -> Sheet:
+def _motion(path: Path, at: list[str]) -> PlotSheet:
     if at:
         raise UsageError(f"--at is for controllers, and {path} is a motion")
     home = path.absolute().parent.parent

@@ -9,10 +9,10 @@ import yaml
 from lumen.language.projects import Project
 from lumen.language.routes import Carried, Direction, Route
 
-VERSION = "3.0.0"
-BINDING = "0.3.0"
+ASYNCAPI_VERSION = "3.0.0"
+BINDING_VERSION = "0.3.0"
 EXCHANGE = "amq.topic"
-CARRIED = {
+CARRIED_DESCRIPTIONS = {
     Carried.TELEMETRY: "Telemetry: the newest wins.",
     Carried.COMMAND: "A command: done within its time to live, or not at all.",
     Carried.STOP: "A stop: a command that waits behind nothing.",
@@ -29,7 +29,7 @@ def document(project: Project) -> dict[str, Any]:
     """The document as plain data."""
     routes = project.routes.values()
     return {
-        "asyncapi": VERSION,
+        "asyncapi": ASYNCAPI_VERSION,
         "info": {
             "title": project.name,
             "version": "1.0.0",
@@ -65,7 +65,7 @@ def _channel(route: Route, robot: str) -> dict[str, Any]:
             "amqp": {
                 "is": "routingKey",
                 "exchange": {"name": EXCHANGE, "type": "topic", "durable": True, "autoDelete": False, "vhost": "/"},
-                "bindingVersion": BINDING,
+                "bindingVersion": BINDING_VERSION,
             }
         },
     }
@@ -82,12 +82,12 @@ def _operation(route: Route) -> dict[str, Any]:
         "action": "receive" if route.direction is Direction.IN else "send",
         "channel": {"$ref": f"#/channels/{route.name}"},
         "description": " ".join(_carrying(route)),
-        "bindings": {"amqp": {**amqp, "bindingVersion": BINDING}},
+        "bindings": {"amqp": {**amqp, "bindingVersion": BINDING_VERSION}},
     }
 
 
 def _carrying(route: Route) -> Iterator[str]:
-    yield CARRIED[route.carried]
+    yield CARRIED_DESCRIPTIONS[route.carried]
     if route.every is not None:
         yield f"Every {route.every:g} s."
     if route.size is not None:

@@ -2,7 +2,7 @@
 
 from lumen.language.machines import Invoke, Transition
 
-GUARD = 32
+MAX_GUARD_LENGTH = 32
 """How many characters of a guard are shown."""
 
 
@@ -19,6 +19,6 @@ def caption(transition: Transition) -> str:
     elif transition.exact:
         event = "error" if event.startswith("error.") else "done"
     guard = " ".join(transition.guard.source.split()) if transition.guard else ""
-    if len(guard) > GUARD:
-        guard = guard[: GUARD - 1].rstrip() + "…"
+    if len(guard) > MAX_GUARD_LENGTH:
+        guard = guard[: MAX_GUARD_LENGTH - 1].rstrip() + "…"
     return " ".join(filter(None, (event, f"[{guard}]" if guard else "")))

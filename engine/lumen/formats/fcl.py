@@ -8,9 +8,9 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.formats.findings import Findings, broken
-from lumen.formats.fll.drafts import Draft, operators, ranged
-from lumen.formats.fll.words import SHAPES, plain
+from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
+from lumen.formats.fll.fuzzylite_names import SHAPES, plain
 from lumen.language.controllers import TERMS, WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.rules import RuleWord
@@ -38,26 +38,26 @@ _DUAL = {"maximum": "minimum", "algebraic-sum": "algebraic-product", "bounded-su
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
 
 
-class Statement(NamedTuple):
+class FclStatement(NamedTuple):
     """What stands before a `;`, and the offset at which it begins."""
 
     text: str
     offset: int
 
 
-class Section(NamedTuple):
+class FclSection(NamedTuple):
     """`KIND name`, its statements, and where it begins."""
 
     kind: str
     name: str
-    statements: list[Statement]
+    statements: list[FclStatement]
     offset: int
 
 
 def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
     """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no block."""
     text = content.decode("utf-8-sig", errors="replace")
-    findings = Findings()
+    findings = ConversionFindings()
     reader = _Reader(file, text, findings)
     sections = list(_sections(_without_comments(text)))
     if not any(section.kind == "FUZZIFY" for section in sections):
@@ -78,7 +78,7 @@ def _without_comments(text: str) -> str:
     return "".join([*parts, text[at:]])
 
 
-def _sections(text: str) -> Iterator[Section]:
+def _sections(text: str) -> Iterator[FclSection]:
     at = 0
     while match := _OPEN.search(text, at):
         kind = match[1].upper()
@@ -88,21 +88,21 @@ def _sections(text: str) -> Iterator[Section]:
         begin, name = match.end(), ""
         if not kind.startswith("VAR") and (word := re.compile(r"\s*([^\s;]+)").match(text, begin, stop)):
             begin, name = word.end(), word[1]
-        yield Section(kind, name, list(_statements(text, begin, stop)), match.start())
+        yield FclSection(kind, name, list(_statements(text, begin, stop)), match.start())
         at = close.end() if close else len(text)
 
 
-def _statements(text: str, begin: int, stop: int) -> Iterator[Statement]:
+def _statements(text: str, begin: int, stop: int) -> Iterator[FclStatement]:
     for part in re.finditer(r"[^;]+", text[begin:stop]):
         said = part[0].strip()
         if said:
-            yield Statement(said, begin + part.start() + part[0].index(said[0]))
+            yield FclStatement(said, begin + part.start() + part[0].index(said[0]))
 
 
 class _Reader:
-    def __init__(self, file: str, text: str, findings: Findings) -> None:
+    def __init__(self, file: str, text: str, findings: ConversionFindings) -> None:
         self.file, self.text, self.findings = file, text, findings
-        self.draft = Draft(file, findings)
+        self.draft = ControllerDraft(file, findings)
         self.accu: dict[str, str] = {}
 
     def place(self, offset: int, length: int = 1) -> Place:
@@ -110,10 +110,10 @@ class _Reader:
         column = offset - (self.text.rfind("\n", 0, offset) + 1) + 1
         return Place(self.file, row, column, row, column + max(length, 1))
 
-    def at(self, statement: Statement) -> Place:
+    def at(self, statement: FclStatement) -> Place:
         return self.place(statement.offset, len(statement.text.split("\n")[0]))
 
-    def block(self, sections: list[Section]) -> dict[str, Any]:
+    def block(self, sections: list[FclSection]) -> dict[str, Any]:
         blocks = [section for section in sections if section.kind == "RULEBLOCK"]
         said = [self.operators(section) for section in blocks]
         for section in sections:
@@ -128,13 +128,13 @@ class _Reader:
                 self.declared(section)
         return self.draft.result()
 
-    def declared(self, section: Section) -> None:
+    def declared(self, section: FclSection) -> None:
         for statement in section.statements:
             name = statement.text.partition(":")[0].strip()
             if name not in self.draft.names:
                 self.findings.lost(self.at(statement), f"`{name}` has no terms, and is left out")
 
-    def operators(self, section: Section) -> dict[str, Any]:
+    def operators(self, section: FclSection) -> dict[str, Any]:
         found: dict[str, Any] = {}
         for statement in section.statements:
             match = _SETTING.fullmatch(statement.text)
@@ -149,7 +149,7 @@ class _Reader:
         self.accu.update({"": found.pop("accu")} if "accu" in found else {})
         return found
 
-    def variable(self, section: Section) -> None:
+    def variable(self, section: FclSection) -> None:
         side = "inputs" if section.kind == "FUZZIFY" else "outputs"
         spec = self.draft.variable(side, section.name, self.place(section.offset, len(section.kind)))
         settings = {}
@@ -167,7 +167,7 @@ class _Reader:
         self.range(section, spec, settings, reach)
         spec.update({key: spec.pop(key) for key in ("terms",) if key in spec})
 
-    def range(self, section: Section, spec: dict[str, Any], settings: Mapping[str, Any], reach: list[float]) -> None:
+    def range(self, section: FclSection, spec: dict[str, Any], settings: Mapping[str, Any], reach: list[float]) -> None:
         said, statement = settings.get("RANGE", ("", None))
         match = _RANGE.fullmatch(said)
         if match and match[1] and match[2] and float(match[1]) < float(match[2]):
@@ -182,7 +182,7 @@ class _Reader:
             self.findings.changed(place, message, "write: RANGE := (0 .. 10);")
         spec["range"] = ranged(min(reach), max(reach))
 
-    def output(self, spec: dict[str, Any], settings: Mapping[str, tuple[str, Statement]]) -> None:
+    def output(self, spec: dict[str, Any], settings: Mapping[str, tuple[str, FclStatement]]) -> None:
         for key, (said, statement) in settings.items():
             match key:
                 case "METHOD" if said.lower() in _METHODS:
@@ -201,7 +201,7 @@ class _Reader:
         said = spec.pop("aggregation", "" if weighted else self.accu.get("", ""))
         spec.update(operators({"aggregation": said or None}, {"aggregation": "maximum"}))
 
-    def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: Statement) -> list[float]:
+    def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: FclStatement) -> list[float]:
         """Where it begins and ends, to know how far the variable reaches."""
         points = [float(number) for point in _POINT.findall(said) for number in point]
         words = said.split()
@@ -221,7 +221,7 @@ class _Reader:
         self.draft.term(variable, spec, name, kind, numbers, self.at(statement))
         return _reach(kind, numbers)
 
-    def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: Statement) -> list[float]:
+    def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: FclStatement) -> list[float]:
         """A value for outputs; for a set it has no width."""
         if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(variable):
             spec["defuzzifier"] = "weighted-average"
@@ -231,7 +231,7 @@ class _Reader:
             self.draft.term(variable, spec, name, "rectangle", [x, x], self.at(statement))
         return [x]
 
-    def rule(self, statement: Statement) -> str:
+    def rule(self, statement: FclStatement) -> str:
         match = _RULE.fullmatch(statement.text)
         if match is None:
             if not (setting := _SETTING.fullmatch(statement.text)) or setting[1].upper() not in _NORMS:

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator, Mapping
 from math import isfinite, nan
 from typing import Any, NamedTuple
 
-from lumen.formats.findings import Findings, broken
-from lumen.formats.fll.drafts import Draft, operators, ranged
-from lumen.formats.fll.words import written
+from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
+from lumen.formats.fll.fuzzylite_names import written
 from lumen.language.controllers import WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.rules import RuleWord
@@ -53,7 +53,7 @@ _USUAL = {
 }  # fmt: skip
 
 
-class Line(NamedTuple):
+class FisLine(NamedTuple):
     """`Key=value` of a section, or a rule (without a key), and its place."""
 
     key: str
@@ -61,45 +61,45 @@ class Line(NamedTuple):
     place: Place
 
 
-class Section(NamedTuple):
+class FisSection(NamedTuple):
     kind: str
-    lines: list[Line]
+    lines: list[FisLine]
     place: Place
 
 
 def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
     """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no system."""
     text = content.decode("utf-8-sig", errors="replace")
-    findings = Findings()
+    findings = ConversionFindings()
     sections = list(_sections(file, text))
     if not any(section.kind == "input" for section in sections):
         raise broken(Place(file), "not-a-controller", "this is no system of MATLAB: it has no [Input1]")
     return _Reader(file, findings).system(sections), findings.diagnostics
 
 
-def _sections(file: str, text: str) -> Iterator[Section]:
-    section: Section | None = None
+def _sections(file: str, text: str) -> Iterator[FisSection]:
+    section: FisSection | None = None
     for row, source in enumerate(text.splitlines(), 1):
         said = source.strip()
         place = Place(file, row, len(source) - len(source.lstrip()) + 1, row, len(source.rstrip()) + 1)
         if match := _SECTION.fullmatch(said):
             if section:
                 yield section
-            section = Section(match[1].lower(), [], place)
+            section = FisSection(match[1].lower(), [], place)
         elif said and section and said[0] not in "%#":
             key, equals, value = said.partition("=")
             plain = section.kind == "rules" or not equals
-            section.lines.append(Line("", said, place) if plain else Line(key.strip(), value.strip(), place))
+            section.lines.append(FisLine("", said, place) if plain else FisLine(key.strip(), value.strip(), place))
     if section:
         yield section
 
 
 class _Reader:
-    def __init__(self, file: str, findings: Findings) -> None:
-        self.findings, self.draft = findings, Draft(file, findings)
+    def __init__(self, file: str, findings: ConversionFindings) -> None:
+        self.findings, self.draft = findings, ControllerDraft(file, findings)
         self.order: dict[str, list[tuple[str, list[str]]]] = {"input": [], "output": []}
 
-    def system(self, sections: list[Section]) -> dict[str, Any]:
+    def system(self, sections: list[FisSection]) -> dict[str, Any]:
         head = next((section for section in sections if section.kind == "system"), None)
         said = self.norms(head) if head else {}
         for section in sections:
@@ -112,7 +112,7 @@ class _Reader:
         self.draft.blocks.append(block)
         return self.draft.result()
 
-    def norms(self, head: Section) -> dict[str, Any]:
+    def norms(self, head: FisSection) -> dict[str, Any]:
         said: dict[str, Any] = {}
         for line in head.lines:
             if line.key in _NORMS:
@@ -127,7 +127,7 @@ class _Reader:
             said["aggregation"] = "unbounded-sum"  # every rule counts with its own weight, whatever the file says
         return said
 
-    def variable(self, section: Section, said: Mapping[str, Any]) -> None:
+    def variable(self, section: FisSection, said: Mapping[str, Any]) -> None:
         side = section.kind
         named = next((line for line in section.lines if line.key == "Name"), None)
         name = named.value.strip("'\"") if named else f"{side}{len(self.order[side]) + 1}"
@@ -146,7 +146,7 @@ class _Reader:
             elif line.key not in ("Name", "Range", "NumMFs"):
                 self.findings.lost(line.place, f"`{line.key or line.value[:20]}` can't be said of a variable")
 
-    def term(self, side: str, variable: str, spec: dict[str, Any], line: Line) -> None:
+    def term(self, side: str, variable: str, spec: dict[str, Any], line: FisLine) -> None:
         match = _TERM.fullmatch(line.value)
         self.order[side][-1][1].append("")
         if match is None or match["shape"] not in _SHAPES:
@@ -168,7 +168,7 @@ class _Reader:
         if len(spec.get("terms", ())) > before:
             self.order[side][-1][1][-1] = next(reversed(spec["terms"]))
 
-    def rule(self, line: Line) -> str:
+    def rule(self, line: FisLine) -> str:
         match = _RULE.fullmatch(line.value)
         asked, said = (_whole(match[key]) for key in ("asked", "said")) if match else ([], [])
         if match is None or (len(asked), len(said)) != (len(self.order["input"]), len(self.order["output"])):
@@ -183,7 +183,7 @@ class _Reader:
         weight = _numbers(match["weight"])[0]
         return self.written(join.join(inputs) or everything, " and ".join(outputs), weight, line)
 
-    def written(self, asked: str, said: str, weight: float, line: Line) -> str:
+    def written(self, asked: str, said: str, weight: float, line: FisLine) -> str:
         def spot(_: RuleWord) -> Place:
             return line.place
 

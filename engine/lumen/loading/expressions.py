@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lumen.interpreters.expressions import Finding, check_expression, check_template
+from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, did_you_mean
 from lumen.loading.numbers import finite
@@ -64,7 +64,7 @@ class Expressions:
         self.report("unknown-context-key", where, message, hint=hint, key=True, cause=cause)
         return False
 
-    def _sound(self, findings: Iterable[Finding], source: str, where: NodePath) -> bool:
+    def _sound(self, findings: Iterable[ExpressionFinding], source: str, where: NodePath) -> bool:
         """Whether nothing was found but fields that may be missing: those depend on who calls."""
         found = [finding for finding in findings if finding.code != "unguarded-field"]
         for finding in found:
@@ -74,7 +74,7 @@ class Expressions:
         return not found
 
 
-def cause_of(file: str, finding: Finding) -> str:
+def cause_of(file: str, finding: ExpressionFinding) -> str:
     """What a name that is unknown, or may be missing, has in common with the same one elsewhere in the file."""
     if finding.code == "unknown-context-key":
         return f"{file} context {finding.message.split('`')[1]}"

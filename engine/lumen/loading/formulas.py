@@ -4,13 +4,23 @@ from collections.abc import Sequence
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions import parse_expression
-from lumen.interpreters.expressions.tree import Binary, Call, Choice, Literal, Logic, Name, Node, Unary, walk
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Conditional,
+    ExpressionNode,
+    FunctionCall,
+    Identifier,
+    Literal,
+    Logic,
+    Unary,
+    walk,
+)
 from lumen.interpreters.inference.formulas import FUNCTIONS
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.loading.source import DocumentReport
 from lumen.loading.words import report_word
 
-_PLAIN = (Name, Unary, Logic, Choice)
+_PLAIN = (Identifier, Unary, Logic, Conditional)
 
 
 def check_formula(text: str, names: Sequence[str], report: DocumentReport, path: NodePath) -> bool:
@@ -24,19 +34,19 @@ def check_formula(text: str, names: Sequence[str], report: DocumentReport, path:
     return all(found)
 
 
-def _sound(node: Node, text: str, names: Sequence[str], report: DocumentReport, path: NodePath) -> bool:
+def _sound(node: ExpressionNode, text: str, names: Sequence[str], report: DocumentReport, path: NodePath) -> bool:
     def refuse(code: str, offset: int, length: int, message: str, hint: str) -> bool:
         report_word(report, code, path, text, offset, length, message, hint)
         return False
 
     match node:
-        case Name(name) if name not in (*names, "x", "pi"):
+        case Identifier(name) if name not in (*names, "x", "pi"):
             hint = did_you_mean(name, ("x", "pi", *names), "here can stand")
             return refuse("unknown-name", node.offset, len(name), f"there is no `{name}` in this formula", hint)
-        case Call(name) if name not in FUNCTIONS:
+        case FunctionCall(name) if name not in FUNCTIONS:
             hint = did_you_mean(name, FUNCTIONS, "the functions are")
             return refuse("unknown-function", node.named, len(name), f"a formula has no function `{name}`", hint)
-        case Call(name, arguments) if len(arguments) != FUNCTIONS[name]:
+        case FunctionCall(name, arguments) if len(arguments) != FUNCTIONS[name]:
             wanted = FUNCTIONS[name]
             message = f"`{name}` has {len(arguments)} argument{'s' * (len(arguments) != 1)}, it takes {wanted}"
             hint = f"write {name}({', '.join('ab'[:wanted])})"
@@ -46,7 +56,7 @@ def _sound(node: Node, text: str, names: Sequence[str], report: DocumentReport, 
             return refuse("type-mismatch", node.offset, length, "a formula counts with numbers alone", "write a number")
         case Binary("in"):
             return refuse("type-mismatch", node.offset, 1, "a formula knows no lists", "compare with `==`")
-        case Call() | Literal() | Binary():
+        case FunctionCall() | Literal() | Binary():
             return True
     if not isinstance(node, _PLAIN):
         return refuse("type-mismatch", node.offset, 1, "a formula knows no lists and no fields", "use numbers alone")

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lumen.interpreters.expressions import Finding, check_expression, check_template, schema_of
+from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template, schema_of
 from lumen.language.actions import Template
 from lumen.language.diagnostics import Diagnostic, Related
 from lumen.language.machines import MachineDefinition, Transition
@@ -44,7 +44,7 @@ class _Expressions:
             for finding in self.findings(spot):
                 self.say(spot, finding)
 
-    def findings(self, spot: Spot) -> list[Finding]:
+    def findings(self, spot: Spot) -> list[ExpressionFinding]:
         around: dict[str, Any] = {
             "context": self.context,
             "events": self.possible(spot.transition),
@@ -65,7 +65,7 @@ class _Expressions:
             return outcome(self.machine, transition)
         return {name: schema for name, schema in self.events.items() if hears(transition.event, name)} or None
 
-    def declared(self, spot: Spot, part: str, finding: Finding) -> Iterator[Related]:
+    def declared(self, spot: Spot, part: str, finding: ExpressionFinding) -> Iterator[Related]:
         """Where the context keys stand whose types don't fit."""
         if finding.code == "type-mismatch":
             keys = [*re.findall(r"\bcontext\.(\w+)", part), *([spot.key] if spot.key else [])]
@@ -73,14 +73,14 @@ class _Expressions:
                 place = self.report.document.place(("context", key), key=True)
                 yield Related(place, f"`{key}` begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}")
 
-    def nulls(self, part: str, finding: Finding) -> str:
+    def nulls(self, part: str, finding: ExpressionFinding) -> str:
         """What parts have in common whose one context key begins with nothing, where something was meant."""
         keys = {key for key in re.findall(r"\bcontext\.(\w+)", part) if key in self.machine.context}
         key = keys.pop() if len(keys) == 1 and finding.code == "type-mismatch" else ""
         alone = key and self.machine.context[key] is None and key not in self.machine.types
         return f"{self.report.document.file} null {key}" if alone else ""
 
-    def say(self, spot: Spot, finding: Finding) -> None:
+    def say(self, spot: Spot, finding: ExpressionFinding) -> None:
         source = spot.text.text if isinstance(spot.text, Template) else spot.text.source
         place = place_within(self.report.document, spot.text.where, source, finding.offset, finding.length)
         severity = CODES[finding.code].severity

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from lumen.interpreters.expressions.phrases import is_heard
-from lumen.interpreters.expressions.tree import Call, Literal, Logic, Node
+from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal, Logic
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition, State, Transition
@@ -22,7 +22,7 @@ MOST = 60
 class Heard(NamedTuple):
     """`heard(text, name)` as a whole guard."""
 
-    text: Node
+    text: ExpressionNode
     name: str
 
 
@@ -53,7 +53,7 @@ def _constant(guard: Expression, report: DocumentReport) -> None:
         find(report, "constant-guard", guard.where, "this is always true", "leave it out, or look at its signs")
 
 
-def _simple(node: Node) -> bool:
+def _simple(node: ExpressionNode) -> bool:
     return not isinstance(node, Logic)
 
 
@@ -110,9 +110,9 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
     return False
 
 
-def _heard(node: Node) -> Heard | None:
+def _heard(node: ExpressionNode) -> Heard | None:
     match node:
-        case Call(function="heard", arguments=(text, Literal(value=str() as name))):
+        case FunctionCall(function="heard", arguments=(text, Literal(value=str() as name))):
             return Heard(text, name)
     return None
 

@@ -12,7 +12,7 @@ from math import inf
 from typing import NamedTuple
 
 from lumen.interpreters.expressions import parse_expression, unparse
-from lumen.interpreters.expressions.tree import Binary, Call, Items, Literal, Logic, Node, Unary
+from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLiteral, Literal, Logic, Unary
 
 MOST = 24
 """Alternatives of a condition that are looked at; of one with more, nothing is told."""
@@ -35,12 +35,12 @@ Alternative = frozenset[Claim]
 
 
 @lru_cache(maxsize=20_000)
-def tree(source: str) -> Node:
+def tree(source: str) -> ExpressionNode:
     """The tree of an expression that is known to be sound."""
     return parse_expression(source)
 
 
-def never(*conditions: Node) -> bool:
+def never(*conditions: ExpressionNode) -> bool:
     """Whether these conditions can't all be true at once."""
     spread = [_alternatives(condition, True) for condition in conditions]
     if any(s is None for s in spread):
@@ -51,12 +51,12 @@ def never(*conditions: Node) -> bool:
     return not any(_possible(frozenset().union(*way)) for way in product(*ways))
 
 
-def always(condition: Node) -> bool:
+def always(condition: ExpressionNode) -> bool:
     """Whether a condition can't be false (where it does not fail)."""
     return never(Unary("!", condition))
 
 
-def implies(condition: Node, other: Node) -> bool:
+def implies(condition: ExpressionNode, other: ExpressionNode) -> bool:
     """Whether the other condition is true wherever the first one is."""
     return never(condition, Unary("!", other))
 
@@ -68,7 +68,7 @@ def _size(ways: Iterable[list[Alternative]]) -> int:
     return size
 
 
-def _alternatives(node: Node, value: bool) -> list[Alternative] | None:
+def _alternatives(node: ExpressionNode, value: bool) -> list[Alternative] | None:
     """The ways in which a condition can have that value; None where there are too many."""
     match node:
         case Literal(value=bool() as given):
@@ -83,7 +83,7 @@ def _alternatives(node: Node, value: bool) -> list[Alternative] | None:
             if (sign == "&&") != value:
                 return [a for way in ways for a in way][: MOST + 1] if sum(map(len, ways)) <= MOST else None
             return [frozenset().union(*way) for way in product(*ways)] if _size(ways) <= MOST else None
-        case Binary(sign="in", left=left, right=Items(items=items)) if all(isinstance(i, Literal) for i in items):
+        case Binary(sign="in", left=left, right=ListLiteral(items=items)) if all(isinstance(i, Literal) for i in items):
             claims = [Claim(unparse(left), "==" if value else "!=", i.value) for i in items if isinstance(i, Literal)]
             return [frozenset((c,)) for c in claims] if value else [frozenset(claims)]
         case Binary(sign=sign, left=left, right=right) if sign in _OPPOSITE:
@@ -91,7 +91,7 @@ def _alternatives(node: Node, value: bool) -> list[Alternative] | None:
     return [frozenset((Claim(unparse(node), "is", value),))]
 
 
-def _compared(left: Node, sign: str, right: Node) -> list[Alternative] | None:
+def _compared(left: ExpressionNode, sign: str, right: ExpressionNode) -> list[Alternative] | None:
     """The one way in which a comparison holds; none where it is one of literals that does not."""
     if isinstance(left, Literal) and isinstance(right, Literal):
         claim = Claim("", sign, right.value)
@@ -105,9 +105,9 @@ def _compared(left: Node, sign: str, right: Node) -> list[Alternative] | None:
     return [frozenset((Claim(unparse(left), sign, right.value), *_counted(left)))]
 
 
-def _counted(node: Node) -> Iterator[Claim]:
+def _counted(node: ExpressionNode) -> Iterator[Claim]:
     """What is known of a value before anything is asked."""
-    if isinstance(node, Call) and node.function in _COUNTS:
+    if isinstance(node, FunctionCall) and node.function in _COUNTS:
         low, high = _COUNTS[node.function]
         yield Claim(unparse(node), ">=", low)
         yield Claim(unparse(node), "<=", high)

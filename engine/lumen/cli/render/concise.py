@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from lumen.cli.findings import Findings
-from lumen.cli.render.words import COLOURS, clean, summary
+from lumen.cli.render.terminal_text import SEVERITY_COLOURS, clean, summary
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Diagnostic
 
@@ -17,6 +17,6 @@ def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
 def _line(found: Findings, diagnostic: Diagnostic, coloured: bool) -> str:
     place = diagnostic.place
     where = paint(f"{clean(found.name(place.file))}:{place.line}:{place.column}:", "bold", on=coloured)
-    what = paint(f"{diagnostic.severity}[{diagnostic.code}]", COLOURS[diagnostic.severity], on=coloured)
+    what = paint(f"{diagnostic.severity}[{diagnostic.code}]", SEVERITY_COLOURS[diagnostic.severity], on=coloured)
     hint = f" ({clean(diagnostic.hint)})" if diagnostic.hint else ""
     return f"{where} {what} {clean(diagnostic.message)}{hint}"

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from lumen.cli.findings import Findings
-from lumen.cli.render.words import clean, summary
+from lumen.cli.render.terminal_text import clean, summary
 from lumen.language.diagnostics import Diagnostic, Severity
 
 _COMMANDS: Mapping[Severity, str] = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}

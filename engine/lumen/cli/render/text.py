@@ -4,12 +4,12 @@ import re
 from collections.abc import Iterator, Sequence
 
 from lumen.cli.findings import Findings
-from lumen.cli.render.words import COLOURS, clean, summary, width
+from lumen.cli.render.terminal_text import SEVERITY_COLOURS, clean, summary, width
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.files import Unreadable
 
-WIDTH = 140
+MAX_EXCERPT_WIDTH = 140
 """Characters of a line that are shown; of a longer one those around the word."""
 
 _BREAK = re.compile("\r\n|[\n\r\x85\u2028\u2029]")
@@ -33,7 +33,7 @@ def _more(found: Sequence[Findings]) -> str:
 
 
 def _finding(diagnostic: Diagnostic, excerpts: "_Excerpts") -> Iterator[str]:
-    place, colour, on = diagnostic.place, COLOURS[diagnostic.severity], excerpts.coloured
+    place, colour, on = diagnostic.place, SEVERITY_COLOURS[diagnostic.severity], excerpts.coloured
     severity = paint(f"{diagnostic.severity}[{diagnostic.code}]", "bold", colour, on=on)
     yield f"{excerpts.where(place)} {severity} {clean(diagnostic.message)}"
     gutter = max(len(str(p.line)) for p in (place, *(r.place for r in diagnostic.related)))
@@ -83,9 +83,13 @@ def _cut(line: str, place: Place) -> tuple[str, int, int]:
     """The line, not longer than WIDTH, and from where to where the place is in it."""
     start = min(place.column - 1, len(line))
     end = place.end_column - 1 if place.end_line == place.line else len(line.rstrip())
-    if len(line) <= WIDTH:
+    if len(line) <= MAX_EXCERPT_WIDTH:
         return line, start, max(end, start + 1)
-    first = max(0, min(start - WIDTH // 3, len(line) - WIDTH))
-    shown = ("…" if first else "") + line[first : first + WIDTH] + ("…" if first + WIDTH < len(line) else "")
+    first = max(0, min(start - MAX_EXCERPT_WIDTH // 3, len(line) - MAX_EXCERPT_WIDTH))
+    shown = (
+        ("…" if first else "")
+        + line[first : first + MAX_EXCERPT_WIDTH]
+        + ("…" if first + MAX_EXCERPT_WIDTH < len(line) else "")
+    )
     offset = first - (1 if first else 0)
-    return shown, start - offset, max(min(end, first + WIDTH) - offset, start - offset + 1)
+    return shown, start - offset, max(min(end, first + MAX_EXCERPT_WIDTH) - offset, start - offset + 1)

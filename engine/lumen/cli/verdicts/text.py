@@ -9,7 +9,7 @@ from lumen.cli.terminal import paint
 from lumen.cli.verdict import Verdict
 from lumen.runtime.coverage import Coverage
 
-KINDS = {
+FINDING_KINDS = {
     "dead-end": "a dead end",
     "no-way-back": "no way back",
     "restless": "no rest",
@@ -76,7 +76,7 @@ def _counts(coverage: Coverage) -> Iterator[tuple[tuple[int, int], str]]:
 def _explored(explored: Explored, coloured: bool) -> Iterator[str]:
     found = explored.exploration
     for finding in explored.findings:
-        kind = paint(KINDS[finding.kind], "bold", "red", on=coloured)
+        kind = paint(FINDING_KINDS[finding.kind], "bold", "red", on=coloured)
         yield f"\n{paint(str(finding.place), 'bold', on=coloured)}: {kind}: {finding.message}"
         yield "\n".join(f"    {line}".rstrip() for line in finding.story.splitlines())
     size = count(found.configurations, "configuration", "configurations")

@@ -4,16 +4,16 @@ Both are read into the tree of `lumen.interpreters.expressions`; what ECMAScript
 (`===`, `typeof`) and as calls of methods (`.trim`, the object being the first argument).
 """
 
-from lumen.formats.ecmascript.parsing import ScriptError, parse_script
-from lumen.formats.ecmascript.reading import Names, Reading, read_condition, read_value
-from lumen.formats.ecmascript.writing import Vocabulary, Written, write_expression
+from lumen.formats.ecmascript.reader import ScriptNames, ScriptTranslator, read_condition, read_value
+from lumen.formats.ecmascript.script_parser import ScriptError, parse_script
+from lumen.formats.ecmascript.writer import Vocabulary, WrittenScript, write_expression
 
 __all__ = [
-    "Names",
-    "Reading",
     "ScriptError",
+    "ScriptNames",
+    "ScriptTranslator",
     "Vocabulary",
-    "Written",
+    "WrittenScript",
     "parse_script",
     "read_condition",
     "read_value",

@@ -2,29 +2,39 @@
 
 from typing import TYPE_CHECKING
 
-from lumen.formats.ecmascript.kinds import UNKNOWN
-from lumen.formats.ecmascript.parsing import ScriptError
-from lumen.formats.ecmascript.presence import is_data, negated
+from lumen.formats.ecmascript.kind_inference import UNKNOWN
+from lumen.formats.ecmascript.known_fields import is_data, negated
+from lumen.formats.ecmascript.script_parser import ScriptError
 from lumen.interpreters.expressions.kinds import LIST, MAP, NULL
-from lumen.interpreters.expressions.tree import Binary, Call, Field, Literal, Logic, Name, Node, Unary, path_of
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    Literal,
+    Logic,
+    Unary,
+    path_of,
+)
 
 if TYPE_CHECKING:
-    from lumen.formats.ecmascript.reading import Reading
+    from lumen.formats.ecmascript.reader import ScriptTranslator
 
-EVENT, HAPPENED = Name("_event"), Call("has", (Field(Name("event"), "name"),))
+EVENT, HAPPENED = Identifier("_event"), FunctionCall("has", (FieldAccess(Identifier("event"), "name"),))
 """An event as a whole, and that there is one: before the first `_event` is undefined (SCXML 5.10.1)."""
 
-_UNDEFINED = Name("undefined")
+_UNDEFINED = Identifier("undefined")
 
 
-def equality(reading: "Reading", node: Binary) -> Node:
+def equality(reading: "ScriptTranslator", node: Binary) -> ExpressionNode:
     """`==`, `!=`, `===` and `!==` in our words."""
     positive, strict = node.sign in ("==", "==="), len(node.sign) == 3
     found = _undefined(reading, node, strict) or _index(reading, node) or _equal(reading, node, strict)
     return found if positive else negated(found)
 
 
-def _undefined(reading: "Reading", node: Binary, strict: bool) -> Node | None:
+def _undefined(reading: "ScriptTranslator", node: Binary, strict: bool) -> ExpressionNode | None:
     """`typeof x === 'undefined'`, `x === undefined` and `x == null`: is there nothing?"""
     for one, other in ((node.left, node.right), (node.right, node.left)):
         kind_asked = isinstance(one, Unary) and one.sign == "typeof"
@@ -37,7 +47,7 @@ def _undefined(reading: "Reading", node: Binary, strict: bool) -> Node | None:
     return None
 
 
-def _absent(reading: "Reading", tree: Node, or_null: bool) -> Node:
+def _absent(reading: "ScriptTranslator", tree: ExpressionNode, or_null: bool) -> ExpressionNode:
     if tree == EVENT:
         return negated(HAPPENED)
     node = reading.value(tree)
@@ -45,19 +55,19 @@ def _absent(reading: "Reading", tree: Node, or_null: bool) -> Node:
     is_null = Binary("==", node, Literal(None))
     if not is_data(path) or path in reading.present:
         return is_null
-    missing = Unary("!", Call("has", (node,)))
+    missing = Unary("!", FunctionCall("has", (node,)))
     return Logic("||", (missing, is_null)) if or_null else missing
 
 
-def _index(reading: "Reading", node: Binary) -> Node | None:
+def _index(reading: "ScriptTranslator", node: Binary) -> ExpressionNode | None:
     """`text.indexOf(part) == -1`: negated, does the text hold the part?"""
     match node:
-        case Binary(left=Call(function=".indexOf", arguments=(text, part)), right=Literal(value=-1)):
-            return Unary("!", Call("contains", (reading.value(text), reading.value(part))))
+        case Binary(left=FunctionCall(function=".indexOf", arguments=(text, part)), right=Literal(value=-1)):
+            return Unary("!", FunctionCall("contains", (reading.value(text), reading.value(part))))
     return None
 
 
-def _equal(reading: "Reading", node: Binary, strict: bool) -> Node:
+def _equal(reading: "ScriptTranslator", node: Binary, strict: bool) -> ExpressionNode:
     left, right = reading.value(node.left), reading.value(node.right)
     kinds = {reading.kind(left), reading.kind(right)} - {UNKNOWN}
     if kinds & {LIST, MAP}:
@@ -69,8 +79,8 @@ def _equal(reading: "Reading", node: Binary, strict: bool) -> Node:
     return guarded(reading, Binary("==", left, right), left, right)
 
 
-def guarded(reading: "Reading", node: Node, *operands: Node) -> Node:
+def guarded(reading: "ScriptTranslator", node: ExpressionNode, *operands: ExpressionNode) -> ExpressionNode:
     """The comparison, false where a field of the event is missing (which ECMAScript calls undefined)."""
     paths = {path: operand for operand in operands if is_data(path := path_of(operand))}
-    missing = [Call("has", (operand,)) for path, operand in paths.items() if path not in reading.present]
+    missing = [FunctionCall("has", (operand,)) for path, operand in paths.items() if path not in reading.present]
     return Logic("&&", (*missing, node)) if missing else node

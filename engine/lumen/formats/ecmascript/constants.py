@@ -3,22 +3,22 @@
 from typing import Any
 
 from lumen.interpreters.expressions.scope import MAX_INT, MIN_INT
-from lumen.interpreters.expressions.tree import Entries, Items, Literal, Name, Node
+from lumen.interpreters.expressions.tree import ExpressionNode, Identifier, ListLiteral, Literal, MapLiteral
 
 
-def constant(tree: Node, otherwise: Any) -> Any:
+def constant(tree: ExpressionNode, otherwise: Any) -> Any:
     """The JSON value that a tree of ECMAScript is, `otherwise` where it has to be computed."""
     match tree:
         case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
             return float(value)
         case Literal(value=value):
             return value
-        case Name(name="undefined"):
+        case Identifier(name="undefined"):
             return None
-        case Items(items=items):
+        case ListLiteral(items=items):
             found = [constant(item, otherwise) for item in items]
             return otherwise if any(value is otherwise for value in found) else found
-        case Entries(keys=keys, values=values):
+        case MapLiteral(keys=keys, values=values):
             table = {key: constant(value, otherwise) for key, value in zip(keys, values, strict=True)}
             return otherwise if any(value is otherwise for value in table.values()) else table
     return otherwise

@@ -3,53 +3,63 @@
 import re
 from typing import Protocol
 
-from lumen.formats.ecmascript.kinds import is_float
-from lumen.formats.ecmascript.words import ScriptError
+from lumen.formats.ecmascript.kind_inference import is_float
+from lumen.formats.ecmascript.script_tokens import ScriptError
 from lumen.interpreters.expressions.kinds import LIST, NUMBER, TEXT
-from lumen.interpreters.expressions.tree import Binary, Call, Field, Items, Literal, Name, Node
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    ListLiteral,
+    Literal,
+)
 
-SIGNS = {"contained": "in", "same": "=="}
+SIGN_FUNCTIONS = {"contained": "in", "same": "=="}
 """Calls that stand for a sign where ECMAScript's own is another one for texts and lists, or for lists and numbers."""
 
-FUNCTIONS = frozenset(("heard", "lookup", "hour", "words", "after", "matches", "contains", "size", *SIGNS))
+LUMEN_FUNCTIONS = frozenset(
+    ("heard", "lookup", "hour", "words", "after", "matches", "contains", "size", *SIGN_FUNCTIONS)
+)
 """Functions that only Lumen has, by their own names."""
 
-SAME = {".toLowerCase": "lower", ".trim": "trim", ".replaceAll": "replace"}
+EQUIVALENT_METHODS = {".toLowerCase": "lower", ".trim": "trim", ".replaceAll": "replace"}
 _COUNTS = {".toLowerCase": 0, ".trim": 0, ".replaceAll": 2, ".includes": 1, ".startsWith": 1, ".endsWith": 1}
 
 
-class Reader(Protocol):
-    def value(self, tree: Node) -> Node: ...
-    def kind(self, node: Node) -> str: ...
+class MethodTranslator(Protocol):
+    def value(self, tree: ExpressionNode) -> ExpressionNode: ...
+    def kind(self, node: ExpressionNode) -> str: ...
 
 
-def method(reading: Reader, node: Call) -> Node:
+def method(reading: MethodTranslator, node: FunctionCall) -> ExpressionNode:
     """The call of a method in our words; raises ScriptError where we have none."""
     name, (owner, *arguments) = node.function, node.arguments
-    if owner == Name("Math"):
+    if owner == Identifier("Math"):
         return _mathematics(reading, name, arguments)
     if name == ".concat":
         return _joined(reading, owner, arguments)
     if _COUNTS.get(name) != len(arguments):
         raise ScriptError(f"`{name}()` has no counterpart")
     base, *read = (reading.value(part) for part in (owner, *arguments))
-    if name in SAME:
-        return Call(SAME[name], (base, *read))
+    if name in EQUIVALENT_METHODS:
+        return FunctionCall(EQUIVALENT_METHODS[name], (base, *read))
     if name == ".includes":
         if reading.kind(base) == LIST:
             return Binary("in", read[0], base)
         if TEXT in (reading.kind(base), reading.kind(read[0])):
-            return Call("contains", (base, read[0]))
+            return FunctionCall("contains", (base, read[0]))
         raise ScriptError("`.includes()` of something that may be a text or a list")
     if not (isinstance(read[0], Literal) and isinstance(read[0].value, str)):
         raise ScriptError(f"`{name}()` of a text that is not written there")
     pattern = re.sub(r"([^\w\s])", r"\\\1", read[0].value, flags=re.ASCII)
-    return Call("matches", (base, Literal(f"^{pattern}" if name == ".startsWith" else f"{pattern}$")))
+    return FunctionCall("matches", (base, Literal(f"^{pattern}" if name == ".startsWith" else f"{pattern}$")))
 
 
-def _joined(reading: Reader, owner: Node, arguments: list[Node]) -> Node:
+def _joined(reading: MethodTranslator, owner: ExpressionNode, arguments: list[ExpressionNode]) -> ExpressionNode:
     parts = [reading.value(part) for part in (owner, *arguments)]
-    result, *others = [part for part in parts if part != Items(())] or [Items(())]
+    result, *others = [part for part in parts if part != ListLiteral(())] or [ListLiteral(())]
     for other in others:
         if reading.kind(result) == TEXT or reading.kind(other) not in (LIST, ""):
             raise ScriptError("`.concat()` of something that is no list")
@@ -57,7 +67,7 @@ def _joined(reading: Reader, owner: Node, arguments: list[Node]) -> Node:
     return result
 
 
-def _mathematics(reading: Reader, name: str, arguments: list[Node]) -> Node:
+def _mathematics(reading: MethodTranslator, name: str, arguments: list[ExpressionNode]) -> ExpressionNode:
     match name, arguments:
         case ".trunc", [Binary(sign="/", left=left, right=right)]:
             read = Binary("/", reading.value(left), reading.value(right))
@@ -65,8 +75,8 @@ def _mathematics(reading: Reader, name: str, arguments: list[Node]) -> Node:
                 return read
         case ".pow", [base, Literal(value=int() as power)] if 1 <= power <= 4:
             value = reading.value(base)
-            if isinstance(value, Field | Literal) and reading.kind(value) in (NUMBER, ""):
-                product: Node = value
+            if isinstance(value, FieldAccess | Literal) and reading.kind(value) in (NUMBER, ""):
+                product: ExpressionNode = value
                 for _ in range(power - 1):
                     product = Binary("*", product, value)
                 return product

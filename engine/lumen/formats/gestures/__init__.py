@@ -2,17 +2,17 @@
 
 from typing import Any
 
-from lumen.formats.findings import LOST, Findings, broken
+from lumen.formats.conversion_findings import LOST, ConversionFindings, broken
 from lumen.formats.gestures.choregraphe import read_choregraphe
-from lumen.formats.gestures.curves import Curves, MotionWriter
+from lumen.formats.gestures.joint_curves import JointCurves, MotionWriter
 from lumen.formats.gestures.naoqi import read_naoqi
 from lumen.formats.gestures.webots import read_webots
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.robots import Body
 
-ENDINGS = (".motion", ".xar", ".py")
+GESTURE_ENDINGS = (".motion", ".xar", ".py")
 
-__all__ = ["ENDINGS", "read_gesture"]
+__all__ = ["GESTURE_ENDINGS", "read_gesture"]
 
 
 def read_gesture(
@@ -22,7 +22,7 @@ def read_gesture(
 
     Raises ForeignFileError where the file holds no motion.
     """
-    findings = Findings()
+    findings = ConversionFindings()
     curves = _curves(file, content, findings, timeline)
     data = MotionWriter(body, findings).data(curves, f"From {file.replace(chr(92), '/').rpartition('/')[2]}")
     if not data["keyframes"]:
@@ -34,7 +34,7 @@ def read_gesture(
     return data, findings.diagnostics
 
 
-def _curves(file: str, content: bytes, findings: Findings, timeline: str) -> Curves:
+def _curves(file: str, content: bytes, findings: ConversionFindings, timeline: str) -> JointCurves:
     if file.lower().endswith(".xar"):
         return read_choregraphe(file, content, findings, timeline)
     try:

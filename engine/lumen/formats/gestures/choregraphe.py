@@ -7,27 +7,27 @@ Aldebaran's project format 3: `Timeline fps` > `ActuatorList` > `ActuatorCurve a
 from collections.abc import Iterator
 from math import radians
 
-from lumen.formats.findings import Findings, broken
-from lumen.formats.gestures.curves import Curves, Handle, Point, number
-from lumen.formats.scxml.elements import Element, parse_xml
+from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves, number
+from lumen.formats.scxml.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import did_you_mean
 
-ELEMENTS = 1_000_000
-FPS = 25.0
+MAX_CHOREGRAPHE_ELEMENTS = 1_000_000
+DEFAULT_FPS = 25.0
 
-Timelines = dict[str, Element]
+Timelines = dict[str, XmlElement]
 
 
-def read_choregraphe(file: str, content: bytes, findings: Findings, timeline: str = "") -> Curves:
+def read_choregraphe(file: str, content: bytes, findings: ConversionFindings, timeline: str = "") -> JointCurves:
     """The curves of the timeline of that name; of the only one without a name. Raises ForeignFileError."""
-    root = parse_xml(file, content, ELEMENTS)
+    root = parse_xml(file, content, MAX_CHOREGRAPHE_ELEMENTS)
     if _tag(root) != "ChoregrapheProject":
         raise broken(root.place, "not-a-motion", f"this is no behaviour of Choregraphe: it begins with `{_tag(root)}`")
     timelines = dict(_timelines(root))
     chosen = _chosen(root, timelines, timeline)
     _others(root, chosen, findings)
     fps = _pace(chosen, findings)
-    curves: dict[str, list[Point]] = {}
+    curves: dict[str, list[CurvePoint]] = {}
     for curve in _under(chosen, "ActuatorCurve"):
         joint = curve.get("actuator")
         if curve.get("mute") == "1":
@@ -39,16 +39,18 @@ def read_choregraphe(file: str, content: bytes, findings: Findings, timeline: st
     return curves
 
 
-def _pace(timeline: Element, findings: Findings) -> float:
+def _pace(timeline: XmlElement, findings: ConversionFindings) -> float:
     """How many of its frames are a second."""
     fps = number(timeline.get("fps"))
     if fps is not None and fps > 0:
         return fps
-    findings.changed(timeline.place, f"the timeline has no `fps` above 0: {FPS:g} frames are taken for a second")
-    return FPS
+    findings.changed(
+        timeline.place, f"the timeline has no `fps` above 0: {DEFAULT_FPS:g} frames are taken for a second"
+    )
+    return DEFAULT_FPS
 
 
-def _chosen(root: Element, timelines: Timelines, name: str) -> Element:
+def _chosen(root: XmlElement, timelines: Timelines, name: str) -> XmlElement:
     if not timelines:
         raise broken(root.place, "not-a-motion", "no timeline in it moves a joint")
     if name in timelines:
@@ -62,7 +64,7 @@ def _chosen(root: Element, timelines: Timelines, name: str) -> Element:
     return next(iter(timelines.values()))
 
 
-def _timelines(element: Element, box: str = "") -> Iterator[tuple[str, Element]]:
+def _timelines(element: XmlElement, box: str = "") -> Iterator[tuple[str, XmlElement]]:
     """The timelines that move joints, by the names of their boxes; a name that comes again has a number."""
     found: dict[str, int] = {}
     for name, timeline in _all_timelines(element, box):
@@ -71,7 +73,7 @@ def _timelines(element: Element, box: str = "") -> Iterator[tuple[str, Element]]
             yield (f"{name} {found[name]}" if found[name] > 1 else name), timeline
 
 
-def _all_timelines(element: Element, box: str) -> Iterator[tuple[str, Element]]:
+def _all_timelines(element: XmlElement, box: str) -> Iterator[tuple[str, XmlElement]]:
     waiting = [(element, box)]
     while waiting:
         here, box = waiting.pop()
@@ -81,7 +83,7 @@ def _all_timelines(element: Element, box: str) -> Iterator[tuple[str, Element]]:
         waiting.extend((child, box) for child in reversed(here.children))
 
 
-def _others(root: Element, chosen: Element, findings: Findings) -> None:
+def _others(root: XmlElement, chosen: XmlElement, findings: ConversionFindings) -> None:
     """List the boxes that do something else."""
     inside = {id(element) for element in chosen.walk()}
     for box in root.walk():
@@ -90,7 +92,7 @@ def _others(root: Element, chosen: Element, findings: Findings) -> None:
             findings.lost(box.place, f"box `{box.get('name')}` is left out: only joints of a timeline are read")
 
 
-def _points(curve: Element, fps: float, findings: Findings) -> Iterator[Point]:
+def _points(curve: XmlElement, fps: float, findings: ConversionFindings) -> Iterator[CurvePoint]:
     factor = 1.0 if curve.get("unit") == "1" else radians(1.0)
     for key in _under(curve, "Key"):
         frame, value = number(key.get("frame")), number(key.get("value"))
@@ -104,10 +106,10 @@ def _points(curve: Element, fps: float, findings: Findings) -> Iterator[Point]:
         left = tangents.get("left")
         straight = left is not None and left.get("interpType") in ("linear", "constant")
         into, out = (_handle(tangents.get(side), fps, factor) for side in ("left", "right"))
-        yield Point(frame / fps, value * factor, key.place, straight, into, out)
+        yield CurvePoint(frame / fps, value * factor, key.place, straight, into, out)
 
 
-def _handle(tangent: Element | None, fps: float, factor: float) -> Handle:
+def _handle(tangent: XmlElement | None, fps: float, factor: float) -> BezierHandle:
     """(dt [s], da [rad]) of a tangent; none where it is not a Bezier's."""
     if tangent is None or tangent.get("interpType") != "bezier":
         return 0.0, 0.0
@@ -115,7 +117,7 @@ def _handle(tangent: Element | None, fps: float, factor: float) -> Handle:
     return ((frames or 0.0) / fps, (value or 0.0) * factor)
 
 
-def _under(element: Element, tag: str) -> Iterator[Element]:
+def _under(element: XmlElement, tag: str) -> Iterator[XmlElement]:
     """The elements of that tag that belong to it, not to a box inside."""
     waiting = list(reversed(element.children))
     while waiting:
@@ -126,5 +128,5 @@ def _under(element: Element, tag: str) -> Iterator[Element]:
             waiting.extend(reversed(here.children))
 
 
-def _tag(element: Element) -> str:
+def _tag(element: XmlElement) -> str:
     return element.tag.rpartition("}")[2]

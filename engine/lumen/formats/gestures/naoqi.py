@@ -11,12 +11,15 @@ from itertools import zip_longest
 from math import isfinite
 from typing import Any
 
-from lumen.formats.findings import Findings, broken
-from lumen.formats.gestures.curves import Curves, Handle, Point
+from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves
 from lumen.formats.gestures.literals import NotWrittenOutError, value_of
 from lumen.language.diagnostics import Place
 
-CALLS = {"angleInterpolationBezier": ("names", "times", "keys"), "angleInterpolation": ("names", "keys", "times")}
+ALMOTION_CALLS = {
+    "angleInterpolationBezier": ("names", "times", "keys"),
+    "angleInterpolation": ("names", "keys", "times"),
+}
 BEZIER, LINEAR = 3, 1
 
 _OLD = (
@@ -26,7 +29,7 @@ _OLD = (
 """What Python 2 wrote otherwise, and how it is read."""
 
 
-def read_naoqi(file: str, text: str, findings: Findings) -> Curves:
+def read_naoqi(file: str, text: str, findings: ConversionFindings) -> JointCurves:
     """The curves that the file hands to ALMotion. Raises ForeignFileError where it hands it none."""
     tree = _tree(file, text)
     reading = _Reading(file, findings, tree)
@@ -63,12 +66,12 @@ def _in_order(tree: ast.AST) -> Iterator[ast.stmt | ast.Call]:
 class _Reading:
     """The variables so far, and the curves of the calls."""
 
-    def __init__(self, file: str, findings: Findings, tree: ast.Module) -> None:
+    def __init__(self, file: str, findings: ConversionFindings, tree: ast.Module) -> None:
         self.file, self.findings = file, findings
         texts = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
         self.named = {node.value: node for node in reversed(texts)}
         self.values: dict[str, Any] = {}
-        self.curves: dict[str, list[Point]] = {}
+        self.curves: dict[str, list[CurvePoint]] = {}
         self.begin = 0.0
         self.called = False
 
@@ -80,7 +83,9 @@ class _Reading:
             case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="append"), args=[item]):
                 if isinstance(self.values.get(name), list):
                     self._append(name, item)
-            case ast.Call(func=ast.Attribute(attr=method), args=arguments) if method in CALLS and len(arguments) >= 3:
+            case ast.Call(func=ast.Attribute(attr=method), args=arguments) if (
+                method in ALMOTION_CALLS and len(arguments) >= 3
+            ):
                 self._call(node, method, arguments)
 
     def play(self, node: ast.AST, names: Any, times: Any, keys: Any) -> None:
@@ -114,7 +119,7 @@ class _Reading:
 
     def _call(self, node: ast.Call, method: str, arguments: list[ast.expr]) -> None:
         try:
-            values = dict(zip(CALLS[method], (value_of(a, self.values) for a in arguments), strict=False))
+            values = dict(zip(ALMOTION_CALLS[method], (value_of(a, self.values) for a in arguments), strict=False))
             absolute = value_of(arguments[3], self.values) if len(arguments) > 3 else True
         except NotWrittenOutError as error:
             self.findings.lost(self._place(error.node), f"`{error}` is known only when the file runs", "write it out")
@@ -124,7 +129,7 @@ class _Reading:
             return
         self.play(node, values["names"], values["times"], values["keys"])
 
-    def _points(self, node: ast.AST, joint: str, times: list[Any], rows: list[Any]) -> Iterator[Point]:
+    def _points(self, node: ast.AST, joint: str, times: list[Any], rows: list[Any]) -> Iterator[CurvePoint]:
         for time, row in zip_longest(times, rows):
             angle, *handles = row if isinstance(row, list) and row else [row]
             if not (_is_number(time) and _is_number(angle)):
@@ -136,7 +141,7 @@ class _Reading:
                 self.findings.changed(
                     self._place(node), f"`{joint}` comes to {time:g} s in a way that is not known here"
                 )
-            yield Point(float(time), float(angle), self._place(node), kind != BEZIER, into, out)
+            yield CurvePoint(float(time), float(angle), self._place(node), kind != BEZIER, into, out)
 
     def _place(self, node: ast.AST) -> Place:
         line, column = getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1
@@ -144,7 +149,7 @@ class _Reading:
         return Place(self.file, line, column, line, getattr(node, "end_col_offset", column) + 1 if same else column + 1)
 
 
-def _handle(handle: Any) -> tuple[int, Handle]:
+def _handle(handle: Any) -> tuple[int, BezierHandle]:
     """The type and (dt [s], da [rad]) of a handle."""
     if isinstance(handle, list) and len(handle) == 3 and all(_is_number(part) for part in handle):
         return int(handle[0]), ((float(handle[1]), float(handle[2])) if handle[0] == BEZIER else (0.0, 0.0))

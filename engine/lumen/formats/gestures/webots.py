@@ -7,12 +7,12 @@ leaves a joint alone.
 import re
 from collections.abc import Iterator
 
-from lumen.formats.findings import Findings, broken
-from lumen.formats.gestures.curves import Curves, Point, number
+from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, number
 from lumen.language.diagnostics import Place
 
-MAGIC = "#WEBOTS_MOTION"
-VERSION = "V1.0"
+FIRST_CELL = "#WEBOTS_MOTION"
+WEBOTS_VERSION = "V1.0"
 
 _TIME = re.compile(r"(\d+):(\d\d?):(\d{1,3})")
 _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
@@ -20,11 +20,11 @@ _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
 Cell = tuple[str, Place]
 
 
-def read_webots(file: str, text: str, findings: Findings) -> Curves:
+def read_webots(file: str, text: str, findings: ConversionFindings) -> JointCurves:
     """The curves of a motion, joined by lines. Raises ForeignFileError where it is none."""
     lines = list(_lines(file, text))
     joints = _joints(file, lines)
-    curves: dict[str, list[Point]] = {joint: [] for joint, _ in joints}
+    curves: dict[str, list[CurvePoint]] = {joint: [] for joint, _ in joints}
     renamed = False
     for cells in lines:
         time = _time(cells[0][0])
@@ -38,7 +38,7 @@ def read_webots(file: str, text: str, findings: Findings) -> Curves:
         for (joint, _), (word, place) in zip(joints, cells[2:], strict=True):
             angle = number(word)
             if angle is not None:
-                curves[joint].append(Point(time, angle, place, straight=True))
+                curves[joint].append(CurvePoint(time, angle, place, straight=True))
             elif word != "*":
                 findings.lost(place, f"`{word}` is no angle", "write a number in rad, or * to leave the joint alone")
     return {joint: points for joint, points in curves.items() if points}
@@ -47,11 +47,11 @@ def read_webots(file: str, text: str, findings: Findings) -> Curves:
 def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
     """The joints, taken off the front of the lines; some tools write their names into the second line."""
     head = lines.pop(0) if lines else []
-    if not head or head[0][0] != MAGIC:
-        raise broken(Place(file), "not-a-motion", f"this is no motion of Webots: it does not begin with {MAGIC}")
-    if len(head) < 2 or head[1][0] != VERSION:
+    if not head or head[0][0] != FIRST_CELL:
+        raise broken(Place(file), "not-a-motion", f"this is no motion of Webots: it does not begin with {FIRST_CELL}")
+    if len(head) < 2 or head[1][0] != WEBOTS_VERSION:
         said = head[1][0] if len(head) > 1 else "nothing"
-        raise broken(head[-1][1], "not-a-motion", f"only version {VERSION} is known, and this says {said}")
+        raise broken(head[-1][1], "not-a-motion", f"only version {WEBOTS_VERSION} is known, and this says {said}")
     joints = [cell for cell in head[2:] if cell[0]]
     if not joints and lines and _time(lines[0][0][0]) is None:
         joints = [cell for cell in lines.pop(0) if cell[0]]

@@ -1,12 +1,12 @@
-"""Pictures of controllers and motions: from a value to what has to be drawn (`Sheet`), and from that to an image."""
+"""Pictures of controllers and motions: from a value to what has to be drawn (`PlotSheet`), from that to an image."""
 
-from lumen.formats.plots.controllers import controller_sheet, curves_sheet
-from lumen.formats.plots.drawing import ENDINGS, draw
-from lumen.formats.plots.explained import explained_sheet
-from lumen.formats.plots.motions import motion_sheet
-from lumen.formats.plots.sheet import Axis, Bars, Line, Mark, Panel, Sheet, Surface
+from lumen.formats.plots.controller_plot import controller_sheet, curves_sheet
+from lumen.formats.plots.drawing import PLOT_ENDINGS, draw
+from lumen.formats.plots.explanation_plot import explained_sheet
+from lumen.formats.plots.motion_plot import motion_sheet
+from lumen.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
 
 __all__ = [
-    "ENDINGS", "Axis", "Bars", "Line", "Mark", "Panel", "Sheet", "Surface",
+    "PLOT_ENDINGS", "PlotAxis", "PlotBars", "PlotLine", "PlotMark", "PlotPanel", "PlotSheet", "PlotSurface",
     "controller_sheet", "curves_sheet", "draw", "explained_sheet", "motion_sheet",
 ]  # fmt: skip

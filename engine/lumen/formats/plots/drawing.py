@@ -4,13 +4,13 @@ import io
 import logging
 from typing import TYPE_CHECKING, Any
 
-from lumen.formats.plots.sheet import Axis, Bars, Line, Mark, Panel, Sheet, Surface
+from lumen.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-ENDINGS = (".png", ".svg")
+PLOT_ENDINGS = (".png", ".svg")
 
 WIDTH, HEIGHT, DPI = 3.6, 2.6, 110
 """Of a panel, in inches."""
@@ -32,7 +32,7 @@ _STYLE: dict[Any, Any] = {
 }
 
 
-def draw(sheet: Sheet, ending: str) -> bytes:
+def draw(sheet: PlotSheet, ending: str) -> bytes:
     """The sheet as a PNG or SVG file, by the ending; the same sheet gives the same bytes."""
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     from matplotlib import rc_context
@@ -52,7 +52,7 @@ def draw(sheet: Sheet, ending: str) -> bytes:
     return file.getvalue()
 
 
-def _panel(figure: "Figure", axes: "Axes", panel: Panel) -> None:
+def _panel(figure: "Figure", axes: "Axes", panel: PlotPanel) -> None:
     axes.set_title(panel.title)
     axes.set_xlabel(panel.x.label)
     axes.set_ylabel(panel.y.label)
@@ -69,7 +69,7 @@ def _panel(figure: "Figure", axes: "Axes", panel: Panel) -> None:
         axes.legend(loc="best")
 
 
-def _line(axes: "Axes", line: Line) -> None:
+def _line(axes: "Axes", line: PlotLine) -> None:
     dash, colour = _DASHES[line.style % len(_DASHES)], _GREYS[line.style % len(_GREYS)]
     if line.points:
         axes.plot(line.xs, line.ys, linestyle="", marker="o", markersize=2.5, color=colour, label=line.label)
@@ -79,7 +79,7 @@ def _line(axes: "Axes", line: Line) -> None:
         axes.fill_between(line.xs, line.ys, color="#cccccc", linewidth=0)
 
 
-def _bars(axes: "Axes", bars: Bars) -> None:
+def _bars(axes: "Axes", bars: PlotBars) -> None:
     places = range(len(bars.labels))
     axes.barh(places, bars.values, color="#888888", height=0.5)
     axes.set_yticks([])
@@ -88,7 +88,7 @@ def _bars(axes: "Axes", bars: Bars) -> None:
         axes.annotate(f"{value:.3f}  {label}", (0.0, place - 0.3), va="bottom", fontsize=6)
 
 
-def _surface(figure: "Figure", axes: "Axes", surface: Surface) -> None:
+def _surface(figure: "Figure", axes: "Axes", surface: PlotSurface) -> None:
     import numpy as np
 
     heights = np.ma.masked_invalid(np.array(surface.zs))
@@ -99,7 +99,7 @@ def _surface(figure: "Figure", axes: "Axes", surface: Surface) -> None:
         figure.colorbar(filled, ax=axes, label=surface.label)
 
 
-def _mark(axes: "Axes", mark: Mark) -> None:
+def _mark(axes: "Axes", mark: PlotMark) -> None:
     width, colour = (1.4, "black") if mark.strong else (0.7, "#777777")
     (axes.axhline if mark.level else axes.axvline)(mark.at, color=colour, linewidth=width, linestyle=(0, (4, 2)))
     if mark.label:
@@ -115,7 +115,7 @@ def _mark(axes: "Axes", mark: Mark) -> None:
         )
 
 
-def _limits(axes: "Axes", x: Axis, y: Axis) -> None:
+def _limits(axes: "Axes", x: PlotAxis, y: PlotAxis) -> None:
     if x.low is not None:
         axes.set_xlim(x.low, x.high)
     if y.low is not None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Axis:
+class PlotAxis:
     """What an axis counts; both ends None where what is drawn decides."""
 
     label: str
@@ -13,7 +13,7 @@ class Axis:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class PlotLine:
     """A curve; NaN is a gap in it. `style` counts ways to look that stay apart in grey; `points`: only dots."""
 
     xs: tuple[float, ...]
@@ -25,7 +25,7 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class PlotMark:
     """A thin line across the panel at `at`: upright, or level; `strong` for a result."""
 
     at: float
@@ -35,7 +35,7 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True)
-class Bars:
+class PlotBars:
     """Level bars from above, each between 0 and 1."""
 
     labels: tuple[str, ...]
@@ -43,7 +43,7 @@ class Bars:
 
 
 @dataclass(frozen=True, slots=True)
-class Surface:
+class PlotSurface:
     """Heights over a grid: `zs[row][column]` at (`xs[column]`, `ys[row]`)."""
 
     xs: tuple[float, ...]
@@ -53,23 +53,23 @@ class Surface:
 
 
 @dataclass(frozen=True, slots=True)
-class Panel:
+class PlotPanel:
     """One pair of axes and what is in it."""
 
     title: str
-    x: Axis
-    y: Axis
-    lines: tuple[Line, ...] = ()
-    marks: tuple[Mark, ...] = ()
-    bars: Bars | None = None
-    surface: Surface | None = None
+    x: PlotAxis
+    y: PlotAxis
+    lines: tuple[PlotLine, ...] = ()
+    marks: tuple[PlotMark, ...] = ()
+    bars: PlotBars | None = None
+    surface: PlotSurface | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
+class PlotSheet:
     """Panels in rows of `columns`; `note` stands below them."""
 
     title: str
-    panels: tuple[Panel, ...]
+    panels: tuple[PlotPanel, ...]
     columns: int
     note: str = ""

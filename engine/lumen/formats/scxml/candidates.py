@@ -5,10 +5,19 @@ from collections.abc import Callable
 from typing import Any
 
 from lumen.interpreters.expressions import parse_expression, unparse
-from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_SOURCE
-from lumen.interpreters.expressions.tree import Binary, Call, Field, Literal, Logic, Name, Node, walk
+from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH, MAX_TREE_DEPTH
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    Literal,
+    Logic,
+    walk,
+)
 
-Row = dict[str, Any]
+TransitionData = dict[str, Any]
 
 
 def normal(descriptor: str) -> str:
@@ -21,7 +30,7 @@ def overlap(one: str, other: str) -> bool:
     return "*" in (one, other) or f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
 
 
-def arrange(rows: list[tuple[str, Row]], leave_out: Callable[[Row], None]) -> dict[str, Any]:
+def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[TransitionData], None]) -> dict[str, Any]:
     """`on` for these candidates, tried in this order; a descriptor with one candidate has it without a list.
 
     Where the same descriptor stands before and after one that an event may match as well, all of these become
@@ -33,7 +42,7 @@ def arrange(rows: list[tuple[str, Row]], leave_out: Callable[[Row], None]) -> di
         if order.passed(descriptor):
             mixed.add(heads[descriptor])
         order.add(descriptor)
-    table: dict[str, list[Row]] = {}
+    table: dict[str, list[TransitionData]] = {}
     for descriptor, row in rows:
         head = heads[descriptor] if heads[descriptor] in mixed else descriptor
         narrowed = _narrowed(descriptor, head, row)
@@ -78,23 +87,25 @@ def _prefixes(descriptor: str) -> list[str]:
     return ["*", *(".".join(words[:n]) for n in range(1, len(words)))]
 
 
-def single(rows: list[Row]) -> Any:
+def single(rows: list[TransitionData]) -> Any:
     """The one row, or the list; a row that is only a target in one place is that text."""
     shown = [row["target"] if set(row) == {"target"} and isinstance(row["target"], str) else row for row in rows]
     return shown[0] if len(shown) == 1 else shown
 
 
-def _narrowed(name: str, general: str, row: Row) -> Row | None:
+def _narrowed(name: str, general: str, row: TransitionData) -> TransitionData | None:
     """The row as a candidate of the general descriptor, None where its guard can't be that long."""
     if name == general:
         return row
-    event = Field(Name("event"), "name")
+    event = FieldAccess(Identifier("event"), "name")
     pattern = re.sub(r"([^\w\s])", r"\\\1", f"{name}.", flags=re.ASCII)
-    asked: Node = Logic("||", (Binary("==", event, Literal(name)), Call("matches", (event, Literal(f"^{pattern}")))))
+    asked: ExpressionNode = Logic(
+        "||", (Binary("==", event, Literal(name)), FunctionCall("matches", (event, Literal(f"^{pattern}"))))
+    )
     if "guard" in row:
         guard = parse_expression(row["guard"])
         more = guard.operands if isinstance(guard, Logic) and guard.sign == "&&" else (guard,)
         asked = Logic("&&", (asked, *more))
     text = unparse(asked)
-    fits = len(text) <= MAX_SOURCE and all(level <= MAX_DEPTH for _, level in walk(asked))
+    fits = len(text) <= MAX_EXPRESSION_LENGTH and all(level <= MAX_TREE_DEPTH for _, level in walk(asked))
     return {"guard": text, **{key: value for key, value in row.items() if key != "guard"}} if fits else None

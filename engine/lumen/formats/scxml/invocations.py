@@ -4,14 +4,14 @@ import re
 from pathlib import PurePosixPath
 from typing import Any
 
-from lumen.formats.scxml.contents import PROCESSORS, Contents, LeftOutError
-from lumen.formats.scxml.elements import Element
+from lumen.formats.scxml.action_reader import PROCESSORS, LeftOutError, ScxmlActionReader
+from lumen.formats.scxml.xml_elements import XmlElement
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 _ID = re.compile(r"[^\s@*]+")
 
 
-def invocation(element: Element, contents: Contents) -> dict[str, Any]:
+def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, Any]:
     """The behaviour named as the file, with its id and its input; raises LeftOutError or ScriptError for all else."""
     kind, source = element.get("type"), element.get("src").removeprefix("file:")
     if kind.rstrip("/") not in {p.rstrip("/") for p in PROCESSORS} or "typeexpr" in element.attributes:

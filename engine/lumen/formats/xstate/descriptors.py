@@ -7,7 +7,7 @@ from lumen.language.actions import If, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
 
 
-class Descriptors:
+class EventDescriptors:
     """Knows every event that a machine speaks of."""
 
     def __init__(self, machine: MachineDefinition) -> None:

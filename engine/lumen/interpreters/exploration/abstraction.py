@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.interpreters.exploration.expression_uses import invoked_behavior, of_state
 from lumen.interpreters.exploration.liveness import Liveness
-from lumen.interpreters.expressions.tree import Call, Literal, walk
+from lumen.interpreters.expressions.tree import FunctionCall, Literal, walk
 from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 from lumen.language.machines import MachineDefinition
 
@@ -33,7 +33,9 @@ class Abstraction:
         literals = {node.value for use in uses for node, _ in walk(use.tree) if isinstance(node, Literal)}
         self._texts = {value for value in literals if isinstance(value, str)}
         self._numbers = sorted({v for v in literals if isinstance(v, int | float) and not isinstance(v, bool)} | {0})
-        self._sized = any(isinstance(n, Call) and n.function == "size" for use in uses for n, _ in walk(use.tree))
+        self._sized = any(
+            isinstance(n, FunctionCall) and n.function == "size" for use in uses for n, _ in walk(use.tree)
+        )
         self._language = any(re.search(r"\bstate\.language\b", t) for t in _guards(machine))
         self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
-from lumen.interpreters.expressions import ExpressionError, Node, names, parse_expression
+from lumen.interpreters.expressions import ExpressionError, ExpressionNode, names, parse_expression
 from lumen.language.actions import Assign, ComputedValue, Expression, If, Parallel, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
 
@@ -12,12 +12,12 @@ from lumen.language.machines import MachineDefinition, State, Transition
 class ExpressionUse(NamedTuple):
     """An expression, and the context key that its value goes to; no key where the way itself depends on it."""
 
-    tree: Node
+    tree: ExpressionNode
     key: str = ""
 
 
 @lru_cache(maxsize=8192)
-def tree_of(source: str) -> Node | None:
+def tree_of(source: str) -> ExpressionNode | None:
     """The tree of an expression, None where it can't be read."""
     try:
         return parse_expression(source)

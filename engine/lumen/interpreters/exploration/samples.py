@@ -5,7 +5,16 @@ from itertools import product
 from math import prod
 from typing import Any
 
-from lumen.interpreters.expressions.tree import Binary, Call, Items, Literal, Node, children, path_of, walk
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    ExpressionNode,
+    FunctionCall,
+    ListLiteral,
+    Literal,
+    children,
+    path_of,
+    walk,
+)
 from lumen.language.machines import MachineDefinition
 
 MAX_FIELD_COMBINATIONS = 300
@@ -16,7 +25,7 @@ SAMPLE_TEXT = "Ani"
 FieldPath = tuple[str, ...]
 
 
-def samples(machine: MachineDefinition, schema: Any, trees: Iterable[Node]) -> Iterator[Any]:
+def samples(machine: MachineDefinition, schema: Any, trees: Iterable[ExpressionNode]) -> Iterator[Any]:
     """Data of an event with that JSON Schema, with every field that the trees read at all values they mention.
 
     Further ones go on where a field has many values; the first is the plainest.
@@ -80,17 +89,17 @@ def _of_kind(kind: str, schema: Mapping[str, Any]) -> list[Any]:
     return plain.get(kind, [None])
 
 
-def _mentioned(machine: MachineDefinition, tree: Node) -> Iterator[tuple[FieldPath, list[Any]]]:
+def _mentioned(machine: MachineDefinition, tree: ExpressionNode) -> Iterator[tuple[FieldPath, list[Any]]]:
     """For each field of the event's data that stands in the tree, values that it is compared with."""
     yield from ((path, []) for path in _fields(tree))
     for node, _ in walk(tree):
         match node:
-            case Call(function=function, arguments=(first, Literal(value=str() as text))):
+            case FunctionCall(function=function, arguments=(first, Literal(value=str() as text))):
                 found = _heard(machine, function, text)
                 yield from ((path, found) for path in _fields(first))
             case Binary(left=left, right=right):
                 for one, other in ((left, right), (right, left)):
-                    sized = any(isinstance(n, Call) and n.function == "size" for n, _ in walk(one))
+                    sized = any(isinstance(n, FunctionCall) and n.function == "size" for n, _ in walk(one))
                     found = _compared(other, sized=sized)
                     yield from ((path, found) for path in _fields(one))
 
@@ -110,8 +119,8 @@ def _heard(machine: MachineDefinition, function: str, text: str) -> list[Any]:
     return []
 
 
-def _compared(other: Node, *, sized: bool) -> list[Any]:
-    items = other.items if isinstance(other, Items) else (other,)
+def _compared(other: ExpressionNode, *, sized: bool) -> list[Any]:
+    items = other.items if isinstance(other, ListLiteral) else (other,)
     found: list[Any] = []
     for item in items:
         if isinstance(item, Literal):
@@ -125,7 +134,7 @@ def _compared(other: Node, *, sized: bool) -> list[Any]:
     return found
 
 
-def _fields(tree: Node) -> Iterator[FieldPath]:
+def _fields(tree: ExpressionNode) -> Iterator[FieldPath]:
     """The fields of the event's data in a tree, each as a whole."""
     path = _field(tree)
     if path is not None:
@@ -135,7 +144,7 @@ def _fields(tree: Node) -> Iterator[FieldPath]:
         yield from _fields(child)
 
 
-def _field(node: Node) -> FieldPath | None:
+def _field(node: ExpressionNode) -> FieldPath | None:
     path = path_of(node)
     return path[2:] if path and path[:2] == ("event", "data") else None
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from lumen.errors import ExpressionError
 from lumen.interpreters.exploration.expression_uses import invoked_behavior, of_transition
 from lumen.interpreters.exploration.samples import samples
-from lumen.interpreters.expressions import Node, Scope, compile_expression, names, unparse
+from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, names, unparse
 from lumen.interpreters.expressions.tree import children
 from lumen.interpreters.statechart import Awaiting, Fork, Position, Snapshot, Timer, Within
 from lumen.interpreters.statechart.answers import outside
@@ -120,7 +120,7 @@ def _heard(program: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[
         yield from _heard(program.invoked[behavior], child.snapshot, name)
 
 
-def _known_of_events(tree: Node) -> Iterator[Node]:
+def _known_of_events(tree: ExpressionNode) -> Iterator[ExpressionNode]:
     """The largest parts of an expression that depend on the event's data and on nothing else but it."""
     speaks = names(tree)
     alone = not speaks.context and not speaks.functions & {"In", "hour"}

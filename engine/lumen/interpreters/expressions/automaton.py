@@ -6,22 +6,22 @@ K. Thompson, "Regular Expression Search Algorithm", CACM 11(6), 1968. `re` only 
 import re
 from typing import NamedTuple
 
-Test = re.Pattern[str] | str | None
+CharacterTest = re.Pattern[str] | str | None
 """What a state asks: a set of characters, a character, or an anchor (`^ $ \\b \\B`)."""
 
 
-class State(NamedTuple):
+class AutomatonState(NamedTuple):
     """`kind` is char, split, at or end; `test` a character's pattern or an anchor's name; `next` where it leads."""
 
     kind: str
-    test: Test
+    test: CharacterTest
     next: tuple[int, ...]
 
 
-class Pattern:
+class CompiledPattern:
     """A compiled pattern; `search` tells whether it occurs anywhere in a text."""
 
-    def __init__(self, states: list[State], start: int) -> None:
+    def __init__(self, states: list[AutomatonState], start: int) -> None:
         self.states, self.start = states, start
 
     def search(self, text: str) -> bool:
@@ -52,7 +52,7 @@ class Pattern:
         return reached
 
 
-def _fits(test: Test, character: str) -> bool:
+def _fits(test: CharacterTest, character: str) -> bool:
     return test == character if isinstance(test, str) else test is None or test.match(character) is not None
 
 

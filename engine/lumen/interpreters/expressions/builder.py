@@ -9,27 +9,27 @@ import ast
 from itertools import count
 from types import CodeType
 
-from lumen.interpreters.expressions.explain import FILE
+from lumen.interpreters.expressions.error_explanation import EXPRESSION_FILE
 from lumen.interpreters.expressions.functions import FUNCTIONS
 from lumen.interpreters.expressions.kinds import BOOLEAN
 from lumen.interpreters.expressions.scope import ROOTS
 from lumen.interpreters.expressions.tree import (
     Binary,
-    Call,
-    Choice,
-    Entries,
-    Field,
-    Index,
-    Items,
+    Conditional,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    IndexAccess,
+    ListLiteral,
     Literal,
     Logic,
-    Name,
-    Node,
+    MapLiteral,
     Unary,
     walk,
 )
 
-SIGNS = {
+OPERATOR_FUNCTIONS = {
     "==": "equal", "<": "less", "<=": "at_most", ">": "greater", ">=": "at_least", "in": "contained",
     "+": "add", "-": "subtract", "*": "multiply", "/": "divide", "%": "remainder",
 }  # fmt: skip
@@ -37,31 +37,33 @@ _ORDER = {"<": ast.Lt, "<=": ast.LtE, ">": ast.Gt, ">=": ast.GtE}
 _YES_OR_NO = {"==", "!=", "<", "<=", ">", ">=", "in"}
 
 
-def is_condition(node: Node) -> bool:
+def is_condition(node: ExpressionNode) -> bool:
     """Whether the node can have no value but true or false."""
     match node:
         case Literal(value=bool()) | Logic() | Unary(sign="!"):
             return True
         case Binary(sign=sign):
             return sign in _YES_OR_NO
-        case Call(function=function):
+        case FunctionCall(function=function):
             return FUNCTIONS[function].returns == {BOOLEAN}
-        case Choice(then=then, otherwise=otherwise):
+        case Conditional(then=then, otherwise=otherwise):
             return is_condition(then) and is_condition(otherwise)
     return False
 
 
-def _builds(tree: Node) -> bool:
+def _builds(tree: ExpressionNode) -> bool:
     """Whether the expression can put together a list or map that was not there before."""
     if is_condition(tree):
         return False
-    return any(isinstance(n, Items | Entries) or (isinstance(n, Binary) and n.sign == "+") for n, _ in walk(tree))
+    return any(
+        isinstance(n, ListLiteral | MapLiteral) or (isinstance(n, Binary) and n.sign == "+") for n, _ in walk(tree)
+    )
 
 
-class Builder:
+class CodeBuilder:
     """Builds the Python tree of one expression."""
 
-    def __init__(self, tree: Node, *, careful: bool) -> None:
+    def __init__(self, tree: ExpressionNode, *, careful: bool) -> None:
         self.tree, self.careful = tree, careful
         self.numbers = {id(node): number for number, (node, _) in enumerate(walk(tree), 1)}
         self.temporary = count()
@@ -79,13 +81,13 @@ class Builder:
         define = ast.FunctionDef("evaluate", scope, body, [])
         define.lineno = define.end_lineno = 1
         module = ast.fix_missing_locations(ast.Module([define], []))
-        return compile(module, FILE, "exec", dont_inherit=True, optimize=0)
+        return compile(module, EXPRESSION_FILE, "exec", dont_inherit=True, optimize=0)
 
-    def node(self, node: Node) -> ast.expr:
+    def node(self, node: ExpressionNode) -> ast.expr:
         built = self.build(node)
         return self.place(built, node)
 
-    def place(self, built: ast.expr, node: Node) -> ast.expr:
+    def place(self, built: ast.expr, node: ExpressionNode) -> ast.expr:
         """The Python node, marked with the number of ours."""
         built.lineno = built.end_lineno = self.numbers[id(node)]
         built.col_offset = built.end_col_offset = 0
@@ -94,7 +96,7 @@ class Builder:
     def call(self, name: str, *arguments: ast.expr) -> ast.expr:
         return ast.Call(_load(name), list(arguments), [])
 
-    def condition(self, node: Node) -> ast.expr:
+    def condition(self, node: ExpressionNode) -> ast.expr:
         """The node's value, made sure to be true or false."""
         built = self.node(node)
         if is_condition(node):
@@ -110,28 +112,30 @@ class Builder:
         name = f"v{next(self.temporary)}"
         return ast.NamedExpr(ast.Name(name, ast.Store()), value), _load(name)
 
-    def hidden(self, node: Node) -> ast.expr:
+    def hidden(self, node: ExpressionNode) -> ast.expr:
         """The node, so that Python does not see where it is constant: it would warn of `1['a']` and `1 is None`."""
         built = self.node(node)
-        return built if isinstance(node, Name | Field | Index | Call) else self.named(built)[0]
+        return (
+            built if isinstance(node, Identifier | FieldAccess | IndexAccess | FunctionCall) else self.named(built)[0]
+        )
 
-    def build(self, node: Node) -> ast.expr:
+    def build(self, node: ExpressionNode) -> ast.expr:
         match node:
             case Literal(value=value):
                 return ast.Constant(value)
-            case Name(name=name):
+            case Identifier(name=name):
                 return _at(_load("scope"), ROOTS.index(name))
-            case Field(base=base, name=name):
+            case FieldAccess(base=base, name=name):
                 return _at(self.hidden(base), name)
-            case Index(base=base, key=Literal(value=str() as key)):
+            case IndexAccess(base=base, key=Literal(value=str() as key)):
                 return _at(self.hidden(base), key)
-            case Items(items=items):
+            case ListLiteral(items=items):
                 return ast.List([self.node(item) for item in items], ast.Load())
-            case Entries(keys=keys, values=entries):
+            case MapLiteral(keys=keys, values=entries):
                 return ast.Dict([ast.Constant(key) for key in keys], [self.node(value) for value in entries])
             case Logic(sign=sign, operands=operands):
                 return self.logic(sign, [self.condition(operand) for operand in operands])
-            case Choice(condition=condition, then=then, otherwise=otherwise):
+            case Conditional(condition=condition, then=then, otherwise=otherwise):
                 return ast.IfExp(self.condition(condition), self.node(then), self.node(otherwise))
             case Binary(sign=sign, left=left, right=right):
                 return self.binary(sign, left, right)
@@ -139,11 +143,11 @@ class Builder:
                 return ast.UnaryOp(ast.Not(), self.node(operand))
             case Unary(sign=sign, operand=operand):
                 return self.call("negation" if sign == "!" else "negative", self.node(operand))
-            case Index(base=base, key=index):
+            case IndexAccess(base=base, key=index):
                 return self.call("item", self.node(base), self.node(index))
-            case Call(function="has", arguments=(target,)):
+            case FunctionCall(function="has", arguments=(target,)):
                 return self.has(target)
-            case Call(function=function, arguments=arguments):
+            case FunctionCall(function=function, arguments=arguments):
                 first = [_load("scope")] if FUNCTIONS[function].scoped else []
                 return self.call(f"call_{function}", *first, *map(self.node, arguments))
 
@@ -153,11 +157,11 @@ class Builder:
         nothing = ast.arguments([], [], None, [], [], None, [])
         return self.call("both" if sign == "&&" else "either", *(ast.Lambda(nothing, o) for o in operands))
 
-    def has(self, target: Node) -> ast.expr:
+    def has(self, target: ExpressionNode) -> ast.expr:
         """`has(a.b.c)`: a map that has the next key, one after another; without a call where they are Python's own."""
         keys: list[ast.expr] = []
-        while isinstance(target, Field | Index):
-            keys.append(ast.Constant(target.name) if isinstance(target, Field) else self.node(target.key))
+        while isinstance(target, FieldAccess | IndexAccess):
+            keys.append(ast.Constant(target.name) if isinstance(target, FieldAccess) else self.node(target.key))
             target = target.base
         return self.reaches(self.node(target), keys[::-1])
 
@@ -172,16 +176,16 @@ class Builder:
         is_map = ast.Compare(self.call("type", value), [ast.Is()], [_load("map")])
         return ast.IfExp(is_map, inside, self.call("has", again, *keys))
 
-    def binary(self, sign: str, left: Node, right: Node) -> ast.expr:
+    def binary(self, sign: str, left: ExpressionNode, right: ExpressionNode) -> ast.expr:
         if sign in ("==", "!=") and isinstance(right, Literal):
             return self.equals_literal(sign, left, right)
         if sign == "!=":
             return ast.UnaryOp(ast.Not(), self.call("equal", self.node(left), self.node(right)))
         if sign in _ORDER and isinstance(right, Literal) and type(right.value) in (int, float):
             return self.compares_number(sign, left, right)
-        return self.call(SIGNS[sign], self.node(left), self.node(right))
+        return self.call(OPERATOR_FUNCTIONS[sign], self.node(left), self.node(right))
 
-    def equals_literal(self, sign: str, left: Node, right: Literal) -> ast.expr:
+    def equals_literal(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
         """`left == literal` without a call; of all literals Python takes only 0 and 1 for something else (a bool)."""
         identity = right.value is None or isinstance(right.value, bool)
         negated = sign == "!="
@@ -194,12 +198,12 @@ class Builder:
             operator = ast.NotEq() if negated else ast.Eq()
         return ast.Compare(self.hidden(left), [operator], [self.node(right)])
 
-    def compares_number(self, sign: str, left: Node, right: Literal) -> ast.expr:
+    def compares_number(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
         """`left < number` at once where `left` is a number, and with all checks where it is not."""
         value, again = self.named(self.node(left))
         is_number = ast.Compare(self.call("type", value), [ast.In()], [_load("numbers")])
         fast = ast.Compare(again, [_ORDER[sign]()], [ast.Constant(right.value)])
-        return ast.IfExp(is_number, fast, self.call(SIGNS[sign], again, ast.Constant(right.value)))
+        return ast.IfExp(is_number, fast, self.call(OPERATOR_FUNCTIONS[sign], again, ast.Constant(right.value)))
 
 
 def _load(name: str) -> ast.expr:

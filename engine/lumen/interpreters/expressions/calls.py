@@ -3,10 +3,10 @@
 from collections.abc import Collection
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.findings import Findings, Surroundings
+from lumen.interpreters.expressions.expression_findings import Declarations, ExpressionFindings
 from lumen.interpreters.expressions.functions import FUNCTIONS, Function
 from lumen.interpreters.expressions.patterns import compile_pattern
-from lumen.interpreters.expressions.tree import Call, Literal, Node
+from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal
 from lumen.language.diagnostics import did_you_mean
 
 _INSTEAD = {
@@ -20,7 +20,7 @@ _ARGUMENTS = {
 }  # fmt: skip
 
 
-def function_of(node: Call, findings: Findings) -> Function | None:
+def function_of(node: FunctionCall, findings: ExpressionFindings) -> Function | None:
     """The function that is called, None where there is none of that name; a wrong number of arguments is reported."""
     function = FUNCTIONS.get(node.function)
     if function is None:
@@ -37,7 +37,7 @@ def function_of(node: Call, findings: Findings) -> Function | None:
     return function
 
 
-def check_names(node: Call, around: Surroundings, findings: Findings) -> None:
+def check_names(node: FunctionCall, around: Declarations, findings: ExpressionFindings) -> None:
     """Look the literal names up that `heard`, `lookup` and `In` are given, and read the pattern of `matches`."""
     if len(node.arguments) != len(FUNCTIONS[node.function].parameters) or not node.arguments:
         return
@@ -56,7 +56,7 @@ def check_names(node: Call, around: Surroundings, findings: Findings) -> None:
             findings.report(code, last, f"{message} `{name}`", did_you_mean(name, known, "there are"))
 
 
-def _pattern(node: Node, pattern: str | None, findings: Findings) -> None:
+def _pattern(node: ExpressionNode, pattern: str | None, findings: ExpressionFindings) -> None:
     if pattern is None:
         hint = "a pattern can't be computed; use `contains` for that"
         findings.report("unsafe-pattern", node, "`matches` needs its pattern written as a text", hint)

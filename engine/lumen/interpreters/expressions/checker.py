@@ -5,45 +5,61 @@ from typing import Any
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.calls import check_names, function_of
-from lumen.interpreters.expressions.facts import Known, facts, prefixes
-from lumen.interpreters.expressions.findings import STRUCTURAL, Finding, Findings, Surroundings, in_words
+from lumen.interpreters.expressions.expression_findings import (
+    CODES_OF_COMPILE_ERRORS,
+    Declarations,
+    ExpressionFinding,
+    ExpressionFindings,
+    in_words,
+)
+from lumen.interpreters.expressions.facts import KnownFacts, facts, prefixes
 from lumen.interpreters.expressions.functions import FUNCTIONS
 from lumen.interpreters.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT
 from lumen.interpreters.expressions.parser import parse_expression
-from lumen.interpreters.expressions.schemas import ANY, Presence, Type, of, type_of_schema, type_of_values, union
 from lumen.interpreters.expressions.scope import ROOTS
 from lumen.interpreters.expressions.tree import (
     Binary,
-    Call,
-    Choice,
-    Entries,
-    Field,
-    Index,
-    Items,
+    Conditional,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    IndexAccess,
+    ListLiteral,
     Literal,
     Logic,
-    Name,
-    Node,
+    MapLiteral,
     Unary,
     children,
     path_of,
 )
+from lumen.interpreters.expressions.value_types import (
+    ANY,
+    FieldPresence,
+    ValueType,
+    of,
+    type_of_schema,
+    type_of_values,
+    union,
+)
 from lumen.language.diagnostics import did_you_mean
 
 
-def must_hold(tree: Node) -> None:
+def must_hold(tree: ExpressionNode) -> None:
     """Raise ExpressionError for the first thing that keeps the expression from being compiled."""
-    checker = _Checker(Surroundings())
-    checker.type(tree, Known())
+    checker = _Checker(Declarations())
+    checker.type(tree, KnownFacts())
     for finding in checker.findings.found:
-        if finding.code in STRUCTURAL:
+        if finding.code in CODES_OF_COMPILE_ERRORS:
             raise ExpressionError(finding.message, finding.offset, finding.hint)
 
 
-def check_tree(tree: Node, around: Surroundings, expected: Mapping[str, Any] | None = None) -> list[Finding]:
+def check_tree(
+    tree: ExpressionNode, around: Declarations, expected: Mapping[str, Any] | None = None
+) -> list[ExpressionFinding]:
     """Everything wrong with a tree; `expected` is the JSON Schema that its value has to fit."""
     checker = _Checker(around)
-    result = checker.type(tree, Known())
+    result = checker.type(tree, KnownFacts())
     if expected is not None:
         checker.expect(tree, result, type_of_schema(expected).kinds, "here")
     return sorted(checker.findings.found, key=lambda finding: finding.offset)
@@ -58,7 +74,7 @@ def check_expression(
     answers: Collection[str] | None = None,
     states: Collection[str] | None = None,
     expected: Mapping[str, Any] | None = None,
-) -> list[Finding]:
+) -> list[ExpressionFinding]:
     """Everything wrong with an expression, in the order it stands; never raises for what the source says.
 
     `context` maps its keys to JSON Schemas; `events` maps the events that can arrive here to those of their data
@@ -69,32 +85,32 @@ def check_expression(
     try:
         tree = parse_expression(source)
     except ExpressionError as error:
-        return [Finding("expression-syntax", error.offset, 1, error.message, error.hint)]
-    return check_tree(tree, Surroundings(context, events, phrases, answers, states), expected)
+        return [ExpressionFinding("expression-syntax", error.offset, 1, error.message, error.hint)]
+    return check_tree(tree, Declarations(context, events, phrases, answers, states), expected)
 
 
 class _Checker:
     """Finds the type of every node from below, and collects what is wrong on the way."""
 
-    def __init__(self, around: Surroundings) -> None:
-        self.around, self.findings = around, Findings()
+    def __init__(self, around: Declarations) -> None:
+        self.around, self.findings = around, ExpressionFindings()
         self.report = self.findings.report
 
-    def expect(self, node: Node, found: Type, wanted: frozenset[str], whose: str) -> bool:
+    def expect(self, node: ExpressionNode, found: ValueType, wanted: frozenset[str], whose: str) -> bool:
         return self.findings.expect(node, found.kinds, wanted, whose)
 
-    def type(self, node: Node, known: Known) -> Type:
+    def type(self, node: ExpressionNode, known: KnownFacts) -> ValueType:
         match node:
             case Literal(value=value):
                 return type_of_values([value])
-            case Name():
+            case Identifier():
                 return self.name(node, known)
-            case Field() | Index():
+            case FieldAccess() | IndexAccess():
                 return self.member(node, known)
-            case Items() | Entries():
+            case ListLiteral() | MapLiteral():
                 for child in children(node):
                     self.type(child, known)
-                return of(LIST if isinstance(node, Items) else MAP)
+                return of(LIST if isinstance(node, ListLiteral) else MAP)
             case Unary(sign=sign, operand=operand):
                 kind = BOOLEAN if sign == "!" else NUMBER
                 self.expect(operand, self.type(operand, known), frozenset((kind,)), f"by `{sign}`")
@@ -104,25 +120,25 @@ class _Checker:
                     self.expect(operand, self.type(operand, known), frozenset((BOOLEAN,)), f"by `{sign}`")
                     known &= facts(operand, sign == "&&")
                 return of(BOOLEAN)
-            case Choice(condition=condition, then=then, otherwise=otherwise):
+            case Conditional(condition=condition, then=then, otherwise=otherwise):
                 self.expect(condition, self.type(condition, known), frozenset((BOOLEAN,)), "before `?`")
                 yes = self.type(then, known & facts(condition, True))
                 return union((yes, self.type(otherwise, known & facts(condition, False))))
             case Binary():
                 return self.binary(node, self.type(node.left, known), self.type(node.right, known))
-            case Call():
+            case FunctionCall():
                 return self.call(node, known)
 
-    def name(self, node: Name, known: Known) -> Type:
+    def name(self, node: Identifier, known: KnownFacts) -> ValueType:
         around = self.around
         if node.name == "context":
             properties = around.context
-            return ANY if properties is None else Type(frozenset((MAP,)), ({"properties": properties},))
+            return ANY if properties is None else ValueType(frozenset((MAP,)), ({"properties": properties},))
         if node.name == "event":
             return self.event(known)
         if node.name == "state":
             text = {"type": "string"}
-            return Type(frozenset((MAP,)), ({"properties": {"path": text, "language": text}},))
+            return ValueType(frozenset((MAP,)), ({"properties": {"path": text, "language": text}},))
         hint = did_you_mean(node.name, ROOTS, "an expression begins with")
         if around.context and node.name in around.context:
             hint = f"did you mean `context.{node.name}`?"
@@ -133,21 +149,21 @@ class _Checker:
         self.report("unknown-name", node, f"there is nothing named `{node.name}`", hint)
         return ANY
 
-    def event(self, known: Known) -> Type:
+    def event(self, known: KnownFacts) -> ValueType:
         events = self.around.events
         if events is None:
-            return Type(frozenset((MAP, NULL)), ({"properties": {"name": {"type": "string"}, "data": {}}},))
+            return ValueType(frozenset((MAP, NULL)), ({"properties": {"name": {"type": "string"}, "data": {}}},))
         possible = [name for name in events if known.events is None or name in known.events]
         name = {"type": "string"}
         data = [events[n] if isinstance(events[n], Mapping) else {} for n in possible]
-        return Type(frozenset((MAP,)), tuple({"properties": {"name": name, "data": d}} for d in data))
+        return ValueType(frozenset((MAP,)), tuple({"properties": {"name": name, "data": d}} for d in data))
 
-    def member(self, node: Field | Index, known: Known, *, must_exist: bool = True) -> Type:
+    def member(self, node: FieldAccess | IndexAccess, known: KnownFacts, *, must_exist: bool = True) -> ValueType:
         base = self.type(node.base, known)
         match node:
-            case Field(name=key) | Index(key=Literal(value=str() as key)):
+            case FieldAccess(name=key) | IndexAccess(key=Literal(value=str() as key)):
                 pass
-            case Index(key=index):
+            case IndexAccess(key=index):
                 return self.index(node, base, self.type(index, known))
         if not self.expect(node.base, base, frozenset((MAP,)), f"to have `{key}`"):
             return ANY
@@ -157,24 +173,26 @@ class _Checker:
             self.presence(node, key, base, presence, path in known.present)
         return found
 
-    def index(self, node: Index, base: Type, index: Type) -> Type:
+    def index(self, node: IndexAccess, base: ValueType, index: ValueType) -> ValueType:
         indexed = {LIST: NUMBER, MAP: TEXT}
         if self.expect(node.base, base, frozenset(indexed), "before `[`"):
             wanted = frozenset(indexed[kind] for kind in base.kinds if kind in indexed)
             self.expect(node.key, index, wanted, "as an index")
         return base.element() if base.kinds == {LIST} else ANY
 
-    def presence(self, node: Field | Index, key: str, base: Type, presence: Presence, guarded: bool) -> None:
+    def presence(
+        self, node: FieldAccess | IndexAccess, key: str, base: ValueType, presence: FieldPresence, guarded: bool
+    ) -> None:
         """Report a field that is not there, or may be missing."""
-        start = node.end - len(key) if isinstance(node, Field) else node.key.offset
+        start = node.end - len(key) if isinstance(node, FieldAccess) else node.key.offset
         path = path_of(node) or ()
         owner = ".".join(path[:-1]) or "this"
-        if path[:1] == ("context",) and len(path) == 2 and presence is Presence.UNDECLARED:
+        if path[:1] == ("context",) and len(path) == 2 and presence is FieldPresence.UNDECLARED:
             hint = did_you_mean(key, base.fields(), "`context` has")
             self.report("unknown-context-key", node, f"the context has no `{key}`", hint, start)
-        elif guarded or presence is Presence.SURE:
+        elif guarded or presence is FieldPresence.SURE:
             return
-        elif presence is Presence.UNDECLARED:
+        elif presence is FieldPresence.UNDECLARED:
             hint = did_you_mean(key, base.fields(), f"`{owner}` has")
             several = base.fields() and key in base.fields()
             message = f"not every event here has `{owner}.{key}`" if several else f"`{owner}` has no `{key}`"
@@ -184,7 +202,7 @@ class _Checker:
             hint = f"guard it with has({owner}.{key})"
             self.report("unguarded-field", node, f"`{owner}.{key}` may be missing", hint, start)
 
-    def binary(self, node: Binary, left: Type, right: Type) -> Type:
+    def binary(self, node: Binary, left: ValueType, right: ValueType) -> ValueType:
         match node.sign:
             case "==" | "!=":
                 asks_null = any(isinstance(n, Literal) and n.value is None for n in (node.left, node.right))
@@ -204,16 +222,16 @@ class _Checker:
                 common = left.kinds & right.kinds & {NUMBER, TEXT, LIST}
                 if not common:
                     self.mismatch(node, left, right, "`+` joins two numbers, two texts or two lists")
-                return Type(common or KINDS)
+                return ValueType(common or KINDS)
         for operand, found in ((node.left, left), (node.right, right)):
             self.expect(operand, found, frozenset((NUMBER,)), f"by `{node.sign}`")
         return of(NUMBER)
 
-    def mismatch(self, node: Binary, left: Type, right: Type, hint: str) -> None:
+    def mismatch(self, node: Binary, left: ValueType, right: ValueType, hint: str) -> None:
         message = f"{in_words(left.kinds)} and {in_words(right.kinds)} don't go together in `{node.sign}`"
         self.report("type-mismatch", node, message, hint)
 
-    def call(self, node: Call, known: Known) -> Type:
+    def call(self, node: FunctionCall, known: KnownFacts) -> ValueType:
         function = function_of(node, self.findings)
         if function is None:
             for argument in node.arguments:
@@ -224,12 +242,12 @@ class _Checker:
         for argument, kinds in zip(node.arguments, function.parameters, strict=False):
             self.expect(argument, self.type(argument, known), kinds, f"by `{node.function}`")
         check_names(node, self.around, self.findings)
-        return Type(function.returns)
+        return ValueType(function.returns)
 
-    def has(self, node: Call, known: Known) -> Type:
+    def has(self, node: FunctionCall, known: KnownFacts) -> ValueType:
         target = node.arguments[0]
-        if isinstance(target, Field | Index):
-            self.member(target, known & Known(prefixes(target)), must_exist=False)
+        if isinstance(target, FieldAccess | IndexAccess):
+            self.member(target, known & KnownFacts(prefixes(target)), must_exist=False)
         else:
             self.report("wrong-argument", target, "`has` asks whether a field is there", "write `has(event.data.x)`")
         return of(BOOLEAN)

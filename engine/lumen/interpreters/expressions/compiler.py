@@ -9,14 +9,14 @@ from functools import lru_cache
 from types import CodeType
 from typing import Any
 
-from lumen.interpreters.expressions import values
-from lumen.interpreters.expressions.builder import SIGNS, Builder
+from lumen.interpreters.expressions import operators as values
+from lumen.interpreters.expressions.builder import OPERATOR_FUNCTIONS, CodeBuilder
 from lumen.interpreters.expressions.checker import must_hold
-from lumen.interpreters.expressions.explain import explain
+from lumen.interpreters.expressions.error_explanation import explain
 from lumen.interpreters.expressions.functions import FUNCTIONS
 from lumen.interpreters.expressions.parser import parse_expression
 from lumen.interpreters.expressions.scope import Scope
-from lumen.interpreters.expressions.tree import Logic, Node, walk
+from lumen.interpreters.expressions.tree import ExpressionNode, Logic, walk
 
 Evaluate = Callable[[Scope], Any]
 
@@ -44,7 +44,7 @@ def _any_is(decisive: bool, operands: Sequence[Callable[[], Any]]) -> bool:
     return False
 
 
-_HELPERS = [*SIGNS.values(), "truth", "negation", "negative", "item", "has", "bounded"]
+_HELPERS = [*OPERATOR_FUNCTIONS.values(), "truth", "negation", "negative", "item", "has", "bounded"]
 _NAMES: dict[str, Any] = (
     {name: getattr(values, name) for name in _HELPERS}
     | {f"call_{name}": function.call for name, function in FUNCTIONS.items()}
@@ -80,13 +80,13 @@ def _compile(source: str, *, guard: bool) -> Evaluate:
         if not logical:
             raise explain(error, source, tree, scope) from None
         if not careful:
-            careful.append(_function(Builder(tree, careful=True).code(guard), _explainer(source, tree)))
+            careful.append(_function(CodeBuilder(tree, careful=True).code(guard), _explainer(source, tree)))
         return careful[0](scope)
 
-    return _function(Builder(tree, careful=False).code(guard), failed)
+    return _function(CodeBuilder(tree, careful=False).code(guard), failed)
 
 
-def _explainer(source: str, tree: Node) -> Callable[[Exception, Scope], Any]:
+def _explainer(source: str, tree: ExpressionNode) -> Callable[[Exception, Scope], Any]:
     def failed(error: Exception, scope: Scope) -> Any:
         raise explain(error, source, tree, scope) from None
 

@@ -16,19 +16,19 @@ from lumen.interpreters.expressions.kinds import (
     WrongKindError,
     kind_of,
 )
+from lumen.interpreters.expressions.operators import bounded_text, has
 from lumen.interpreters.expressions.patterns import compile_pattern
-from lumen.interpreters.expressions.scope import CUT, Scope
-from lumen.interpreters.expressions.values import bounded_text, has
+from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
 from lumen.language.diagnostics import did_you_mean
 
-Kinds = frozenset[str]
+KindSet = frozenset[str]
 
 
 class Function(NamedTuple):
     """`parameters` are the kinds that each argument may be of; a `scoped` one is handed the Scope before them."""
 
-    parameters: tuple[Kinds, ...]
-    returns: Kinds
+    parameters: tuple[KindSet, ...]
+    returns: KindSet
     call: Callable[..., Any]
     scoped: bool = False
 
@@ -48,22 +48,22 @@ def size(value: Any) -> int:
 
 def lower(text: Any) -> str:
     _texts(text)
-    return str(text[:CUT].lower())
+    return str(text[:MAX_TEXT_EXAMINED].lower())
 
 
 def trim(text: Any) -> str:
     _texts(text)
-    return str(text[:CUT].strip(phrases.BLANKS))
+    return str(text[:MAX_TEXT_EXAMINED].strip(phrases.BLANKS))
 
 
 def contains(text: Any, part: Any) -> bool:
     _texts(text, part)
-    return part[:CUT] in text[:CUT]
+    return part[:MAX_TEXT_EXAMINED] in text[:MAX_TEXT_EXAMINED]
 
 
 def replace(text: Any, old: Any, new: Any) -> str:
     _texts(text, old, new)
-    replaced = str(text[:CUT].replace(old[:CUT], new[:CUT]))
+    replaced = str(text[:MAX_TEXT_EXAMINED].replace(old[:MAX_TEXT_EXAMINED], new[:MAX_TEXT_EXAMINED]))
     bounded_text(len(replaced))
     return replaced
 
@@ -80,7 +80,7 @@ def words(text: Any) -> list[str]:
 
 def matches(text: Any, pattern: Any) -> bool:
     _texts(text, pattern)
-    return compile_pattern(pattern).search(text[:CUT])
+    return compile_pattern(pattern).search(text[:MAX_TEXT_EXAMINED])
 
 
 def hour(scope: Scope) -> int:

@@ -5,7 +5,7 @@ from typing import Any
 
 NULL, BOOLEAN, NUMBER, TEXT, LIST, MAP = "null", "boolean", "number", "text", "list", "map"
 KINDS = frozenset((NULL, BOOLEAN, NUMBER, TEXT, LIST, MAP))
-IN_WORDS = {
+KIND_DESCRIPTIONS = {
     NULL: "null", BOOLEAN: "true or false", NUMBER: "a number", TEXT: "a text", LIST: "a list", MAP: "a map",
 }  # fmt: skip
 

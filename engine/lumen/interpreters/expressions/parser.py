@@ -1,20 +1,20 @@
 """From the text of an expression to its tree: a parser that climbs operator precedence (Pratt, 1973)."""
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.scope import MAX_DEPTH, MAX_INT, MIN_INT
+from lumen.interpreters.expressions.scope import MAX_INT, MAX_TREE_DEPTH, MIN_INT
 from lumen.interpreters.expressions.tokens import Token, tokenize
 from lumen.interpreters.expressions.tree import (
     Binary,
-    Call,
-    Choice,
-    Entries,
-    Field,
-    Index,
-    Items,
+    Conditional,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    IndexAccess,
+    ListLiteral,
     Literal,
     Logic,
-    Name,
-    Node,
+    MapLiteral,
     Unary,
     walk,
 )  # fmt: skip
@@ -35,21 +35,21 @@ _PAIRS = {
 """Signs of other languages that are two tokens here."""
 
 
-def parse_expression(source: str) -> Node:
+def parse_expression(source: str) -> ExpressionNode:
     """The tree of an expression; raises ExpressionError with the offset of what can't be read."""
     parser = _Parser(tokenize(source))
     tree = parser.expression(0)
     if parser.token.kind != "end":
         raise parser.unexpected()
     for node, level in walk(tree):
-        if level > MAX_DEPTH:
+        if level > MAX_TREE_DEPTH:
             raise _too_deep(node.offset)
     return tree
 
 
 def _too_deep(offset: int) -> ExpressionError:
     hint = "split it, and keep a part in the context with `assign`"
-    return ExpressionError(f"the expression has more than {MAX_DEPTH} levels", offset, hint)
+    return ExpressionError(f"the expression has more than {MAX_TREE_DEPTH} levels", offset, hint)
 
 
 class _Parser:
@@ -89,10 +89,10 @@ class _Parser:
         before, token = self.tokens[max(self.position - 1, 0)], self.token
         return before.text + token.text if before.end == token.offset else ""
 
-    def expression(self, power: int) -> Node:
+    def expression(self, power: int) -> ExpressionNode:
         """An expression whose operators all bind more tightly than `power`."""
         self.level += 1
-        if self.level > 2 * MAX_DEPTH:  # brackets make levels here, though none in the tree
+        if self.level > 2 * MAX_TREE_DEPTH:  # brackets make levels here, though none in the tree
             raise _too_deep(self.token.offset)
         left = self.prefix()
         while (stronger := _POWERS.get(self.token.text, 0)) > power:
@@ -100,13 +100,13 @@ class _Parser:
         self.level -= 1
         return left
 
-    def infix(self, left: Node, power: int) -> Node:
+    def infix(self, left: ExpressionNode, power: int) -> ExpressionNode:
         sign = self.advance().text
         if sign == "?":
             then = self.expression(0)
             self.expect(":")
             otherwise = self.expression(0)
-            return Choice(left, then, otherwise, offset=left.offset, end=otherwise.end)
+            return Conditional(left, then, otherwise, offset=left.offset, end=otherwise.end)
         right = self.expression(power)
         if sign not in ("&&", "||"):
             return Binary(sign, left, right, offset=left.offset, end=right.end)
@@ -115,7 +115,7 @@ class _Parser:
             operands.append(self.expression(power))
         return Logic(sign, tuple(operands), offset=left.offset, end=operands[-1].end)
 
-    def prefix(self) -> Node:
+    def prefix(self) -> ExpressionNode:
         token = self.token
         if token.text not in ("!", "-"):
             return self.postfix(self.primary())
@@ -127,7 +127,7 @@ class _Parser:
         operand = self.expression(_UNARY)
         return Unary(token.text, operand, offset=token.offset, end=operand.end)
 
-    def number(self, token: Token, minus: Token | None = None) -> Node:
+    def number(self, token: Token, minus: Token | None = None) -> ExpressionNode:
         value = token.value if isinstance(token.value, int | float) else 0
         value = -value if minus else value
         offset = minus.offset if minus else token.offset
@@ -135,7 +135,7 @@ class _Parser:
             raise ExpressionError(f"`{token.text[:40]}` is too large", offset, "whole numbers have 64 bits")
         return Literal(value, offset=offset, end=token.end)
 
-    def primary(self) -> Node:
+    def primary(self) -> ExpressionNode:
         token = self.token
         match token.kind:
             case "int" | "float":
@@ -151,12 +151,12 @@ class _Parser:
             return inner
         if self.accept("["):
             items, end = self.listed("]")
-            return Items(items, offset=token.offset, end=end)
+            return ListLiteral(items, offset=token.offset, end=end)
         if self.accept("{"):
             return self.entries(token)
         raise self.unexpected()
 
-    def name(self) -> Node:
+    def name(self) -> ExpressionNode:
         token = self.token
         if token.text in _HINTS or token.text == "in":
             raise self.unexpected()
@@ -165,41 +165,41 @@ class _Parser:
             return Literal(_WORDS[token.text], offset=token.offset, end=token.end)
         if self.accept("("):
             arguments, end = self.listed(")")
-            return Call(token.text, arguments, token.offset, offset=token.offset, end=end)
-        return Name(token.text, offset=token.offset, end=token.end)
+            return FunctionCall(token.text, arguments, token.offset, offset=token.offset, end=end)
+        return Identifier(token.text, offset=token.offset, end=token.end)
 
-    def postfix(self, node: Node) -> Node:
+    def postfix(self, node: ExpressionNode) -> ExpressionNode:
         """The node with the fields, indices and calls that follow it."""
         while True:
             if self.accept("."):
                 node = self.member(node)
             elif self.accept("["):
                 key = self.expression(0)
-                node = Index(node, key, offset=node.offset, end=self.expect("]").end)
+                node = IndexAccess(node, key, offset=node.offset, end=self.expect("]").end)
             else:
                 return node
 
-    def member(self, base: Node) -> Node:
+    def member(self, base: ExpressionNode) -> ExpressionNode:
         token = self.token
         if token.kind != "name":
             raise self.unexpected("a name follows a `.`")
         self.advance()
         if not self.accept("("):
-            return Field(base, token.text, offset=base.offset, end=token.end)
+            return FieldAccess(base, token.text, offset=base.offset, end=token.end)
         arguments, end = self.listed(")")
-        return Call(token.text, (base, *arguments), token.offset, offset=base.offset, end=end)
+        return FunctionCall(token.text, (base, *arguments), token.offset, offset=base.offset, end=end)
 
-    def listed(self, close: str) -> tuple[tuple[Node, ...], int]:
+    def listed(self, close: str) -> tuple[tuple[ExpressionNode, ...], int]:
         """Expressions between commas up to `close`, and where that ends; a last comma is allowed."""
-        items: list[Node] = []
+        items: list[ExpressionNode] = []
         while self.token.text != close:
             items.append(self.expression(0))
             if not self.accept(","):
                 break
         return tuple(items), self.expect(close).end
 
-    def entries(self, start: Token) -> Node:
-        entries: dict[str, Node] = {}
+    def entries(self, start: Token) -> ExpressionNode:
+        entries: dict[str, ExpressionNode] = {}
         while self.token.text != "}":
             key = self.token
             if key.kind != "text":
@@ -212,4 +212,4 @@ class _Parser:
             if not self.accept(","):
                 break
         end = self.expect("}").end
-        return Entries(tuple(entries), tuple(entries.values()), offset=start.offset, end=end)
+        return MapLiteral(tuple(entries), tuple(entries.values()), offset=start.offset, end=end)

@@ -9,19 +9,19 @@ import re
 from functools import lru_cache
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.automaton import Pattern, State, Test
+from lumen.interpreters.expressions.automaton import AutomatonState, CharacterTest, CompiledPattern
 
 _ATOM = re.compile(
     r"\\x[0-9a-fA-F]{2}|\\u[0-9a-fA-F]{4}|\\[^a-zA-Z0-9]|\\[dDwWsSfnrtv]|\[\^?\]?(?:\\.|[^\\\]])*\]|[^\\[]", re.S
 )
 _CONFUSING = re.compile(r"\[|--|&&|\|\||~~")
 _COUNT = re.compile(r"\{(\d{1,4})(,?)(\d{0,4})\}")
-_MAX_GROUPS = 20
-MAX_STATES = 200
+_MAX_NESTED_GROUPS = 20
+MAX_PATTERN_STATES = 200
 
 
 @lru_cache(maxsize=512)
-def compile_pattern(source: str) -> Pattern:
+def compile_pattern(source: str) -> CompiledPattern:
     """The pattern, ready to search; raises ExpressionError with the offset in `source` for what is not allowed."""
     return _Compiler(source).pattern()
 
@@ -32,13 +32,13 @@ class _Compiler:
     def __init__(self, source: str) -> None:
         self.ignore_case = source.startswith("(?i)")
         self.source, self.position, self.level = source, 4 * self.ignore_case, 0
-        self.states: list[State] = []
+        self.states: list[AutomatonState] = []
 
-    def pattern(self) -> Pattern:
+    def pattern(self) -> CompiledPattern:
         parsed, _ = self.alternatives()
         if self.position < len(self.source):
             raise self.error("a `(` is missing for this `)`", "write `\\)` for the sign itself")
-        return Pattern(self.states, self.build(parsed, self.state("end", None, ())))
+        return CompiledPattern(self.states, self.build(parsed, self.state("end", None, ())))
 
     def error(self, message: str, hint: str = "", offset: int | None = None) -> ExpressionError:
         return ExpressionError(message, self.position if offset is None else offset, hint)
@@ -112,8 +112,8 @@ class _Compiler:
         if self.peek() == "?":
             raise self.error("a group can't begin with `(?` here", "write `(…)` or `(?:…)`", start)
         self.level += 1
-        if self.level > _MAX_GROUPS:
-            raise self.error(f"more than {_MAX_GROUPS} groups stand inside each other")
+        if self.level > _MAX_NESTED_GROUPS:
+            raise self.error(f"more than {_MAX_NESTED_GROUPS} groups stand inside each other")
         inner, repeats = self.alternatives()
         if self.peek() != ")":
             raise self.error("this `(` is not closed", "write `\\(` for the sign itself", start)
@@ -142,10 +142,10 @@ class _Compiler:
             raise self.error("a repetition is repeated", "one `*`, `+` or `?` is enough")
         return low, high
 
-    def state(self, kind: str, test: Test, next: tuple[int, ...]) -> int:
-        if len(self.states) >= MAX_STATES:
+    def state(self, kind: str, test: CharacterTest, next: tuple[int, ...]) -> int:
+        if len(self.states) >= MAX_PATTERN_STATES:
             raise self.error("the pattern is too large", "count fewer repetitions", 0)
-        self.states.append(State(kind, test, next))
+        self.states.append(AutomatonState(kind, test, next))
         return len(self.states) - 1
 
     def build(self, part: tuple[object, ...], following: int) -> int:
@@ -168,7 +168,7 @@ class _Compiler:
     def repeat(self, inner: tuple[object, ...], low: int, high: int | None, following: int) -> int:
         if high is None:
             loop = self.state("split", None, ())
-            self.states[loop] = State("split", None, (self.build(inner, loop), following))
+            self.states[loop] = AutomatonState("split", None, (self.build(inner, loop), following))
             following = loop
         for _ in range((high or low) - low if high is not None else 0):
             following = self.state("split", None, (self.build(inner, following), following))

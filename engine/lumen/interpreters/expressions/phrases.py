@@ -5,14 +5,14 @@ from functools import lru_cache
 from typing import Any
 from unicodedata import category, normalize
 
-from lumen.interpreters.expressions.scope import CUT, Scope
+from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
 
 _APOSTROPHES = frozenset("'’ʼ‘`´")
 BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace() and not 0x1C <= code <= 0x1F)
 """What Unicode calls White_Space; Python counts four separators of records among it."""
 
 _AROUND = BLANKS + ".,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
-_TABLES = 256
+_MAX_PREPARED_TABLES = 256
 
 
 class _WordsOnly(dict[int, str | int]):
@@ -46,7 +46,7 @@ def padded(text: str) -> str:
 
 def words(text: str) -> list[str]:
     """The words of a text as they are written, without punctuation."""
-    cleaned = (word.strip("'’ʼ‘`´") for word in text[:CUT].translate(_WORDS_ONLY).split())
+    cleaned = (word.strip("'’ʼ‘`´") for word in text[:MAX_TEXT_EXAMINED].translate(_WORDS_ONLY).split())
     return [word for word in cleaned if word]
 
 
@@ -64,7 +64,7 @@ class _ByIdentity:
         return found[1] if found and found[0] is table else None
 
     def put(self, table: Any, prepared: Any) -> Any:
-        if len(self.kept) >= _TABLES:
+        if len(self.kept) >= _MAX_PREPARED_TABLES:
             self.kept.clear()
         self.kept[id(table)] = (table, prepared)
         return prepared
@@ -92,7 +92,7 @@ def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]]) -> bool:
         prepared = _phrases.put(phrases, _prepared(phrases))
     last, said = _last[0]
     if last is not text:
-        said = padded(text[:CUT])
+        said = padded(text[:MAX_TEXT_EXAMINED])
         _last[0] = text, said
     for phrase in prepared:  # noqa: SIM110 - `any` takes longer than the phrases
         if phrase in said:
@@ -112,7 +112,7 @@ def answer(scope: Scope, text: str, table: Any) -> Any:
         languages = frozenset(language for entry in table for language in entry.phrases)
         prepared = _answers.put(table, (entries, languages))
     entries, languages = prepared
-    said = padded(text[:CUT])
+    said = padded(text[:MAX_TEXT_EXAMINED])
     for phrases, value in entries:
         if any(phrase in said for phrase in phrases):
             return _in_language(value, scope.language, languages)
@@ -127,7 +127,7 @@ def _in_language(value: Any, language: str, languages: frozenset[str]) -> Any:
 
 def after(text: str, phrase: str) -> str:
     """What follows the phrase in the text, without the blanks and punctuation around it; "" where it is not there."""
-    text, sought = text[:CUT], list(folded(phrase[:CUT]))
+    text, sought = text[:MAX_TEXT_EXAMINED], list(folded(phrase[:MAX_TEXT_EXAMINED]))
     found: list[str] = []
     ends: list[int] = []
     position = 0

@@ -4,16 +4,16 @@ from collections.abc import Iterable
 
 from lumen.interpreters.expressions.tree import (
     Binary,
-    Call,
-    Choice,
-    Entries,
-    Field,
-    Index,
-    Items,
+    Conditional,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    IndexAccess,
+    ListLiteral,
     Literal,
     Logic,
-    Name,
-    Node,
+    MapLiteral,
     Unary,
 )
 
@@ -22,7 +22,7 @@ _ARITHMETIC = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "%": _PRODUCT
 _ESCAPES = {"\\": "\\\\", "'": "\\'", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 
-def unparse(node: Node) -> str:
+def unparse(node: ExpressionNode) -> str:
     """The expression as text; parsed again it is the same tree.
 
     Other languages with these operators (CEL, ECMAScript) print with it too: a call of `.name` is that of a method.
@@ -30,15 +30,15 @@ def unparse(node: Node) -> str:
     match node:
         case Literal(value=value):
             return _literal(value)
-        case Name(name=name):
+        case Identifier(name=name):
             return name
-        case Field(base=base, name=name):
+        case FieldAccess(base=base, name=name):
             return f"{_at_least(_POSTFIX, base)}.{name}"
-        case Index(base=base, key=key):
+        case IndexAccess(base=base, key=key):
             return f"{_at_least(_POSTFIX, base)}[{unparse(key)}]"
-        case Items(items=items):
+        case ListLiteral(items=items):
             return f"[{_listed(items)}]"
-        case Entries(keys=keys, values=values):
+        case MapLiteral(keys=keys, values=values):
             pairs = zip(keys, values, strict=True)
             return "{" + ", ".join(f"{_literal(key)}: {unparse(value)}" for key, value in pairs) + "}"
         case Unary(sign=sign, operand=operand):
@@ -50,32 +50,32 @@ def unparse(node: Node) -> str:
         case Logic(sign=sign, operands=operands):
             own = _AND if sign == "&&" else _OR
             return f" {sign} ".join(_at_least(own + 1, operand) for operand in operands)
-        case Choice(condition=condition, then=then, otherwise=otherwise):
+        case Conditional(condition=condition, then=then, otherwise=otherwise):
             return f"{_at_least(_OR, condition)} ? {_at_least(_OR, then)} : {unparse(otherwise)}"
-        case Call(function=function, arguments=arguments) if function.startswith("."):
+        case FunctionCall(function=function, arguments=arguments) if function.startswith("."):
             return f"{_at_least(_POSTFIX, arguments[0])}{function}({_listed(arguments[1:])})"
-        case Call(function=function, arguments=arguments):
+        case FunctionCall(function=function, arguments=arguments):
             return f"{function}({_listed(arguments)})"
 
 
-def _listed(nodes: Iterable[Node]) -> str:
+def _listed(nodes: Iterable[ExpressionNode]) -> str:
     return ", ".join(map(unparse, nodes))
 
 
-def _unary(sign: str, operand: Node) -> str:
+def _unary(sign: str, operand: ExpressionNode) -> str:
     """With brackets around a sign or a number: `-1` is a number by itself, and `!!x` is `x` to some CELs."""
     text = _at_least(_POSTFIX, operand)
     return f"{sign} {text}" if sign.isalpha() else sign + text
 
 
-def _at_least(power: int, node: Node) -> str:
+def _at_least(power: int, node: ExpressionNode) -> str:
     text = unparse(node)
     return text if _power(node, text) >= power else f"({text})"
 
 
-def _power(node: Node, text: str) -> int:
+def _power(node: ExpressionNode, text: str) -> int:
     match node:
-        case Choice():
+        case Conditional():
             return _CHOICE
         case Logic(sign=sign):
             return _AND if sign == "&&" else _OR

@@ -6,22 +6,22 @@ from typing import Any, NamedTuple
 
 from lumen.language.machines import Answer
 
-MAX_SOURCE = 2_000
+MAX_EXPRESSION_LENGTH = 2_000
 """Characters in an expression."""
 
-MAX_DEPTH = 50
+MAX_TREE_DEPTH = 50
 """Levels of an expression's tree."""
 
-MAX_TEXT = 10_000
+MAX_TEXT_LENGTH = 10_000
 """Characters in a text that an expression or a template builds."""
 
-MAX_VALUES = 10_000
+MAX_COLLECTION_VALUES = 10_000
 """Values inside a list or map that an expression builds, those inside them included."""
 
 MIN_INT, MAX_INT = -(2**63), 2**63 - 1
 """Whole numbers have 64 bits, as in CEL."""
 
-CUT = 1_000
+MAX_TEXT_EXAMINED = 1_000
 """Characters of a text that the text functions look at."""
 
 _NOTHING: Mapping[str, Any] = MappingProxyType({})

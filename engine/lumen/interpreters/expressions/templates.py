@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.checker import check_expression
 from lumen.interpreters.expressions.compiler import compile_expression
-from lumen.interpreters.expressions.findings import Finding
+from lumen.interpreters.expressions.expression_findings import ExpressionFinding
 from lumen.interpreters.expressions.kinds import FaultError
-from lumen.interpreters.expressions.scope import MAX_TEXT, Scope
+from lumen.interpreters.expressions.operators import bounded
+from lumen.interpreters.expressions.scope import MAX_TEXT_LENGTH, Scope
 from lumen.interpreters.expressions.tokens import token_at
-from lumen.interpreters.expressions.values import bounded
 
 
-class Hole(NamedTuple):
+class Placeholder(NamedTuple):
     """An expression in a text, and the offset in the text where its source begins."""
 
     source: str
@@ -36,8 +36,8 @@ def compile_template(text: str) -> Callable[[Scope], str]:
 
     def fill(scope: Scope) -> str:
         filled = "".join([filler(scope) for filler in fillers])
-        if len(filled) > MAX_TEXT:
-            raise ExpressionError("the text becomes too long", 0, f"at most {MAX_TEXT:,} characters are allowed")
+        if len(filled) > MAX_TEXT_LENGTH:
+            raise ExpressionError("the text becomes too long", 0, f"at most {MAX_TEXT_LENGTH:,} characters are allowed")
         return filled
 
     return fill
@@ -47,7 +47,7 @@ def _constant(text: str) -> Callable[[Scope], str]:
     return lambda scope: text
 
 
-def _filler(hole: Hole) -> Callable[[Scope], str]:
+def _filler(hole: Placeholder) -> Callable[[Scope], str]:
     try:
         evaluate = compile_expression(hole.source)
     except ExpressionError as error:
@@ -67,13 +67,13 @@ def moved(error: ExpressionError, offset: int) -> ExpressionError:
     return ExpressionError(error.message, error.offset + offset, error.hint)
 
 
-def split_template(text: str) -> list[str | Hole]:
+def split_template(text: str) -> list[str | Placeholder]:
     """The plain texts and the holes, in order; raises ExpressionError where a hole is not closed."""
-    parts: list[str | Hole] = []
+    parts: list[str | Placeholder] = []
     position = 0
     while (start := text.find("{{", position)) >= 0:
         end = _closing(text, start + 2)
-        parts += [text[position:start], Hole(text[start + 2 : end], start + 2)]
+        parts += [text[position:start], Placeholder(text[start + 2 : end], start + 2)]
         position = end + 2
     parts.append(text[position:])
     return [part for part in parts if part]
@@ -111,11 +111,11 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def check_template(text: str, *, context: Mapping[str, Any] | None, **around: Any) -> list[Finding]:
+def check_template(text: str, *, context: Mapping[str, Any] | None, **around: Any) -> list[ExpressionFinding]:
     """What `check_expression` (with the same arguments) finds in the holes, with offsets in the text."""
     try:
-        holes = [part for part in split_template(text) if isinstance(part, Hole)]
+        holes = [part for part in split_template(text) if isinstance(part, Placeholder)]
     except ExpressionError as error:
-        return [Finding("expression-syntax", error.offset, 1, error.message, error.hint)]
+        return [ExpressionFinding("expression-syntax", error.offset, 1, error.message, error.hint)]
     found = [(hole, check_expression(hole.source, context=context, **around)) for hole in holes]
     return [finding._replace(offset=finding.offset + hole.offset) for hole, findings in found for finding in findings]

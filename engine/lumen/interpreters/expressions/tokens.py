@@ -4,7 +4,7 @@ import re
 from typing import NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.scope import MAX_SOURCE
+from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH
 
 _TOKEN = re.compile(
     r"""(?P<blank>[ \t\r\n]+)
@@ -44,9 +44,11 @@ class Token(NamedTuple):
 
 def tokenize(source: str) -> list[Token]:
     """The tokens of a whole expression, the last one of kind `end`; raises ExpressionError."""
-    if len(source) > MAX_SOURCE:
+    if len(source) > MAX_EXPRESSION_LENGTH:
         raise ExpressionError(
-            f"the expression has {len(source):,} characters", MAX_SOURCE, f"at most {MAX_SOURCE:,} are allowed"
+            f"the expression has {len(source):,} characters",
+            MAX_EXPRESSION_LENGTH,
+            f"at most {MAX_EXPRESSION_LENGTH:,} are allowed",
         )
     tokens, offset = [], 0
     while offset < len(source):

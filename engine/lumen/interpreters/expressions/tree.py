@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Span:
+class SourceSpan:
     """Where a node stands in the source: characters from 0, the end exclusive; it does not count in equality."""
 
     offset: int = field(default=0, compare=False)
@@ -14,115 +14,129 @@ class Span:
 
 
 @dataclass(frozen=True, slots=True)
-class Literal(Span):
+class Literal(SourceSpan):
     """A number, a text, true, false or null."""
 
     value: int | float | str | bool | None
 
 
 @dataclass(frozen=True, slots=True)
-class Name(Span):
+class Identifier(SourceSpan):
     """The beginning of a path: `context`, `event` or `state`."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
-class Field(Span):
+class FieldAccess(SourceSpan):
     """`base.name`; the name ends where the node ends."""
 
-    base: "Node"
+    base: "ExpressionNode"
     name: str
 
 
 @dataclass(frozen=True, slots=True)
-class Index(Span):
+class IndexAccess(SourceSpan):
     """`base[key]`."""
 
-    base: "Node"
-    key: "Node"
+    base: "ExpressionNode"
+    key: "ExpressionNode"
 
 
 @dataclass(frozen=True, slots=True)
-class Items(Span):
+class ListLiteral(SourceSpan):
     """`[items]`."""
 
-    items: tuple["Node", ...]
+    items: tuple["ExpressionNode", ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Entries(Span):
+class MapLiteral(SourceSpan):
     """`{'key': value}`."""
 
     keys: tuple[str, ...]
-    values: tuple["Node", ...]
+    values: tuple["ExpressionNode", ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Unary(Span):
+class Unary(SourceSpan):
     """`!operand` or `-operand`."""
 
     sign: str
-    operand: "Node"
+    operand: "ExpressionNode"
 
 
 @dataclass(frozen=True, slots=True)
-class Binary(Span):
+class Binary(SourceSpan):
     """`left sign right`, for comparison, arithmetic and `in`."""
 
     sign: str
-    left: "Node"
-    right: "Node"
+    left: "ExpressionNode"
+    right: "ExpressionNode"
 
 
 @dataclass(frozen=True, slots=True)
-class Logic(Span):
+class Logic(SourceSpan):
     """Two or more operands joined by `&&`, or by `||`."""
 
     sign: str
-    operands: tuple["Node", ...]
+    operands: tuple["ExpressionNode", ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Choice(Span):
+class Conditional(SourceSpan):
     """`condition ? then : otherwise`."""
 
-    condition: "Node"
-    then: "Node"
-    otherwise: "Node"
+    condition: "ExpressionNode"
+    then: "ExpressionNode"
+    otherwise: "ExpressionNode"
 
 
 @dataclass(frozen=True, slots=True)
-class Call(Span):
+class FunctionCall(SourceSpan):
     """`function(arguments)`, or `first.function(rest)`; `named` is the offset of the function's name."""
 
     function: str
-    arguments: tuple["Node", ...]
+    arguments: tuple["ExpressionNode", ...]
     named: int = field(default=0, compare=False)
 
 
-Node = Literal | Name | Field | Index | Items | Entries | Unary | Binary | Logic | Choice | Call
+ExpressionNode = (
+    Literal
+    | Identifier
+    | FieldAccess
+    | IndexAccess
+    | ListLiteral
+    | MapLiteral
+    | Unary
+    | Binary
+    | Logic
+    | Conditional
+    | FunctionCall
+)
 
 
-def children(node: Node) -> tuple[Node, ...]:
+def children(node: ExpressionNode) -> tuple[ExpressionNode, ...]:
     """The nodes directly below, in the order written."""
     match node:
-        case Field(base=base):
+        case FieldAccess(base=base):
             return (base,)
-        case Index(base=base, key=key):
+        case IndexAccess(base=base, key=key):
             return (base, key)
-        case Items(items=nodes) | Entries(values=nodes) | Logic(operands=nodes) | Call(arguments=nodes):
+        case (
+            ListLiteral(items=nodes) | MapLiteral(values=nodes) | Logic(operands=nodes) | FunctionCall(arguments=nodes)
+        ):
             return nodes
         case Unary(operand=operand):
             return (operand,)
         case Binary(left=left, right=right):
             return (left, right)
-        case Choice(condition=condition, then=then, otherwise=otherwise):
+        case Conditional(condition=condition, then=then, otherwise=otherwise):
             return (condition, then, otherwise)
     return ()
 
 
-def walk(tree: Node) -> Iterator[tuple[Node, int]]:
+def walk(tree: ExpressionNode) -> Iterator[tuple[ExpressionNode, int]]:
     """Every node of the tree with its level, the root's being 1."""
     stack = [(tree, 1)]
     while stack:
@@ -131,14 +145,14 @@ def walk(tree: Node) -> Iterator[tuple[Node, int]]:
         stack.extend((child, level + 1) for child in reversed(children(node)))
 
 
-def path_of(node: Node) -> tuple[str, ...] | None:
+def path_of(node: ExpressionNode) -> tuple[str, ...] | None:
     """`("event", "data", "x")` for `event.data.x` and `event.data['x']`; None for what is not such a path."""
     keys: list[str] = []
-    while not isinstance(node, Name):
+    while not isinstance(node, Identifier):
         match node:
-            case Field(base=base, name=name):
+            case FieldAccess(base=base, name=name):
                 key = name
-            case Index(base=base, key=Literal(value=str() as key)):
+            case IndexAccess(base=base, key=Literal(value=str() as key)):
                 pass
             case _:
                 return None
@@ -147,7 +161,7 @@ def path_of(node: Node) -> tuple[str, ...] | None:
     return (node.name, *reversed(keys))
 
 
-class Names(NamedTuple):
+class MentionedNames(NamedTuple):
     """What an expression speaks of: keys of the context, fields of the event's data, functions, and literal names."""
 
     context: frozenset[str]
@@ -158,17 +172,17 @@ class Names(NamedTuple):
     states: frozenset[str]
 
 
-def names(tree: Node) -> Names:
+def names(tree: ExpressionNode) -> MentionedNames:
     """Everything that the expression names, for rules that look across files."""
     nodes = [node for node, _ in walk(tree)]
     paths = [path for node in nodes if (path := path_of(node))]
-    calls = [node for node in nodes if isinstance(node, Call)]
+    calls = [node for node in nodes if isinstance(node, FunctionCall)]
 
     def literals(function: str, position: int) -> frozenset[str]:
         found = (c.arguments[position] for c in calls if c.function == function and len(c.arguments) > position)
         return frozenset(a.value for a in found if isinstance(a, Literal) and isinstance(a.value, str))
 
-    return Names(
+    return MentionedNames(
         frozenset(p[1] for p in paths if p[0] == "context" and len(p) > 1),
         frozenset(p[2] for p in paths if p[:2] == ("event", "data") and len(p) > 2),
         frozenset(c.function for c in calls),

@@ -10,8 +10,8 @@ from functools import cache, reduce
 from operator import add, and_, eq, ge, gt, le, lt, mul, ne, neg, sub, truediv
 from typing import Any
 
-from lumen.interpreters.expressions import Node, parse_expression
-from lumen.interpreters.expressions.tree import Binary, Call, Choice, Literal, Logic, Name, Unary
+from lumen.interpreters.expressions import ExpressionNode, parse_expression
+from lumen.interpreters.expressions.tree import Binary, Conditional, FunctionCall, Identifier, Literal, Logic, Unary
 from lumen.interpreters.inference.arithmetic import NUMBERS, Arithmetic, Number
 
 Formula = Callable[[Number, Sequence[Number]], Number]
@@ -74,12 +74,12 @@ class _Compiler:
         self._m, self._names = m, {name: i for i, name in enumerate(names)}
         self._lazy = m is NUMBERS
 
-    def part(self, node: Node) -> FormulaPart:
+    def part(self, node: ExpressionNode) -> FormulaPart:
         match node:
             case Literal(value):
                 number = float(value)  # type: ignore[arg-type]
                 return lambda x, values: number
-            case Name(name):
+            case Identifier(name):
                 return self._name(name)
             case Unary(sign, operand):
                 negated: Callable[[Any], Any] = neg if sign == "-" else lambda a: self._degree(a == 0.0, a)
@@ -91,9 +91,9 @@ class _Compiler:
                 return self._apply(self._function("fmod") if sign == "%" else _ARITHMETIC[sign], left, right)
             case Logic(sign, operands):
                 return self._logic(sign, [self.part(operand) for operand in operands])
-            case Choice(condition, then, otherwise):
+            case Conditional(condition, then, otherwise):
                 return self._choice(self.part(condition), self.part(then), self.part(otherwise))
-            case Call(name, arguments):
+            case FunctionCall(name, arguments):
                 return self._apply(self._function(name), *arguments)
         raise AssertionError(f"not a part of a formula: {node}")
 
@@ -103,7 +103,7 @@ class _Compiler:
             return lambda x, values: values[i]
         return (lambda x, values: x) if name == "x" else (lambda x, values: math.pi)
 
-    def _apply(self, work: Callable[..., Any], *nodes: Node) -> FormulaPart:
+    def _apply(self, work: Callable[..., Any], *nodes: ExpressionNode) -> FormulaPart:
         parts = [self.part(node) for node in nodes]
         if self._lazy:
             return lambda x, values: work(*[part(x, values) for part in parts])

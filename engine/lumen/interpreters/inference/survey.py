@@ -9,7 +9,7 @@ from math import isfinite, isnan, nan
 from typing import NamedTuple
 
 from lumen.interpreters.expressions import parse_expression
-from lumen.interpreters.expressions.tree import Name, walk
+from lumen.interpreters.expressions.tree import Identifier, walk
 from lumen.interpreters.inference.evaluator import Evaluator
 from lumen.language.controllers import (
     Antecedent,
@@ -129,7 +129,7 @@ def _asked(controller: ControllerDefinition, output: str) -> Iterator[str]:
 
 
 def _named(term: Term) -> Iterator[str]:
-    yield from (node.name for node, _ in walk(parse_expression(term.formula)) if isinstance(node, Name))
+    yield from (node.name for node, _ in walk(parse_expression(term.formula)) if isinstance(node, Identifier))
 
 
 def propositions(node: Antecedent) -> Iterator[Proposition]:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeVar
 
 from lumen.interpreters.expressions import ExpressionError, Scope, parse_expression
-from lumen.interpreters.expressions.tree import Call, Name, walk
+from lumen.interpreters.expressions.tree import FunctionCall, Identifier, walk
 from lumen.interpreters.statechart.blocks import compile_value
 from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
 from lumen.interpreters.statechart.plans import Configuration, MicrostepPlan, MicrostepPlanner, bound
@@ -223,8 +223,8 @@ def _of(node: StateNode) -> State:
 def _asked(sources: Iterable[str]) -> set[str]:
     """What these expressions ask for: `context`, `event`, `state`, `In`."""
     nodes = [node for source in set(sources) for node, _ in walk(parse_expression(source))]
-    asks = any(isinstance(node, Call) and node.function == "In" for node in nodes)
-    return {node.name for node in nodes if isinstance(node, Name)} | ({"In"} if asks else set())
+    asks = any(isinstance(node, FunctionCall) and node.function == "In" for node in nodes)
+    return {node.name for node in nodes if isinstance(node, Identifier)} | ({"In"} if asks else set())
 
 
 def _sources(transition: Transition) -> Iterator[str]:

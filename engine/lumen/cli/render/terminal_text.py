@@ -1,0 +1,46 @@
+"""Words that the formats for people share."""
+
+import unicodedata
+from collections.abc import Mapping, Sequence
+
+from lumen.cli.findings import Findings
+from lumen.cli.terminal import paint
+from lumen.language.diagnostics import Severity
+
+SEVERITY_COLOURS: Mapping[Severity, str] = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.INFO: "blue"}
+
+
+def summary(found: Sequence[Findings], coloured: bool) -> str:
+    """How many findings there are, in how many files, and how many files were looked at."""
+    counts = [(sum(each.count(severity) for each in found), severity) for severity in Severity]
+    files = {(each.root, d.place.file) for each in found for d in each.diagnostics}
+    what = ", ".join(counted(n, {"info": "note"}.get(severity, severity)) for n, severity in counts if n)
+    colour = next((SEVERITY_COLOURS[severity] for n, severity in counts if n), "green")
+    where = f" in {counted(len(files), 'file')}" if files else ""
+    return f"{paint((what or 'nothing wrong') + where, 'bold', colour, on=coloured)}; {_looked_at(found)}"
+
+
+def _looked_at(found: Sequence[Findings]) -> str:
+    checked = f"{counted(sum(len(each.files) for each in found), 'file')} checked"
+    if len(found) > 1:
+        checked += f" in {counted(len(found), 'project')}"
+    elif found and found[0].root and found[0].name("") not in (".", "./"):
+        checked += f" in {clean(found[0].name('').rstrip('/') or '/')}"
+    elsewhere = sum(each.elsewhere for each in found)
+    return f"{checked}, {counted(elsewhere, 'finding')} in others of them" if elsewhere else checked
+
+
+def counted(number: int, word: str) -> str:
+    """`1 file`, `2 files`."""
+    return f"{number:,} {word}" if number == 1 else f"{number:,} {word}s"
+
+
+def clean(text: str) -> str:
+    """The text with control characters, which could move a terminal's cursor, made visible; a tab is one space."""
+    return "".join(" " if c == "\t" else c if c.isprintable() else "\ufffd" for c in text)
+
+
+def width(text: str) -> int:
+    """Columns that the text takes on a terminal."""
+    wide = sum(unicodedata.east_asian_width(c) in "WF" for c in text)
+    return len(text) + wide - sum(unicodedata.combining(c) > 0 for c in text)

@@ -1,0 +1,86 @@
+"""What a format can't say of a behaviour, and what is wrong with a file of another format."""
+
+from collections.abc import Callable
+
+from lumen.language.diagnostics import Diagnostic, NodePath, Place, Severity
+
+PlaceOfPath = Callable[[NodePath], Place]
+"""Where the node at that path of a behaviour's file stands."""
+
+LOST, CHANGED = "not-carried-over", "carried-over-differently"
+CODE_MEANINGS = {
+    LOST: "what `lumen import` or `lumen export` left out: the result does something else without it",
+    CHANGED: "what `lumen import` or `lumen export` wrote in another form, or what only Lumen understands in it",
+}
+
+
+class ForeignFileError(Exception):
+    """A file can't be read at all; holds the one diagnostic that says why."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(str(diagnostic))
+        self.diagnostic = diagnostic
+
+
+class ConversionFindings:
+    """Collects what is to be said, each thing once.
+
+    What is `lost` is not in the result at all (an error: the behaviour is another one); what is `changed` is there in
+    another form, which is worth a look.
+    """
+
+    def __init__(self) -> None:
+        self._found: dict[Diagnostic, None] = {}
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """Everything said, by file and line."""
+        return sorted(self._found, key=lambda d: (d.place, d.message))
+
+    def lost(self, place: Place, message: str, hint: str = "") -> None:
+        """Something is left out."""
+        self._found[Diagnostic(LOST, message, place, hint)] = None
+
+    def changed(self, place: Place, message: str, hint: str = "") -> None:
+        """Something is there in another form."""
+        self._found[Diagnostic(CHANGED, message, place, hint, Severity.WARNING)] = None
+
+
+def broken(place: Place, code: str, message: str, hint: str = "") -> ForeignFileError:
+    """A file can't be read: the error to raise."""
+    return ForeignFileError(Diagnostic(code, message, place, hint))
+
+
+class ExportReport:
+    """What an export leaves out, and what in it only Lumen understands: that once for each word, at its first place."""
+
+    def __init__(self, place: PlaceOfPath, hint: str = "other tools pass over it") -> None:
+        self.place, self.hint = place, hint
+        self.findings = ConversionFindings()
+        self._foreign: dict[str, list[Place]] = {}
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """Everything said, by line."""
+        for word, places in self._foreign.items():
+            times = f", {len(places)} times" if len(places) > 1 else ""
+            self.findings.changed(min(places), f"only Lumen understands {word}{times}", self.hint)
+        self._foreign.clear()
+        return self.findings.diagnostics
+
+    def lost(self, message: str, where: NodePath, hint: str = "") -> None:
+        """Something is left out."""
+        self.findings.lost(self.place(where), message, hint)
+
+    def changed(self, message: str, where: NodePath, hint: str = "") -> None:
+        """Something is there in another form."""
+        self.findings.changed(self.place(where), message, hint)
+
+    def foreign(self, word: str, where: NodePath) -> None:
+        """Something is there that only Lumen understands."""
+        self._foreign.setdefault(word, []).append(self.place(where))
+
+
+def dotted(file: str) -> PlaceOfPath:
+    """Places in a behaviour that comes from no file: the dotted paths of its nodes."""
+    return lambda where: Place(f"{file} ({'.'.join(map(str, where))})" if where else file)

@@ -1,0 +1,71 @@
+"""Of which kind a value is, as far as its expression tells."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.kinds import BOOLEAN, LIST, MAP, NUMBER, TEXT, kind_of
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Conditional,
+    ExpressionNode,
+    FunctionCall,
+    ListLiteral,
+    Literal,
+    Logic,
+    MapLiteral,
+    Unary,
+    path_of,
+)
+
+UNKNOWN = ""
+
+
+def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
+    """One of the kinds of our values, or UNKNOWN; `context` has those of the context's keys that keep theirs."""
+    match node:
+        case Literal(value=value):
+            return kind_of(value)
+        case Logic() | Unary(sign="!"):
+            return BOOLEAN
+        case Unary():
+            return NUMBER
+        case ListLiteral():
+            return LIST
+        case MapLiteral():
+            return MAP
+        case Binary(sign="+", left=left, right=right):
+            return kind(left, context) or kind(right, context)
+        case Binary(sign="-" | "*" | "/" | "%"):
+            return NUMBER
+        case Binary():
+            return BOOLEAN
+        case Conditional(then=then, otherwise=otherwise):
+            found = {kind(then, context), kind(otherwise, context)}
+            return found.pop() if len(found) == 1 else UNKNOWN
+        case FunctionCall(function=function):
+            returns = FUNCTIONS[function].returns if function in FUNCTIONS else ()
+            return next(iter(returns)) if len(returns) == 1 else UNKNOWN
+    match path_of(node):
+        case ("context", key):
+            return context.get(key, UNKNOWN)
+        case ("event", "name"):
+            return TEXT
+    return UNKNOWN
+
+
+def is_float(node: ExpressionNode) -> bool:
+    """Whether a number is certainly no whole one to `/`."""
+    match node:
+        case Literal(value=value):
+            return isinstance(value, float)
+        case Unary(sign="-", operand=operand):
+            return is_float(operand)
+        case Binary(sign="+" | "-" | "*" | "/", left=left, right=right):
+            return is_float(left) or is_float(right)
+    return False
+
+
+def kinds_of(context: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, str]:
+    """The kinds that context keys keep: those of their first values, where `types` says nothing wider."""
+    return {key: kind_of(value) for key, value in context.items() if value is not None and key not in types}

@@ -1,0 +1,237 @@
+"""From ECMAScript's tree to ours: the same meaning, or a ScriptError that says what can't be said."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from lumen.formats.ecmascript.comparing import EVENT, HAPPENED, equality, guarded
+from lumen.formats.ecmascript.kind_inference import UNKNOWN, is_float, kind
+from lumen.formats.ecmascript.known_fields import known, negated
+from lumen.formats.ecmascript.methods import LUMEN_FUNCTIONS, SIGN_FUNCTIONS, method
+from lumen.formats.ecmascript.script_parser import ScriptError, parse_script
+from lumen.interpreters.expressions import unparse
+from lumen.interpreters.expressions.kinds import BOOLEAN, MAP, NUMBER, TEXT
+from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH, MAX_INT, MAX_TREE_DEPTH, MIN_INT
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Conditional,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    IndexAccess,
+    ListLiteral,
+    Literal,
+    Logic,
+    MapLiteral,
+    Unary,
+    walk,
+)
+
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_FALSY = ListLiteral((Literal(None), Literal(False), Literal(0), Literal("")))
+
+
+@dataclass(frozen=True)
+class ScriptNames:
+    """What the names in a document stand for.
+
+    `context` maps the data model's names to context keys, `kinds` those keys to the kinds they keep (absent: any);
+    `states` are the ids for `In()`, and `title` is what `_name` is.
+    """
+
+    context: Mapping[str, str] = field(default_factory=dict)
+    kinds: Mapping[str, str] = field(default_factory=dict)
+    states: frozenset[str] = frozenset()
+    title: str = ""
+
+
+def read_condition(source: str, names: ScriptNames) -> str:
+    """Our expression, true where ECMAScript's is truthy; raises ScriptError."""
+    return printed(ScriptTranslator(names).condition(parse_script(source)))
+
+
+def read_value(source: str, names: ScriptNames) -> ExpressionNode:
+    """The tree of our expression with the same value; raises ScriptError."""
+    tree = ScriptTranslator(names).value(parse_script(source))
+    printed(tree)
+    return tree
+
+
+def printed(tree: ExpressionNode) -> str:
+    """The text of one of our trees; raises ScriptError where it is longer or deeper than an expression may be."""
+    if any(level > MAX_TREE_DEPTH for _, level in walk(tree)):
+        raise ScriptError("it has too many levels")
+    text = unparse(tree)
+    if len(text) > MAX_EXPRESSION_LENGTH:
+        raise ScriptError(f"it becomes longer than {MAX_EXPRESSION_LENGTH:,} characters")
+    return text
+
+
+class ScriptTranslator:
+    """Translates one expression; `present` are the fields of the event that are known to be there so far."""
+
+    def __init__(self, names: ScriptNames) -> None:
+        self.names = names
+        self.present: frozenset[tuple[str, ...]] = frozenset()
+
+    def kind(self, node: ExpressionNode) -> str:
+        return kind(node, self.names.kinds)
+
+    def condition(self, tree: ExpressionNode) -> ExpressionNode:
+        """True where the value is truthy."""
+        match tree:
+            case Logic(sign=sign, operands=operands):
+                return self._logic(sign, operands)
+            case Unary(sign="!", operand=operand):
+                return negated(self.condition(operand))
+            case Conditional(condition=condition, then=then, otherwise=otherwise):
+                return Conditional(self.condition(condition), self.condition(then), self.condition(otherwise))
+        return HAPPENED if tree == EVENT else self._truthy(self.value(tree))
+
+    def _logic(self, sign: str, operands: tuple[ExpressionNode, ...]) -> ExpressionNode:
+        before, found = self.present, list[ExpressionNode]()
+        for operand in operands:
+            read = self.condition(operand)
+            same = isinstance(read, Logic) and read.sign == sign
+            found += read.operands if same and isinstance(read, Logic) else (read,)
+            self.present |= known(read, sign == "&&")
+        self.present = before
+        return Logic(sign, tuple(found))
+
+    def _truthy(self, node: ExpressionNode) -> ExpressionNode:
+        match self.kind(node):
+            case "boolean":
+                return node
+            case "number":
+                return Binary("!=", node, Literal(0))
+            case "text":
+                return Binary("!=", node, Literal(""))
+            case "null":
+                return Literal(False)
+            case "list" | "map":
+                return Literal(True)
+        return guarded(self, Unary("!", Binary("in", node, _FALSY)), node)
+
+    def value(self, tree: ExpressionNode) -> ExpressionNode:
+        """The same value."""
+        match tree:
+            case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
+                return Literal(float(value))
+            case Literal():
+                return tree
+            case Identifier(name=name):
+                return self._name(name)
+            case FieldAccess(base=base, name=name) | IndexAccess(base=base, key=Literal(value=str() as name)):
+                return self._field(base, name)
+            case IndexAccess(base=base, key=key):
+                return IndexAccess(self.value(base), self.value(key))
+            case ListLiteral(items=items):
+                return ListLiteral(tuple(map(self.value, items)))
+            case MapLiteral(keys=keys, values=values):
+                return MapLiteral(keys, tuple(map(self.value, values)))
+            case Unary():
+                return self._unary(tree)
+            case Binary():
+                return self._binary(tree)
+            case Logic():
+                return self._either(tree)
+            case Conditional(condition=condition, then=then, otherwise=otherwise):
+                return Conditional(self.condition(condition), self.value(then), self.value(otherwise))
+            case FunctionCall():
+                return self._call(tree)
+
+    def _name(self, name: str) -> ExpressionNode:
+        if name in self.names.context:
+            return FieldAccess(Identifier("context"), self.names.context[name])
+        if name == "undefined":
+            return Literal(None)
+        if name == "_name":
+            return Literal(self.names.title)
+        if name in ("_event", "_sessionid", "_ioprocessors", "_x"):
+            raise ScriptError(f"`{name}` as a whole has no counterpart")
+        raise ScriptError(f"`{name}` stands in no datamodel")
+
+    def _field(self, base: ExpressionNode, name: str) -> ExpressionNode:
+        if base == EVENT:
+            if name not in ("name", "data"):
+                raise ScriptError(f"an event has no `{name}` here, only `name` and `data`")
+            return FieldAccess(Identifier("event"), name)
+        if base == Identifier("_x") and name == "state":
+            return Identifier("state")
+        if isinstance(base, Identifier) and base.name in ("_ioprocessors", "_x", "Math"):
+            raise ScriptError(f"`{base.name}.{name}` has no counterpart")
+        read = self.value(base)
+        if name == "length" and self.kind(read) != MAP:
+            return FunctionCall("size", (read,))
+        return FieldAccess(read, name) if _IDENTIFIER.fullmatch(name) else IndexAccess(read, Literal(name))
+
+    def _unary(self, node: Unary) -> ExpressionNode:
+        if node.sign == "!":
+            return self.condition(node)
+        if node.sign == "typeof":
+            raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
+        read = self.value(node.operand)
+        if self.kind(read) not in (NUMBER, UNKNOWN) or (node.sign == "+" and self.kind(read) != NUMBER):
+            raise ScriptError(f"`{node.sign}` turns a value into a number")
+        return read if node.sign == "+" else Unary("-", read)
+
+    def _either(self, node: Logic) -> ExpressionNode:
+        """`a || b` is one of the two values, not true or false."""
+        values = [self.value(operand) for operand in node.operands]
+        if all(self.kind(value) == BOOLEAN for value in values):
+            return self._logic(node.sign, node.operands)
+        *before, result = values
+        for value in reversed(before):
+            yes, no = (result, value) if node.sign == "&&" else (value, result)
+            result = Conditional(self._truthy(value), yes, no)
+        return result
+
+    def _binary(self, node: Binary) -> ExpressionNode:
+        sign = node.sign
+        if sign in ("==", "===", "!=", "!=="):
+            return equality(self, node)
+        left, right = self.value(node.left), self.value(node.right)
+        if sign in ("<", "<=", ">", ">="):
+            self._same_kind(sign, left, right, (NUMBER, TEXT))
+            return guarded(self, Binary(sign, left, right), left, right)
+        if sign == "in":
+            if self.kind(left) != TEXT:
+                raise ScriptError("`in` asks for a key of an object, in quotes")
+            return Binary("in", left, right)
+        self._same_kind(sign, left, right, (NUMBER, TEXT) if sign == "+" else (NUMBER,))
+        if sign == "/" and not (is_float(left) or is_float(right)):
+            left, right = _floats(left, right)
+        return Binary(sign, left, right)
+
+    def _same_kind(self, sign: str, left: ExpressionNode, right: ExpressionNode, allowed: tuple[str, ...]) -> None:
+        kinds = {self.kind(left), self.kind(right)} - {UNKNOWN}
+        if not kinds <= set(allowed) or len(kinds) > 1:
+            raise ScriptError(f"`{sign}` has values of two kinds, which ECMAScript would convert")
+
+    def _call(self, node: FunctionCall) -> ExpressionNode:
+        if node.function == "In":
+            (state,) = node.arguments if len(node.arguments) == 1 else (None,)
+            if isinstance(state, Literal) and state.value not in self.names.states:
+                return Literal(False)
+            if state is None:
+                raise ScriptError("`In` takes the id of a state")
+            return FunctionCall("In", (self.value(state),))
+        if node.function.startswith("."):
+            return method(self, node)
+        if node.function not in LUMEN_FUNCTIONS:
+            raise ScriptError(f"`{node.function}()` has no counterpart")
+        arguments = tuple(map(self.value, node.arguments))
+        if node.function in SIGN_FUNCTIONS and len(arguments) == 2:
+            return Binary(SIGN_FUNCTIONS[node.function], *arguments)
+        return FunctionCall(node.function, arguments)
+
+
+def _floats(left: ExpressionNode, right: ExpressionNode) -> tuple[ExpressionNode, ExpressionNode]:
+    """Operands of `/` for a quotient with its fraction."""
+    match left, right:
+        case _, Literal(value=int() as value):
+            return left, Literal(float(value))
+        case Literal(value=int() as value), _:
+            return Literal(float(value)), right
+    return Binary("*", Literal(1.0), left), right

@@ -1,0 +1,155 @@
+"""From our expressions to ECMAScript's, and what in them only Lumen knows."""
+
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from lumen.formats.ecmascript.kind_inference import is_float, kind
+from lumen.formats.ecmascript.methods import EQUIVALENT_METHODS
+from lumen.formats.ecmascript.script_tokens import ScriptError
+from lumen.interpreters.expressions import parse_expression, unparse
+from lumen.interpreters.expressions.kinds import LIST, MAP, TEXT
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Conditional,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    IndexAccess,
+    ListLiteral,
+    Literal,
+    Logic,
+    MapLiteral,
+    Unary,
+    path_of,
+)
+
+_METHODS = {ours: theirs for theirs, ours in EQUIVALENT_METHODS.items()}
+_PREFIX = re.compile(r"\^((?:\\[^\w\s]|[\w\s])+)", re.ASCII)
+_SUFFIX = re.compile(r"((?:\\[^\w\s]|[\w\s])+)\$", re.ASCII)
+
+
+class WrittenScript(NamedTuple):
+    """The ECMAScript, and the names in it that other tools do not know."""
+
+    text: str
+    foreign: tuple[str, ...] = ()
+
+
+class Vocabulary(NamedTuple):
+    """What our names are there: the `kinds` that context keys keep, their names, and the ids of states by path."""
+
+    kinds: Mapping[str, str] = {}
+    keys: Mapping[str, str] = {}
+    states: Mapping[str, str] = {}
+
+
+def write_expression(source: str, vocabulary: Vocabulary) -> WrittenScript:
+    """One of our expressions in ECMAScript; raises ScriptError where it uses the context or the event as a whole."""
+    writer = _Writer(vocabulary)
+    text = unparse(writer.node(parse_expression(source)))
+    return WrittenScript(text, tuple(dict.fromkeys(writer.foreign)))
+
+
+class _Writer:
+    """Translates one tree; `foreign` collects what only Lumen knows."""
+
+    def __init__(self, vocabulary: Vocabulary) -> None:
+        self.vocabulary = vocabulary
+        self.foreign: list[str] = []
+
+    def kind(self, node: ExpressionNode) -> str:
+        return kind(node, self.vocabulary.kinds)
+
+    def node(self, node: ExpressionNode) -> ExpressionNode:
+        match node:
+            case Literal():
+                return node
+            case Identifier(name=name):
+                return self._name(name)
+            case (
+                FieldAccess(base=Identifier(name="context"), name=name)
+                | IndexAccess(base=Identifier(name="context"), key=Literal(value=str() as name))
+            ):
+                return Identifier(self.vocabulary.keys.get(name, name))
+            case FieldAccess(base=Identifier(name="event"), name=name):
+                return FieldAccess(Identifier("_event"), name)
+            case FieldAccess(base=base, name=name):
+                return FieldAccess(self.node(base), name)
+            case IndexAccess(base=base, key=key):
+                return IndexAccess(self.node(base), self.node(key))
+            case ListLiteral(items=items):
+                return ListLiteral(tuple(map(self.node, items)))
+            case MapLiteral(keys=keys, values=values):
+                return MapLiteral(keys, tuple(map(self.node, values)))
+            case Unary(sign="!", operand=FunctionCall(function="has", arguments=(target,))):
+                return self._typeof("===", target)
+            case Unary(sign=sign, operand=operand):
+                return Unary(sign, self.node(operand))
+            case Logic(sign=sign, operands=operands):
+                return Logic(sign, tuple(map(self.node, operands)))
+            case Conditional(condition=condition, then=then, otherwise=otherwise):
+                return Conditional(*map(self.node, (condition, then, otherwise)))
+            case Binary():
+                return self._binary(node)
+            case FunctionCall():
+                return self._call(node)
+
+    def _name(self, name: str) -> ExpressionNode:
+        if name != "state":
+            raise ScriptError(f"`{name}` as a whole has no counterpart")
+        self.foreign.append("state")
+        return FieldAccess(Identifier("_x"), "state")
+
+    def _binary(self, node: Binary) -> ExpressionNode:
+        left, right = self.node(node.left), self.node(node.right)
+        match node.sign:
+            case "==" | "!=":
+                if {self.kind(node.left), self.kind(node.right)} & {LIST, MAP}:
+                    call = self._own("same", left, right)
+                    return call if node.sign == "==" else Unary("!", call)
+                return Binary(f"{node.sign}=", left, right)
+            case "in":
+                return self._contained(node, left, right)
+            case "/" if not (is_float(node.left) or is_float(node.right)):
+                return FunctionCall(".trunc", (Identifier("Math"), Binary("/", left, right)))
+        return Binary(node.sign, left, right)
+
+    def _contained(self, node: Binary, left: ExpressionNode, right: ExpressionNode) -> ExpressionNode:
+        match self.kind(node.right), self.kind(node.left):
+            case "list", _:
+                return FunctionCall(".includes", (right, left))
+            case "map", "text":
+                return Binary("in", left, right)
+        return self._own("contained", left, right)
+
+    def _call(self, node: FunctionCall) -> ExpressionNode:
+        arguments = tuple(map(self.node, node.arguments))
+        match node.function, arguments:
+            case "has", _:
+                return self._typeof("!==", node.arguments[0])
+            case "In", (Literal(value=str() as state),):
+                return FunctionCall("In", (Literal(self.vocabulary.states.get(state, state)),))
+            case "In", _:
+                return FunctionCall("In", arguments)
+            case "size", (value,) if self.kind(node.arguments[0]) != MAP:
+                return FieldAccess(value, "length")
+            case "contains", _ if TEXT in map(self.kind, node.arguments) and self.kind(node.arguments[0]) != LIST:
+                return FunctionCall(".includes", arguments)
+            case "matches", (value, Literal(value=str() as pattern)):
+                for method, form in ((".startsWith", _PREFIX), (".endsWith", _SUFFIX)):
+                    if found := form.fullmatch(pattern):
+                        return FunctionCall(method, (value, Literal(re.sub(r"\\(.)", r"\1", found[1]))))
+            case name, _ if name in _METHODS:
+                return FunctionCall(_METHODS[name], arguments)
+        return self._own(node.function, *arguments)
+
+    def _typeof(self, sign: str, target: ExpressionNode) -> ExpressionNode:
+        """Whether something is there; where an event's name is, there is an event."""
+        asked = Identifier("_event") if path_of(target) == ("event", "name") else self.node(target)
+        return Binary(sign, Unary("typeof", asked), Literal("undefined"))
+
+    def _own(self, name: str, *arguments: ExpressionNode) -> ExpressionNode:
+        self.foreign.append(name)
+        return FunctionCall(name, arguments)

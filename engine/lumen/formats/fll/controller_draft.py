@@ -1,0 +1,143 @@
+"""A controller file in the making: variables, terms and rules of another tool, under names that our rules can say."""
+
+import re
+from collections.abc import Callable, Mapping
+from math import inf, isfinite, isnan
+from typing import Any
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.fll.fuzzylite_names import plain
+from lumen.formats.fll.rule_text import rule_text
+from lumen.language.controllers import TERMS
+from lumen.language.diagnostics import Place
+from lumen.loading.rules import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
+
+_UNFIT = re.compile(r"[^A-Za-z0-9_\-]+")
+_ENDLESS = ("triangle", "trapezoid", "binary", "rectangle")
+
+MAX_TERM_PARAMETERS = 1_000
+"""Parameters of a term: more points than that are no shape that a person drew."""
+
+NewNames = dict[str, str]
+PlaceOfWord = Callable[[RuleWord], Place]
+"""Where a word of a rule's text stands in the file."""
+
+
+class ControllerDraft:
+    """Collects a controller's data; `names` and `terms` tell what the file's names became."""
+
+    def __init__(self, file: str, findings: ConversionFindings) -> None:
+        self.findings = findings
+        self.data: dict[str, Any] = {"description": f"From {file.replace(chr(92), '/').rpartition('/')[2]}"}
+        self.sides: dict[str, dict[str, dict[str, Any]]] = {"inputs": {}, "outputs": {}}
+        self.names: NewNames = {}
+        self.terms: dict[str, NewNames] = {}
+        self.blocks: list[dict[str, Any]] = []
+
+    def variable(self, side: str, name: str, place: Place) -> dict[str, Any]:
+        """A new input or output; what the file says of it goes into the dict returned."""
+        known = {*self.sides["inputs"], *self.sides["outputs"]}
+        ours = self.fresh(name, known, place)
+        self.names.setdefault(name, ours)
+        self.terms.setdefault(name, {})
+        spec: dict[str, Any] = {}
+        self.sides[side][ours] = spec
+        return spec
+
+    def fresh(self, name: str, taken: Any, place: Place) -> str:
+        """A name like that one which our rules can say and nobody has."""
+        stem = _UNFIT.sub("_", name).strip("-") or "unnamed"
+        stem = f"{stem}_" if stem.lower() in KEYWORDS else stem
+        ours, number = stem, 1
+        while ours in taken:
+            number += 1 if number < 100 else len(taken)
+            ours = f"{stem}_{number}"
+        if ours != name:
+            self.findings.changed(place, f"`{name}` is called `{ours}`", "rules can't say that name, or it is taken")
+        return ours
+
+    def term(self, variable: str, spec: dict[str, Any], name: str, kind: str, values: Any, place: Place) -> None:
+        """A term of a variable: `values` are its parameters in our order, or its formula."""
+        if problem := self._problem(kind, values):
+            self.findings.lost(place, f"the term `{name}` of `{variable}` is left out: {problem}")
+            return
+        terms = spec.setdefault("terms", {})
+        ours = self.fresh(name, terms, place)
+        self.terms[variable][name] = ours  # of two that are called alike FuzzyLite's rules mean the last
+        height = None
+        if kind not in ("function", "constant", "linear", "discrete") and len(values) == len(TERMS[kind]) + 1:
+            *values, height = values
+        terms[ours] = {kind: _shape(kind, values)}
+        if height is not None and height != 1.0:
+            terms[ours]["height"] = plain(height)
+
+    def _problem(self, kind: str, values: Any) -> str:
+        if kind == "function":
+            return ""
+        if any(isnan(value) for value in values) or (kind not in _ENDLESS and not all(map(isfinite, values))):
+            return "a parameter is no number"
+        if len(values) > MAX_TERM_PARAMETERS:
+            return f"it has more than {MAX_TERM_PARAMETERS:,} numbers"
+        wanted = TERMS[kind]
+        fits = len(values) - len(wanted) in (0, 1) or kind in ("linear", "discrete")
+        if kind == "discrete" and (len(values) < 2 or len(values) % 2):
+            fits = False
+        return "" if fits else f"it has {len(values)} parameters and takes {len(wanted)} ({', '.join(wanted)})"
+
+    def rule(self, text: str, place: Place, spot: PlaceOfWord) -> str:
+        """The rule in our words; empty where it is left out."""
+        try:
+            said = parse_rule(text)
+        except RuleSyntaxError as error:
+            self.findings.lost(spot(error.word), f"this rule is left out: {error.message}", error.hint)
+            return ""
+        wrong = next((word for mention in said.mentions if (word := self._unknown(mention))), None)
+        if wrong:
+            self.findings.lost(spot(wrong), f"this rule is left out: there is no `{wrong.text}`")
+            return ""
+        return rule_text(said.antecedent, said.consequents, said.weight, self.names, self.terms)
+
+    def _unknown(self, mention: Mention) -> RuleWord | None:
+        """The word of a proposition that names nothing here."""
+        variable, term = mention.variable, mention.term
+        name = self.names.get(variable.text)
+        if name is None or (mention.concluded and name not in self.sides["outputs"]):
+            return variable
+        return term if term and term.text not in self.terms[variable.text] else None
+
+    def result(self) -> dict[str, Any]:
+        """The data of the file: one block of rules stands at its top, several have names."""
+        data = {**self.data, **{side: specs for side, specs in self.sides.items() if specs}}
+        blocks = [block for block in self.blocks if block["rules"]]
+        if len(blocks) == 1:
+            data["rules"] = blocks[0]["rules"]
+            if blocks[0]["operators"]:
+                data["operators"] = blocks[0]["operators"]
+        elif blocks:
+            named: dict[str, Any] = {}
+            for block in blocks:
+                name = _UNFIT.sub("_", block["name"]) or f"block{len(named) + 1}"
+                while name in named:
+                    name += "_"
+                named[name] = {key: block[key] for key in ("operators", "rules") if block[key]}
+            data["blocks"] = named
+        return data
+
+
+def ranged(low: float, high: float) -> list[int | float]:
+    """A range as the YAML says it."""
+    return [low if low == -inf else plain(low), high if high == inf else plain(high)]
+
+
+def _shape(kind: str, values: Any) -> Any:
+    if kind == "function":
+        return values
+    numbers = [value if value in (inf, -inf) else plain(value) for value in values]
+    if kind == "constant":
+        return numbers[0]
+    return [list(pair) for pair in zip(numbers[::2], numbers[1::2], strict=True)] if kind == "discrete" else numbers
+
+
+def operators(said: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
+    """Those operators that are not the usual ones."""
+    return {key: value for key, value in said.items() if value is not None and value != usual.get(key)}

@@ -1,0 +1,74 @@
+"""The lines of a file in FuzzyLite Language: `key: value`, `#` begins a comment, and a head begins each part."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.language.diagnostics import Place
+
+MAX_FLL_LINES = 20_000
+PART_KEYS = ("Engine", "InputVariable", "OutputVariable", "RuleBlock")
+
+
+class FllLine(NamedTuple):
+    """`key: value`, and where each of them stands; `offset` is the value's first column from 0."""
+
+    key: str
+    value: str
+    row: int
+    column: int
+    offset: int
+
+
+class FllPart(NamedTuple):
+    """An engine's head, a variable or a block: its first line, and the others."""
+
+    head: FllLine
+    lines: list[FllLine]
+
+
+class FllLineReader:
+    """Reads one file by its lines, and says of each what can't be carried over."""
+
+    def __init__(self, file: str, findings: ConversionFindings) -> None:
+        self.file, self.findings = file, findings
+
+    def parts(self, text: str) -> Iterator[FllPart]:
+        part: FllPart | None = None
+        for line in self.lines(text):
+            if line.key in PART_KEYS:
+                if part:
+                    yield part
+                part = FllPart(line, [])
+            elif part:
+                part.lines.append(line)
+            else:
+                self.lost(line, f"`{line.key}` stands before the engine")
+        if part:
+            yield part
+
+    def lines(self, text: str) -> Iterator[FllLine]:
+        rows = text.splitlines()
+        if len(rows) > MAX_FLL_LINES:
+            raise broken(Place(self.file), "too-large", f"the file has more than {MAX_FLL_LINES:,} lines", "split it")
+        for row, source in enumerate(rows, 1):
+            said = source.partition("#")[0].rstrip()
+            if not said.strip():
+                continue
+            column = len(said) - len(said.lstrip())
+            key, colon, value = said.partition(":")
+            offset = len(key) + 1 + len(value) - len(value.lstrip())
+            line = FllLine(key.strip(), value.strip(), row, column, offset)
+            if colon:
+                yield line
+            else:
+                self.lost(line, "this line can't be read: `key: value` should stand here")
+
+    def place(self, line: FllLine, offset: int | None = None, length: int | None = None) -> Place:
+        """Of the line's value, or of a part of it."""
+        begin = line.offset + 1 + (offset or 0) if line.value else line.column + 1
+        width = length or max(len(line.value) - (offset or 0), 1) if line.value else max(len(line.key), 1)
+        return Place(self.file, line.row, begin, line.row, begin + width)
+
+    def lost(self, line: FllLine, message: str, hint: str = "") -> None:
+        self.findings.lost(self.place(line), message, hint)

@@ -1,0 +1,134 @@
+"""A controller as a sheet: the memberships of all variables, then what each output does over its inputs."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import chain
+from math import isfinite, isnan
+
+from lumen.formats.plots.sheet import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
+from lumen.interpreters.inference.arithmetic import NUMBERS
+from lumen.interpreters.inference.memberships import membership
+from lumen.interpreters.inference.survey import Survey, asked, resting
+from lumen.language.controllers import VALUES, WEIGHTED, ControllerDefinition, Variable
+
+POINTS, ACROSS = 321, 41
+"""Of a curve, and of each side of a surface."""
+
+RESOLUTION = 1000
+
+
+def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
+    """Memberships; then for each output a curve, a surface over two inputs, or a slice for each of several."""
+    survey = Survey(controller, RESOLUTION)
+    panels = [memberships(variable) for variable in variables(controller)]
+    answers = list(chain.from_iterable(_answers(survey, output) for output in controller.outputs.values()))
+    gaps = any(isnan(y) for panel in answers for line in panel.lines for y in line.ys)
+    note = "Where a line is broken no rule fires: the default holds, or the value before." if gaps else ""
+    count = len(panels) + len(answers)
+    return PlotSheet(f"Controller {controller.name}", (*panels, *answers), min(count, 3 if count <= 9 else 4), note)
+
+
+def curves_sheet(title: str, controllers: Mapping[str, ControllerDefinition]) -> PlotSheet:
+    """What several versions of a controller answer, curve upon curve; the first says which inputs and outputs."""
+    first = next(iter(controllers.values()))
+    panels = []
+    for output in first.outputs.values():
+        for name in sorted(asked(first, output.name), key=list(first.inputs).index):
+            lines = [
+                PlotLine(*_curve(Survey(controller, RESOLUTION), output, name), label, style)
+                for style, (label, controller) in enumerate(controllers.items())
+            ]
+            marks = (*_neutral(first.inputs[name]), PlotMark(0.0, level=True))
+            height = PlotAxis(_label(replace(output, direction="")))  # the versions may differ in it
+            panels.append(PlotPanel("", axis(first.inputs[name]), height, tuple(lines), marks))
+    return PlotSheet(title, tuple(panels), len(panels))
+
+
+def variables(controller: ControllerDefinition) -> Iterator[Variable]:
+    """All of them, inputs first."""
+    yield from controller.inputs.values()
+    yield from controller.outputs.values()
+
+
+def memberships(variable: Variable, marks: tuple[PlotMark, ...] = ()) -> PlotPanel:
+    """The terms of a variable over its range; values (constants) stand upright, formulas of inputs are left out."""
+    low, high = ends(variable)
+    xs = tuple(low + (high - low) * i / (POINTS - 1) for i in range(POINTS))
+    lines = []
+    for style, term in enumerate(variable.terms.values()):
+        if term.kind == "constant":
+            lines.append(PlotLine((term.parameters[0],) * 2, (0.0, term.height), term.name, style))
+        elif term.kind not in VALUES and not (term.kind == "function" and variable.defuzzifier in WEIGHTED):
+            shape = membership(NUMBERS, term)
+            lines.append(PlotLine(xs, tuple(float(shape(x)) for x in xs), term.name, style))
+    title = variable.name
+    return PlotPanel(
+        title, axis(variable), PlotAxis("membership", 0.0, 1.05), tuple(lines), (*_neutral(variable), *marks)
+    )
+
+
+def axis(variable: Variable) -> PlotAxis:
+    """The variable's name, unit and direction, over its range."""
+    return PlotAxis(_label(variable), *ends(variable))
+
+
+def ends(variable: Variable) -> tuple[float, float]:
+    """The range; where it has no end, as far as the terms' own numbers go."""
+    if isfinite(variable.minimum) and isfinite(variable.maximum):
+        return variable.minimum, variable.maximum
+    said = [p for term in variable.terms.values() for p in term.parameters if isfinite(p)] or [-1.0, 1.0]
+    low = variable.minimum if isfinite(variable.minimum) else min(said) - 1.0
+    high = variable.maximum if isfinite(variable.maximum) else max(said) + 1.0
+    return low, max(high, low + 1.0)
+
+
+def _answers(survey: Survey, output: Variable) -> Iterator[PlotPanel]:
+    controller = survey.controller
+    names = [name for name in controller.inputs if name in asked(controller, output.name)]
+    if len(names) == 2:
+        yield _surface(survey, output, controller.inputs[names[0]], controller.inputs[names[1]])
+        return
+    for name in names:
+        others = ", ".join(f"{other} = {resting(controller.inputs[other]):g}" for other in names if other != name)
+        line = PlotLine(*_curve(survey, output, name))
+        marks = (*_neutral(controller.inputs[name]), PlotMark(0.0, level=True))
+        title = f"{output.name} at {others}" if others else f"{output.name} by {name}"
+        yield PlotPanel(title, axis(controller.inputs[name]), _height(output), (line,), marks)
+
+
+def _surface(survey: Survey, output: Variable, across: Variable, up: Variable) -> PlotPanel:
+    xs, ys = (_finite_grid(variable) for variable in (across, up))
+    zs = tuple(tuple(survey.at({across.name: x, up.name: y})[output.name] for x in xs) for y in ys)
+    marks = (*_neutral(across), *(PlotMark(mark.at, mark.label, level=True) for mark in _neutral(up)))
+    title = f"{output.name} by {across.name} and {up.name}"
+    return PlotPanel(title, axis(across), axis(up), marks=marks, surface=PlotSurface(xs, ys, zs, _label(output)))
+
+
+def _finite_grid(variable: Variable) -> tuple[float, ...]:
+    low, high = ends(variable)
+    return tuple(low + (high - low) * i / (ACROSS - 1) for i in range(ACROSS))
+
+
+def _curve(survey: Survey, output: Variable, name: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    variable = survey.controller.inputs[name]
+    low, high = ends(variable)
+    xs = tuple(low + (high - low) * i / (POINTS - 1) for i in range(POINTS))
+    return xs, tuple(survey.at({name: x})[output.name] for x in xs)
+
+
+def _height(output: Variable) -> PlotAxis:
+    """An output as the upright axis; its ends are what the curve needs, not the range it may not use."""
+    return PlotAxis(_label(output))
+
+
+def _neutral(variable: Variable) -> tuple[PlotMark, ...]:
+    return () if variable.neutral is None else (PlotMark(variable.neutral, "neutral"),)
+
+
+def _label(variable: Variable) -> str:
+    unit = f" [{variable.unit}]" if variable.unit else ""
+    return f"{variable.name}{unit}" + (f", to the {variable.direction}" if variable.direction in _SIDES else
+                                       f", {variable.direction}" if variable.direction else "")  # fmt: skip
+
+
+_SIDES = ("left", "right")

@@ -1,0 +1,209 @@
+"""Executable content of SCXML (section 4) as our actions."""
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.durations import duration, milliseconds
+from lumen.formats.ecmascript import ScriptError, parse_script, read_condition, read_value
+from lumen.formats.ecmascript.constants import constant
+from lumen.formats.scxml.assignments import assignments
+from lumen.formats.scxml.data_model import ScxmlDataModel, written
+from lumen.formats.scxml.log_templates import plain_template, template_of
+from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, XmlElement
+from lumen.interpreters.expressions import unparse
+from lumen.interpreters.expressions.tree import Literal
+
+ActionData = dict[str, Any]
+
+PROCESSORS = ("", "scxml", "http://www.w3.org/TR/scxml/#SCXMLEventProcessor", "http://www.w3.org/TR/scxml/")
+_NOT_CONSTANT = object()
+
+
+class LeftOutError(Exception):
+    """An element can't be said; the message and the hint say why."""
+
+    def __init__(self, message: str, hint: str = "") -> None:
+        super().__init__(message)
+        self.message, self.hint = message, hint
+
+
+class ScxmlActionReader:
+    """Reads the actions of one document."""
+
+    def __init__(self, context: ScxmlDataModel, findings: ConversionFindings) -> None:
+        self.context, self.findings = context, findings
+
+    def block(self, elements: Iterable[XmlElement]) -> list[ActionData]:
+        """The actions of these elements; what can't be said is reported and left out."""
+        return [action for element in elements for action in self.actions(element)]
+
+    def actions(self, element: XmlElement) -> Iterator[ActionData]:
+        try:
+            yield from self._actions(element)
+        except LeftOutError as error:
+            self.findings.lost(element.place, error.message, error.hint)
+        except ScriptError as error:
+            self.findings.lost(element.place, f"`<{element.tag}>`: {error}")
+
+    def condition(self, source: str) -> str:
+        """Our guard; raises ScriptError."""
+        return read_condition(source, self.context.names)
+
+    def _actions(self, element: XmlElement) -> Iterator[ActionData]:
+        match element.tag:
+            case "raise":
+                yield {"raise": self._named(element)}
+            case "send":
+                yield self._send(element)
+            case "cancel":
+                yield {"cancel": self._constant(element, "sendid", "sendidexpr")}
+            case "log":
+                yield {"log": self._text(element)}
+            case "assign":
+                yield self._assign(element)
+            case "if":
+                yield from self._if(element)
+            case "script":
+                yield from self._script(element)
+            case "foreach":
+                raise LeftOutError("`<foreach>`: there are no loops here", "say it once for each element")
+            case tag if tag == f"{{{LUMEN_NAMESPACE}}}action":
+                yield own(element)
+            case tag:
+                raise LeftOutError(f"`<{tag.rpartition('}')[2]}>` has no counterpart")
+
+    def _text(self, element: XmlElement) -> str:
+        try:
+            return template_of(element, self.context.names)
+        except ScriptError as error:
+            source = element.get("expr")
+            self.findings.changed(element.place, f"`<log>` writes `{source}` as it stands: {error}")
+            return plain_template(element, source)
+
+    def _named(self, element: XmlElement) -> str:
+        if not (name := element.get("event")):
+            raise LeftOutError(f"`<{element.tag}>` names no event", 'write event="…"')
+        return name
+
+    def _assign(self, element: XmlElement) -> ActionData:
+        location = element.get("location")
+        if location not in self.context.keys:
+            where = "stands in no datamodel" if location.isidentifier() else "is no plain name"
+            raise LeftOutError(f"`<assign>` to `{location}`, which {where}", "declare it with `<data>`")
+        if element.children:
+            raise LeftOutError(f"`<assign>` of XML to `{location}`")
+        given = "expr" in element.attributes
+        value = self.value(element.get("expr")) if given else quoted(written(element.text))
+        return {"assign": {self.context.keys[location]: value}}
+
+    def _script(self, element: XmlElement) -> Iterator[ActionData]:
+        """A script that only assigns; raises where it does more."""
+        found = assignments(element.text) if "src" not in element.attributes else None
+        keys = self.context.keys
+        if found is None or any(name not in keys for name, _ in found):
+            raise LeftOutError("`<script>`: ECMAScript is not run here", "say it with `<assign>` and conditions")
+        yield from ({"assign": {keys[name]: self.value(source)}} for name, source in found)
+
+    def value(self, source: str) -> Any:
+        """A value of ours: what is written out as such, the rest as an expression."""
+        read = constant(parse_script(source), _NOT_CONSTANT)
+        if read is not _NOT_CONSTANT:
+            return quoted(read)
+        return unparse(read_value(source, self.context.names))
+
+    def _if(self, element: XmlElement) -> Iterator[ActionData]:
+        branches: list[tuple[XmlElement, list[XmlElement]]] = [(element, [])]
+        for child in element.children:
+            if child.tag in ("elseif", "else"):
+                branches.append((child, []))
+            else:
+                branches[-1][1].append(child)
+        conditions = [self.condition(e.get("cond")) if e.tag != "else" else "" for e, _ in branches]
+        blocks = [self.block(children) for _, children in branches]
+        result: list[ActionData] = []
+        for condition, block in reversed(list(zip(conditions, blocks, strict=True))):
+            result = [{"if": condition, "then": block} | ({"else": result} if result else {})] if condition else block
+        yield from result
+
+    def _send(self, element: XmlElement) -> ActionData:
+        event = self._constant(element, "event", "eventexpr")
+        target = self._constant(element, "target", "targetexpr", optional=True)
+        processor = self._constant(element, "type", "typeexpr", optional=True)
+        delay = self._delay(element)
+        if processor not in PROCESSORS:
+            raise LeftOutError(f"`<send>` through `{processor}`", "only events for the chart itself are carried over")
+        if target not in ("", "#_internal"):
+            raise LeftOutError(f"`<send>` to `{target}`", "only events for the chart itself are carried over")
+        if "idlocation" in element.attributes:
+            raise LeftOutError("`<send>` with `idlocation`", "give it an `id`")
+        body: dict[str, Any] = {"event": event}
+        if (data := self.data(element)) is not None:
+            body["data"] = data
+        if target == "#_internal":
+            if delay:
+                raise LeftOutError("`<send>` to `#_internal` with a delay", "leave out the target")
+            return {"raise": body if len(body) > 1 else event}
+        if delay:
+            body["delay"] = duration(delay)
+        if id := element.get("id"):
+            body["id"] = id
+        return {"send": body if len(body) > 1 else event}
+
+    def _delay(self, element: XmlElement) -> float:
+        text = self._constant(element, "delay", "delayexpr", optional=True)
+        if (length := milliseconds(text)) is None:
+            raise LeftOutError(f"`{text}` is no delay", "write 500ms or 2s")
+        return length
+
+    def _constant(self, element: XmlElement, name: str, computed: str, *, optional: bool = False) -> str:
+        """The text of an attribute, or of the other one's expression; raises where that has to be computed."""
+        if computed in element.attributes:
+            source = element.get(computed)
+            read = constant(parse_script(source), _NOT_CONSTANT)
+            if not isinstance(read, str | int | float) or isinstance(read, bool):
+                raise LeftOutError(f"`{computed}` of `<{element.tag}>` is computed: `{source}`", f"write `{name}`")
+            return str(read)
+        if not element.get(name) and not optional:
+            raise LeftOutError(f"`<{element.tag}>` has no `{name}`")
+        return element.get(name)
+
+    def data(self, element: XmlElement) -> Any:
+        """The data of a `<send>` or `<donedata>`: names, parameters, or content; None without any."""
+        found: dict[str, Any] = {}
+        for name in element.get("namelist").split():
+            found[name] = unparse(read_value(name, self.context.names))
+        for param in element.of("param"):
+            source = param.get("expr") if "expr" in param.attributes else param.get("location")
+            found[param.get("name")] = self.value(source)
+        if found:
+            return found
+        for content in element.of("content"):
+            if content.children:
+                raise LeftOutError("`<content>` is XML", "write it as JSON")
+            return self.value(content.get("expr")) if "expr" in content.attributes else quoted(written(content.text))
+        return None
+
+
+def quoted(value: Any) -> Any:
+    """A value of ours that is this JSON: its texts become expressions."""
+    match value:
+        case str():
+            return unparse(Literal(value))
+        case list():
+            return [quoted(item) for item in value]
+        case Mapping():
+            return {str(key): quoted(item) for key, item in value.items()}
+        case float() if not math.isfinite(value):
+            return None
+    return value
+
+
+def own(element: XmlElement) -> Any:
+    """What only Lumen knows, as JSON in an element of its namespace."""
+    try:
+        return json.loads(element.text)
+    except (ValueError, RecursionError):
+        raise LeftOutError("this is not the JSON that Lumen writes") from None

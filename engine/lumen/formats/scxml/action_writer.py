@@ -1,0 +1,114 @@
+"""Our actions as SCXML's executable content."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from lumen.formats.action_data import plain_action, plain_value
+from lumen.formats.conversion_findings import ExportReport
+from lumen.formats.durations import duration
+from lumen.formats.ecmascript import ScriptError, Vocabulary, write_expression
+from lumen.formats.scxml.log_templates import expression_of
+from lumen.formats.scxml.xml_tags import XmlTag
+from lumen.interpreters.expressions import parse_expression, unparse
+from lumen.interpreters.expressions.tree import Literal
+from lumen.language.actions import Assign, CancelSend, ComputedValue, Expression, If, LogText, PlacedAction, Raise, Send
+
+
+class ScxmlActionWriter:
+    """Writes the actions of one machine."""
+
+    def __init__(self, vocabulary: Vocabulary, report: ExportReport) -> None:
+        self.vocabulary, self.report = vocabulary, report
+
+    def block(self, steps: Sequence[PlacedAction]) -> list[XmlTag]:
+        """The elements of these actions."""
+        return [tag for step in steps for tag in self._one(step)]
+
+    def expression(self, expression: Expression) -> str:
+        """ECMAScript; raises ScriptError."""
+        written = write_expression(expression.source, self.vocabulary)
+        self._foreign(written.foreign, expression.where)
+        return written.text
+
+    def _foreign(self, names: Sequence[str], where: Any) -> None:
+        for name in names:
+            self.report.foreign(f"`{name}` in an expression", where)
+
+    def _one(self, step: PlacedAction) -> list[XmlTag]:
+        try:
+            return list(self._tags(step))
+        except ScriptError as error:
+            verb = next(iter(plain_action(step.action)))
+            self.report.lost(f"`{verb}` is left out: {error}", step.where)
+            return []
+
+    def _tags(self, step: PlacedAction) -> Iterator[XmlTag]:
+        match step.action:
+            case Assign(values):
+                if any(isinstance(v, Expression) and not is_constant(v.source) for v in list(values.values())[1:]):
+                    message = "this `assign` becomes several: where one fails, those before it have happened"
+                    self.report.changed(message, step.where)
+                for key, value in values.items():
+                    yield XmlTag("assign", {"location": self.vocabulary.keys[key], "expr": self.value(value)})
+            case Raise(event, None):
+                yield XmlTag("raise", {"event": event})
+            case Raise(event, data):
+                yield XmlTag("send", {"event": event, "target": "#_internal"}, self.data(data))
+            case Send(event, data, delay, id):
+                attributes = {"event": event, "id": id, "delay": duration(delay * 1000) if delay else ""}
+                yield XmlTag("send", attributes, self.data(data) if data is not None else [])
+            case CancelSend(id):
+                yield XmlTag("cancel", {"sendid": id})
+            case LogText(template):
+                text, foreign = expression_of(template.text, self.vocabulary)
+                self._foreign(foreign, step.where)
+                yield XmlTag("log", {"expr": text})
+            case If() as choice:
+                yield XmlTag("if", {"cond": self.expression(choice.guard)}, list(self._branches(choice)))
+            case action:
+                plain = plain_action(action)
+                self.report.foreign(f"`{next(iter(plain))}`", step.where)
+                yield XmlTag("lumen:action", {}, [], json.dumps(plain, ensure_ascii=False))
+
+    def _branches(self, choice: If) -> Iterator[XmlTag]:
+        yield from self.block(choice.then)
+        match choice.otherwise:
+            case (PlacedAction(action=If() as other),):
+                yield XmlTag("elseif", {"cond": self.expression(other.guard)})
+                yield from self._branches(other)
+            case (_, *_):
+                yield XmlTag("else")
+                yield from self.block(choice.otherwise)
+
+    def data(self, value: ComputedValue) -> list[XmlTag]:
+        """Parameters for a map, content for everything else; raises ScriptError."""
+        if isinstance(value, Mapping) and value and all(value):
+            return [XmlTag("param", {"name": key, "expr": self.value(item)}) for key, item in value.items()]
+        return [XmlTag("content", {"expr": self.value(value)})]
+
+    def value(self, value: ComputedValue) -> str:
+        """A value as ECMAScript; raises ScriptError."""
+        match value:
+            case Expression():
+                return self.expression(value)
+            case tuple():
+                return f"[{', '.join(map(self.value, value))}]"
+            case Mapping():
+                return "{" + ", ".join(f"{unparse(Literal(k))}: {self.value(v)}" for k, v in value.items()) + "}"
+        return unparse(Literal(plain_value(value)))
+
+    def literal(self, value: Any) -> str:
+        """JSON as ECMAScript."""
+        match value:
+            case list() | tuple():
+                return f"[{', '.join(map(self.literal, value))}]"
+            case Mapping():
+                pairs = (f"{unparse(Literal(str(k)))}: {self.literal(v)}" for k, v in value.items())
+                return "{" + ", ".join(pairs) + "}"
+        return unparse(Literal(value))
+
+
+def is_constant(source: str) -> bool:
+    """Whether an expression of ours can't fail."""
+    return isinstance(parse_expression(source), Literal)

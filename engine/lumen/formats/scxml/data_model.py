@@ -1,0 +1,155 @@
+"""The data model of an SCXML document as our context."""
+
+import json
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.ecmascript import ScriptError, ScriptNames, parse_script, read_value
+from lumen.formats.ecmascript.constants import constant
+from lumen.formats.ecmascript.kind_inference import UNKNOWN, kind
+from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree
+from lumen.formats.scxml.xml_elements import XmlElement
+from lumen.interpreters.expressions import unparse
+from lumen.interpreters.expressions.kinds import kind_of
+
+_UNFIT = re.compile(r"\W+", re.ASCII)
+_NOTHING = object()
+
+MAX_KIND_PASSES = 10
+"""How often kinds are looked at again: after that, whatever is assigned may be of any."""
+
+
+class ScxmlDataModel:
+    """`first` are the values of our context's keys, `late` those that have to be computed, in order.
+
+    `names` is what expressions see. Where a key is given values of several kinds, `wide` has it, and `types` in our
+    file lets it hold anything.
+    """
+
+    def __init__(self, outline: ScxmlStateTree, findings: ConversionFindings) -> None:
+        self.findings = findings
+        self.first: dict[str, Any] = {}
+        self.late: dict[str, str] = {}
+        self.wide: dict[str, dict[str, Any]] = {}
+        self.keys: dict[str, str] = {}
+        self.taken: set[str] = set()
+        elements = list(_data(outline.top, outline.scxml))
+        for element in elements:
+            self._declare(element)
+        states = frozenset((*outline.by_id, outline.title))
+        self.kinds: dict[str, str] = {}
+        self.names = ScriptNames(self.keys, self.kinds, states, outline.title)
+        for element in elements:
+            self._value(element)
+        self._late_binding(outline, elements)
+        self._widen(outline)
+
+    def _declare(self, element: XmlElement) -> None:
+        id = element.get("id")
+        key = wanted = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", id)) or "_"
+        number = 1
+        while key in self.taken and id not in self.keys:
+            number += 1 if number < 100 else len(self.taken)
+            key = f"{wanted}_{number}"
+        self.taken.add(self.keys.setdefault(id, key))
+
+    def _value(self, element: XmlElement) -> None:
+        key = self.keys[element.get("id")]
+        self.kinds.pop(key, None)
+        value = self.first[key] = self._first(element)
+        if value is not None:
+            self.kinds[key] = kind_of(value)
+
+    def _first(self, element: XmlElement) -> Any:
+        id = element.get("id")
+        if "src" in element.attributes:
+            self.findings.lost(element.place, f"the first value of `{id}` lies in another file", "write it here")
+            return None
+        if "expr" in element.attributes:
+            return self._expression(element, element.get("expr"))
+        if element.children:
+            self.findings.lost(element.place, f"the first value of `{id}` is XML", "write it as JSON")
+            return None
+        return written(element.text)
+
+    def _expression(self, element: XmlElement, source: str) -> Any:
+        try:
+            tree = parse_script(source)
+            value = constant(tree, _NOTHING)
+            if value is not _NOTHING:
+                return value
+            self.late[self.keys[element.get("id")]] = unparse(read_value(source, self.names))
+        except ScriptError as error:
+            self.findings.lost(element.place, f"the first value of `{element.get('id')}`, `{source}`: {error}")
+        return None
+
+    def _late_binding(self, outline: ScxmlStateTree, elements: list[XmlElement]) -> None:
+        if outline.scxml.get("binding") != "late":
+            return
+        for element in elements[len(list(_top_data(outline.scxml))) :]:
+            hint = "all values are there from the beginning here"
+            self.findings.lost(element.place, f'`binding="late"` of `{element.get("id")}`', hint)
+
+    def _widen(self, outline: ScxmlStateTree) -> None:
+        """Find the keys that are given values of another kind than their first."""
+        assigned = [e for e in outline.scxml.walk() if e.tag == "assign" and e.get("location") in self.keys]
+        for turn in range(MAX_KIND_PASSES):
+            before = len(self.wide)
+            for element in assigned:
+                key = self.keys[element.get("location")]
+                kept = self.kinds.get(key)
+                if kept is not None and (turn == MAX_KIND_PASSES - 1 or self._kind(element) != kept):
+                    self.wide[key] = {}
+                    del self.kinds[key]
+            if len(self.wide) == before:
+                return
+
+    def _kind(self, element: XmlElement) -> str:
+        try:
+            if "expr" not in element.attributes:
+                return kind_of(written(element.text))
+            return kind(read_value(element.get("expr"), self.names), self.names.kinds)
+        except ScriptError:
+            key = self.keys[element.get("location")]
+            return kind_of(self.first[key])
+        except RecursionError:
+            return UNKNOWN
+
+
+def written(text: str) -> Any:
+    """The value of inline content (SCXML B.2.8.1): JSON, or a list or text as ECMAScript writes it, else the text."""
+    stripped = text.strip()
+    if not stripped:
+        return None
+    with_constant = _constant(stripped)
+    return " ".join(stripped.split()) if with_constant is _NOTHING else with_constant
+
+
+def _constant(text: str) -> Any:
+    try:
+        return json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        pass
+    try:
+        return constant(parse_script(text), _NOTHING) if text[0] in "[{" else _NOTHING
+    except ScriptError:
+        return _NOTHING
+
+
+def _refuse(name: str) -> Any:
+    raise ValueError(name)
+
+
+def _top_data(scxml: XmlElement) -> Iterator[XmlElement]:
+    for model in scxml.of("datamodel"):
+        yield from (data for data in model.of("data") if data.get("id"))
+
+
+def _data(top: XmlElement, scxml: XmlElement) -> Iterator[XmlElement]:
+    """All `<data>`, those of the document first."""
+    yield from _top_data(scxml)
+    for state in scxml.walk():
+        if state is not scxml and state.tag in STATES:
+            yield from _top_data(state)

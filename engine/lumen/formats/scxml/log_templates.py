@@ -1,0 +1,65 @@
+"""`<log>` and our texts with `{{ … }}`, both ways."""
+
+import re
+
+from lumen.formats.ecmascript import ScriptError, ScriptNames, Vocabulary, parse_script, write_expression
+from lumen.formats.ecmascript.kind_inference import kind
+from lumen.formats.ecmascript.reader import ScriptTranslator, printed
+from lumen.formats.scxml.xml_elements import XmlElement
+from lumen.interpreters.expressions import split_template, unparse
+from lumen.interpreters.expressions.kinds import TEXT
+from lumen.interpreters.expressions.templates import Placeholder
+from lumen.interpreters.expressions.tree import Binary, ExpressionNode, Literal
+
+
+def template_of(element: XmlElement, names: ScriptNames) -> str:
+    """The text of a `<log>`: its label, and its expression with texts joined to values; raises ScriptError."""
+    source = element.get("expr")
+    parts = _parts(parse_script(source), names) if source else ()
+    return plain_template(element, "") + "".join(_piece(part) for part in parts)
+
+
+def plain_template(element: XmlElement, text: str) -> str:
+    """The label of a `<log>`, and a text as it stands."""
+    label = element.get("label")
+    between = ": " if label and element.get("expr") else ""
+    return _piece(Literal(label + between + text))
+
+
+def _parts(tree: ExpressionNode, names: ScriptNames) -> list[ExpressionNode]:
+    """What stands between the `+` of a text put together, else the one value; read already."""
+    chain: list[ExpressionNode] = []
+    rest = tree
+    while isinstance(rest, Binary) and rest.sign == "+":
+        chain.insert(0, rest.right)
+        rest = rest.left
+    reading = ScriptTranslator(names)
+    read = [reading.value(part) for part in (rest, *chain)]
+    kinds = [kind(part, names.kinds) for part in read[:2]]
+    return read if TEXT in kinds else [reading.value(tree)]
+
+
+def _piece(node: ExpressionNode) -> str:
+    if isinstance(node, Literal) and isinstance(node.value, str):
+        return re.sub(r"\{(?=\{)|\{$", "{{ '{' }}", node.value)
+    return f"{{{{ {printed(node)} }}}}"
+
+
+def expression_of(text: str, vocabulary: Vocabulary) -> tuple[str, tuple[str, ...]]:
+    """The ECMAScript of our text, and what in it only Lumen knows; raises ScriptError."""
+    parts = split_template(text)
+    if not any(isinstance(part, Placeholder) for part in parts):
+        return unparse(Literal(text)), ()
+    pieces, foreign = [], list[str]()
+    for part in parts:
+        if isinstance(part, Placeholder):
+            written = write_expression(part.source, vocabulary)
+            foreign += written.foreign
+            pieces.append(written.text if len(parts) == 1 else f"({written.text})")
+        else:
+            pieces.append(unparse(Literal(part)))
+    start = ["''"] if isinstance(parts[0], Placeholder) and len(parts) > 1 else []
+    return " + ".join([*start, *pieces]), tuple(foreign)
+
+
+__all__ = ["ScriptError", "expression_of", "template_of"]

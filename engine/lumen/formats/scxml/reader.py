@@ -1,0 +1,225 @@
+"""An SCXML document as the data of a behaviour file."""
+
+from typing import Any
+
+from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.ecmascript import ScriptError
+from lumen.formats.foreign_states import ForeignState, passing_key
+from lumen.formats.scxml.action_reader import ActionData, LeftOutError, ScxmlActionReader, own
+from lumen.formats.scxml.candidates import single
+from lumen.formats.scxml.data_model import ScxmlDataModel
+from lumen.formats.scxml.invocations import invocation
+from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree, regular
+from lumen.formats.scxml.transition_reader import ScxmlTransitionReader
+from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, SCXML_NAMESPACE, XmlElement, parse_xml
+from lumen.language.diagnostics import Diagnostic
+
+_KNOWN = {*STATES, "transition", "onentry", "onexit", "initial", "datamodel", "donedata", "invoke", "script"}
+
+
+def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
+    """The data of our file, and everything that is not, or not quite, in it; raises ForeignFileError.
+
+    `title` is the behaviour's name where the document has none.
+    """
+    root = parse_xml(file, content)
+    if root.tag != "scxml":
+        name = root.tag.rpartition("}")[2]
+        if name == "scxml":
+            hint = f'write xmlns="{SCXML_NAMESPACE}"'
+            raise broken(root.place, "not-scxml", "this is <scxml> of another namespace, not W3C's", hint)
+        raise broken(root.place, "not-scxml", f"the file begins with <{name}>, not with <scxml>")
+    return _Document(root, title).data()
+
+
+class _Document:
+    """Reads one document, its states from the outside to the inside."""
+
+    def __init__(self, scxml: XmlElement, title: str) -> None:
+        self.scxml = scxml
+        self.findings = ConversionFindings()
+        self.outline = ScxmlStateTree(scxml, title, self.findings)
+        self.context = ScxmlDataModel(self.outline, self.findings)
+        self.contents = ScxmlActionReader(self.context, self.findings)
+        self.transitions = ScxmlTransitionReader(self.outline, self.contents, self.findings)
+        self.passed: dict[ForeignState, dict[str, Any]] = {}
+
+    def data(self) -> tuple[dict[str, Any], list[Diagnostic]]:
+        root = self.outline.root
+        if not regular(root):
+            raise broken(self.scxml.place, "not-scxml", "the chart has no states")
+        data: dict[str, Any] = {"id": self.outline.title} if self.outline.title else {}
+        own_data = self._own(self.scxml, "machine", {})
+        if self.context.first:
+            data["context"] = self.context.first
+        if types := {**self.context.wide, **own_data.pop("types", {})}:
+            data["types"] = types
+        data.update(own_data)
+        data.update(self._state(root))
+        late = [{"assign": {key: source}} for key, source in self.context.late.items()]
+        if late:
+            data = _with_entry(data, late)
+        return data, self.findings.diagnostics
+
+    def _own(self, element: XmlElement, name: str, otherwise: Any) -> Any:
+        for found in element.of(f"{{{LUMEN_NAMESPACE}}}{name}"):
+            try:
+                return own(found)
+            except LeftOutError as error:
+                self.findings.lost(found.place, error.message)
+        return otherwise
+
+    def _state(self, node: ForeignState) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        self._foreign(node)
+        if node.parent and node.id and (node.id != node.path or node.id == self.outline.title):
+            data["id"] = node.id
+        if node.source.tag == "history":
+            return {**data, **self._history(node)}
+        if node.source.tag == "final":
+            data["type"] = "final"
+        elif node.source.tag == "parallel" and regular(node):
+            data["type"] = "parallel"
+        elif regular(node):
+            data["initial"] = self._initial(node)
+        data.update(self._behaviour(node))
+        if regular(node):
+            data["states"] = {child.key: self._state(child) for child in node.children} | self._passed(node)
+        elif node.children:
+            self.findings.lost(node.source.place, f"`{node.name}` has a history and no other states", "delete it")
+        return data
+
+    def _foreign(self, node: ForeignState) -> None:
+        for element in node.source.children:
+            if element.tag == "script":
+                self.findings.lost(element.place, "`<script>`: ECMAScript is not run here")
+            elif element.tag not in _KNOWN and not element.tag.startswith(f"{{{LUMEN_NAMESPACE}}}"):
+                self.findings.lost(element.place, f"`<{element.tag.rpartition('}')[2]}>` has no counterpart")
+
+    def _history(self, node: ForeignState) -> dict[str, Any]:
+        data: dict[str, Any] = {"type": "history"}
+        if node.source.get("type") == "deep":
+            data["history"] = "deep"
+        for transition in node.source.of("transition"):
+            data.update(self._default(node, transition, "target"))
+        return data if "target" in data else data | self._remembered(node)
+
+    def _remembered(self, node: ForeignState) -> dict[str, Any]:
+        """Where a history leads that names no target (which SCXML does not allow): as its parent begins."""
+        home = node.parent
+        found = regular(home)[: None if home.source.tag == "parallel" else 1] if home else []
+        return {"target": self.transitions.named(node, found)} if found else {}
+
+    def _default(self, node: ForeignState, transition: XmlElement, key: str) -> dict[str, Any]:
+        """`initial` or a history's `target`, with the actions on the way."""
+        home = node if key == "initial" else node.parent
+        found = self.transitions.targets(transition)
+        if found is None or not found:
+            return {}
+        wrong = next((t for t in found if home is None or not t.lies_below(home)), None)
+        if wrong is not None:
+            self.findings.lost(transition.place, f"`{wrong.name}` does not lie in `{home.name if home else ''}`")
+            return {}
+        actions = self.contents.block(transition.children)
+        if actions and home is not None and home.source.tag != "parallel":
+            return {key: self._pass_through(home, transition, found, actions)}
+        if actions:
+            self.findings.lost(transition.place, "actions on the way to the states of a parallel one", "move them")
+        return {key: self.transitions.named(node, found, inside=key == "initial")}
+
+    def _pass_through(
+        self, home: ForeignState, transition: XmlElement, targets: list[ForeignState], actions: list[ActionData]
+    ) -> str:
+        """A state that is left at once, doing on the way what SCXML does between `home` and its states."""
+        passed = self.passed.setdefault(home, {})
+        key = passing_key(home, passed)
+        hint = "it is passed through at once"
+        self.findings.changed(transition.place, f"what is done here becomes a state of its own, `{key}`", hint)
+        pretended = ForeignState(transition, home, key, "", "")
+        passed[key] = {"always": {"target": self.transitions.named(pretended, targets), "actions": actions}}
+        return key
+
+    def _passed(self, home: ForeignState) -> dict[str, Any]:
+        return self.passed.get(home, {})
+
+    def _initial(self, node: ForeignState) -> Any:
+        for element in node.source.of("initial"):
+            for transition in element.of("transition"):
+                found = self._default(node, transition, "initial")
+                if found:
+                    return found["initial"]
+        if ids := node.source.get("initial").split():
+            pretended = XmlElement("transition", {"target": " ".join(ids)}, node.source.place)
+            found = self._default(node, pretended, "initial")
+            if found:
+                return found["initial"]
+        return self.transitions.named(node, [regular(node)[0]], inside=True)
+
+    def _behaviour(self, node: ForeignState) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        afters = self._afters(node)
+        for key, tag in (("entry", "onentry"), ("exit", "onexit")):
+            blocks = [e for e in node.source.of(tag) if e not in afters[tag]]
+            if actions := [action for block in blocks for action in self.contents.block(block.children)]:
+                data[key] = actions
+            self._several(blocks)
+        if do := self._own(node.source, "do", []):
+            data["do"] = do
+        if invokes := self._invokes(node):
+            data["invoke"] = single(invokes)
+        data.update(self.transitions.of(node, afters["events"]))
+        if node.source.tag == "final" and (output := self._output(node)) is not None:
+            data["output"] = output
+        reload = self._own(node.source, "state", {}).get("onReload")
+        if isinstance(reload, str) and (home := self.outline.by_id.get(reload)):
+            data["onReload"] = node.calls(home, self.outline.title)
+        return data
+
+    def _invokes(self, node: ForeignState) -> list[dict[str, Any]]:
+        """The charts in other files that it invokes; what else it invokes is reported."""
+        rows = []
+        for element in node.source.of("invoke"):
+            try:
+                rows.append(invocation(element, self.contents))
+            except (LeftOutError, ScriptError) as error:
+                self.findings.lost(element.place, f"`<invoke>`: {error}")
+                continue
+            message = f"`<invoke>` of `{element.get('src')}` becomes the behaviour `{rows[-1]['behavior']}`"
+            self.findings.changed(element.place, message, "import that file too")
+        return rows
+
+    def _several(self, blocks: list[XmlElement]) -> None:
+        for block in blocks[:-1]:
+            if any(e.tag not in ("raise", "log", "cancel") for e in block.children):
+                hint = "where an action of the first fails, the second is skipped too"
+                self.findings.changed(block.place, f"several `<{block.tag}>` become one list", hint)
+
+    def _afters(self, node: ForeignState) -> dict[str, Any]:
+        """The `<send>`, `<cancel>` and events that an `after` of ours was written as."""
+        found: dict[str, Any] = {"onentry": [], "onexit": [], "events": {}}
+        name = node.name or self.outline.title
+        for block in node.source.of("onentry"):
+            send = block.children[0] if len(block.children) == 1 else None
+            if send is None or send.tag != "send" or not send.get("id").startswith("after."):
+                continue
+            text = send.get("id").removeprefix("after.").removesuffix(f".{name}")
+            cancels = [b for b in node.source.of("onexit") if [c.get("sendid") for c in b.children] == [send.get("id")]]
+            if f"after.{text}.{name}" == send.get("event") == send.get("id") and cancels:
+                found["onentry"].append(block)
+                found["onexit"] += cancels
+                found["events"][send.get("event")] = text
+        return found
+
+    def _output(self, node: ForeignState) -> Any:
+        for element in node.source.of("donedata"):
+            try:
+                return self.contents.data(element)
+            except (LeftOutError, ScriptError) as error:
+                self.findings.lost(element.place, f"the data of `{node.name}`: {error}")
+        return None
+
+
+def _with_entry(data: dict[str, Any], late: list[ActionData]) -> dict[str, Any]:
+    """Values that have to be computed are, before anything else."""
+    entry = [*late, *data.pop("entry", [])]
+    return {**{k: v for k, v in data.items() if k != "states"}, "entry": entry, "states": data["states"]}

@@ -1,0 +1,69 @@
+"""The states of an SCXML document before anything in them is read: their keys and paths in our tree."""
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_key
+from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, XmlElement
+
+STATES = ("state", "parallel", "final", "history")
+
+
+def regular(node: ForeignState) -> list[ForeignState]:
+    """The children that can be active."""
+    return [child for child in node.children if child.source.tag != "history"]
+
+
+class ScxmlStateTree:
+    """The tree of states under `root` (whose element, `top`, becomes our file), and all of them by id.
+
+    `title` is the behaviour's name.
+    """
+
+    def __init__(self, scxml: XmlElement, title: str, findings: ConversionFindings) -> None:
+        self.findings = findings
+        self.scxml = scxml
+        self.ids = {e.get("id") for e in scxml.walk() if e.tag in STATES}
+        self.top = self._top()
+        name = scxml.get("name") if self.top is scxml else self.top.get("id")
+        self.title = clean_id(name) or title
+        self.by_id: dict[str, ForeignState] = {}
+        self.root = ForeignState(self.top, None, "", "", "")
+        if self.top is not scxml and self.title:
+            self.by_id[self.title] = self.root
+        self._fill(self.root, 1)
+
+    def _top(self) -> XmlElement:
+        """The document itself, or the one state that Lumen wrapped its root in."""
+        states = list(self.scxml.of(*STATES))
+        wrapped = len(states) == 1 and states[0].get(f"{{{LUMEN_NAMESPACE}}}root") == "true"
+        return states[0] if wrapped else self.scxml
+
+    def _fill(self, parent: ForeignState, level: int) -> None:
+        for element in parent.source.children:
+            if element.tag not in STATES or not self._fits(element, parent, level):
+                continue
+            node = self._node(element, parent)
+            parent.add(node)
+            if node.id:
+                self.by_id[element.get("id")] = node
+            self._fill(node, level + 1)
+
+    def _fits(self, element: XmlElement, parent: ForeignState, level: int) -> bool:
+        id, place, outer = element.get("id"), element.place, parent.source.tag
+        message = hint = ""
+        if level > MAX_STATE_LEVELS:
+            message, hint = f"`{id or element.tag}` lies more than {MAX_STATE_LEVELS} levels deep", "use fewer levels"
+        elif id in self.by_id:
+            message, hint = f"a second state has the id `{id}`", "give each state an id of its own"
+        elif outer in ("final", "history"):
+            message = f"a state can't lie in a `<{outer}>`"
+        elif element.tag == "final" and outer == "parallel":
+            message, hint = f"`{id}` is final in a parallel state", "put it into one of the regions"
+        if message:
+            self.findings.lost(place, message, hint)
+        return not message
+
+    def _node(self, element: XmlElement, parent: ForeignState) -> ForeignState:
+        id = clean_id(element.get("id"))
+        stem = element.get(f"{{{LUMEN_NAMESPACE}}}key") or (id.removeprefix(f"{parent.path}.") if parent.path else id)
+        key = free_key(parent, stem or element.tag, id, self.ids)
+        return ForeignState(element, parent, key, id, parent.below(key))

@@ -1,0 +1,136 @@
+"""Transitions of SCXML as `on`, `always`, `after`, `onDone` and `onError`."""
+
+import re
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.ecmascript import ScriptError
+from lumen.formats.foreign_states import ForeignState
+from lumen.formats.scxml.action_reader import ScxmlActionReader
+from lumen.formats.scxml.candidates import TransitionData, arrange, normal, overlap, single
+from lumen.formats.scxml.state_tree import ScxmlStateTree, regular
+from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, XmlElement
+from lumen.language.diagnostics import Place
+
+_DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*")
+
+
+class ScxmlTransitionReader:
+    """Reads the transitions of one document."""
+
+    def __init__(self, outline: ScxmlStateTree, contents: ScxmlActionReader, findings: ConversionFindings) -> None:
+        self.outline, self.contents, self.findings = outline, contents, findings
+
+    def of(self, node: ForeignState, afters: dict[str, str]) -> dict[str, Any]:
+        always: list[TransitionData] = []
+        after: dict[str, list[TransitionData]] = {}
+        rows: list[tuple[str, TransitionData]] = []
+        places: dict[int, Place] = {}
+        for element in node.source.of("transition"):
+            row = self._row(node, element)
+            if row is None:
+                continue
+            places[id(row)] = element.place
+            for descriptor in self._descriptors(element):
+                if descriptor in afters:
+                    after.setdefault(afters[descriptor], []).append(row)
+                else:
+                    rows.append((descriptor, row))
+            if not element.get("event"):
+                always += self._eventless(element, row)
+        done, rows = self._done(node, rows)
+
+        def leave_out(row: TransitionData) -> None:
+            place = places.get(id(row), node.source.place)
+            self.findings.lost(place, "the condition becomes too long", "put it into two")
+
+        data: dict[str, Any] = {"on": arrange(rows, leave_out)} if rows else {}
+        if always:
+            data["always"] = single(always)
+        if after:
+            data["after"] = {text: single(found) for text, found in after.items()}
+        return {**data, **done}
+
+    def _eventless(self, element: XmlElement, row: TransitionData) -> Iterator[TransitionData]:
+        if "target" in row or "guard" in row:
+            yield row
+        elif row:
+            yield {"guard": "true", **row}
+        else:
+            self.findings.lost(element.place, "a transition without event, condition and target runs for ever")
+
+    def _descriptors(self, element: XmlElement) -> list[str]:
+        found = [normal(word) for word in element.get("event").split()]
+        for word in found:
+            if not _DESCRIPTOR.fullmatch(word):
+                self.findings.lost(element.place, f"`{word}` is no event", "write names with dots between")
+        return list(dict.fromkeys(word for word in found if _DESCRIPTOR.fullmatch(word)))
+
+    def _done(
+        self, node: ForeignState, rows: list[tuple[str, TransitionData]]
+    ) -> tuple[dict[str, Any], list[tuple[str, TransitionData]]]:
+        """`onDone` and `onError` out of the candidates, where nothing else can be meant by them."""
+        name = node.name or self.outline.title
+        kind = "do" if not regular(node) else "state"
+        has_do = bool(list(node.source.of(f"{{{LUMEN_NAMESPACE}}}do")))
+        names = {f"done.{kind}.{name}": "onDone", f"error.do.{name}": "onError"}
+        if not regular(node) and not has_do:
+            return {}, rows
+        found: dict[str, Any] = {}
+        for event, key in names.items():
+            mine = [row for descriptor, row in rows if descriptor == event]
+            rivals = any(d != event and overlap(d, event) for d, _ in rows)
+            shared = key == "onDone" and kind == "state" and name in self._dones
+            if mine and not rivals and not shared:
+                found[key] = single(mine)
+                rows = [(d, row) for d, row in rows if d != event]
+        return found, rows
+
+    @cached_property
+    def _dones(self) -> set[str]:
+        """What the names of states begin with whose end is an event: up to each of their dots."""
+        names = (node.name.split(".") for node in self.outline.root.walk() if node.children)
+        return {".".join(words[:n]) for words in names for n in range(1, len(words))}
+
+    def _row(self, node: ForeignState, element: XmlElement) -> TransitionData | None:
+        row: TransitionData = {}
+        targets = self.targets(element)
+        if targets is None:
+            return None
+        if "cond" in element.attributes:
+            try:
+                row["guard"] = self.contents.condition(element.get("cond"))
+            except ScriptError as error:
+                hint = "the transition is left out"
+                self.findings.lost(element.place, f"the condition `{_short(element.get('cond'))}`: {error}", hint)
+                return None
+        if targets:
+            row["target"] = self.named(node, targets)
+        if actions := self.contents.block(element.children):
+            row["actions"] = actions
+        inside = bool(targets) and all(target.lies_below(node) for target in targets)
+        if inside and node.source.tag != "parallel" and element.get("type") != "internal":
+            row["reenter"] = True
+        return row
+
+    def targets(self, element: XmlElement) -> list[ForeignState] | None:
+        """The states of `target`, None (and reported) where one does not exist."""
+        found = []
+        for id in element.get("target").split():
+            node = self.outline.by_id.get(id)
+            if node is None:
+                self.findings.lost(element.place, f"there is no state `{id}` to go to")
+                return None
+            found.append(node)
+        return found
+
+    def named(self, source: ForeignState, targets: list[ForeignState], *, inside: bool = False) -> Any:
+        names = [source.calls(target, self.outline.title, inside=inside) for target in targets]
+        return names[0] if len(names) == 1 else names
+
+
+def _short(source: str) -> str:
+    text = " ".join(source.split())
+    return text if len(text) <= 60 else text[:59] + "…"

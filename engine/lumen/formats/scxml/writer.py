@@ -1,0 +1,197 @@
+"""A machine as an SCXML document."""
+
+import json
+from collections.abc import Container, Iterator, Sequence
+from typing import Any
+
+from lumen.formats.action_data import plain_block
+from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
+from lumen.formats.durations import duration
+from lumen.formats.ecmascript import ScriptError, Vocabulary
+from lumen.formats.ecmascript.kind_inference import kinds_of
+from lumen.formats.ecmascript.script_parser import is_reserved
+from lumen.formats.scxml.action_writer import ScxmlActionWriter
+from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, SCXML_INVOKE_TYPE, SCXML_NAMESPACE
+from lumen.formats.scxml.xml_tags import XmlTag
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+
+_TAGS = {StateKind.PARALLEL: "parallel", StateKind.FINAL: "final", StateKind.HISTORY: "history"}
+
+
+def write_scxml(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
+    """The document, and what in it is missing or means something to Lumen only.
+
+    What SCXML has no word for (robot verbs, `do`, phrases, answers) stands in a namespace of its own: coming back to
+    Lumen nothing of it is lost, and other tools pass over it.
+    """
+    report = ExportReport(place)
+    document = _Document(machine, report).tag()
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>', *document.lines()]
+    return "\n".join(lines) + "\n", report.diagnostics
+
+
+class _Document:
+    """Writes the states of one machine."""
+
+    def __init__(self, machine: MachineDefinition, report: ExportReport) -> None:
+        self.machine, self.report = machine, report
+        names = {state.name for state in machine.states.values() if state.path}
+        self.ids = {path: state.name for path, state in machine.states.items()}
+        while self.ids[""] in names:
+            self.ids[""] += "_"
+        keys = {key: _free(key, machine.context) for key in machine.context}
+        self.vocabulary = Vocabulary(kinds_of(machine.context, machine.types), keys, self.ids)
+        self.orders = ScxmlActionWriter(self.vocabulary, report)
+        root = machine.root
+        self.wrapped = root.kind is StateKind.PARALLEL or any(
+            (root.transitions, root.entry, root.exit, root.do, root.invoke)
+        )
+
+    def tag(self) -> XmlTag:
+        root, ids = self.machine.root, self.ids
+        data = [self._data(key, value) for key, value in self.machine.context.items()]
+        children = [*self._own(), *([XmlTag("datamodel", {}, data)] if data else [])]
+        initial = ""
+        if self.wrapped:
+            children.append(self._state(root))
+        else:
+            initial = self._ids(root.initial)
+            children += [self._state(self.machine.states[path]) for path in self._below(root)]
+        attributes = {
+            "xmlns": SCXML_NAMESPACE,
+            "xmlns:lumen": LUMEN_NAMESPACE,
+            "version": "1.0",
+            "datamodel": "ecmascript",
+            "name": ids[""],
+            "initial": initial,
+        }
+        return XmlTag("scxml", attributes, children)
+
+    def _data(self, key: str, value: Any) -> XmlTag:
+        return XmlTag("data", {"id": self.vocabulary.keys[key], "expr": self.orders.literal(value)})
+
+    def _own(self) -> Iterator[XmlTag]:
+        """What a whole machine has that SCXML has not."""
+        machine = self.machine
+        phrases = {name: _listed(table) for name, table in machine.phrases.items()}
+        answers = {
+            name: [{"phrases": _listed(row.phrases), "value": row.value} for row in rows]
+            for name, rows in machine.answers.items()
+        }
+        types = {self.vocabulary.keys.get(key, key): schema for key, schema in machine.types.items()}
+        parts = {
+            "types": types, "events": machine.events, "phrases": phrases, "answers": answers,
+            "renamed": machine.renamed,
+        }  # fmt: skip
+        if found := {key: part for key, part in parts.items() if part}:
+            for key in sorted(found.keys() & {"phrases", "answers"}):
+                self.report.foreign(f"`{key}`", (key,))
+            yield _json("machine", found)
+
+    def _below(self, state: State) -> Iterator[str]:
+        """All children in document order, history states included."""
+        return (path for path, child in self.machine.states.items() if child.parent == state.path and path)
+
+    def _ids(self, paths: Sequence[str]) -> str:
+        return " ".join(self.ids[path] for path in paths)
+
+    def _state(self, state: State) -> XmlTag:
+        attributes = {"id": self.ids[state.path]}
+        if not state.path:
+            attributes["lumen:root"] = "true"
+        elif state.name not in (state.path, state.path.rpartition(".")[2]):
+            attributes["lumen:key"] = state.path.rpartition(".")[2]
+        if state.kind is StateKind.HISTORY:
+            attributes["type"] = "deep" if state.deep else "shallow"
+            default = [XmlTag("transition", {"target": self._ids(state.initial)})] if state.initial else []
+            return XmlTag("history", attributes, default)
+        if state.kind is StateKind.COMPOUND:
+            attributes["initial"] = self._ids(state.initial)
+        children = [*self._blocks(state), *self._transitions(state), *self._invokes(state)]
+        if state.output is not None:
+            children += self._output(state)
+        children += [self._state(self.machine.states[path]) for path in self._below(state)]
+        return XmlTag(_TAGS.get(state.kind, "state"), attributes, children)
+
+    def _blocks(self, state: State) -> Iterator[XmlTag]:
+        if state.do:
+            self.report.foreign("`do`", (*state.where, "do"))
+            yield _json("do", plain_block(state.do))
+        if state.on_reload:
+            self.report.foreign("`onReload`", (*state.where, "onReload"))
+            yield _json("state", {"onReload": self.ids[state.on_reload]})
+        timers = {t.event: t.delay for t in state.transitions if t.delay is not None}
+        for event, delay in timers.items():
+            name = self._event(state, event)
+            send = XmlTag("send", {"event": name, "id": name, "delay": duration(delay * 1000)})
+            yield XmlTag("onentry", {}, [send])
+            yield XmlTag("onexit", {}, [XmlTag("cancel", {"sendid": name})])
+        for tag, steps in (("onentry", state.entry), ("onexit", state.exit)):
+            if block := self.orders.block(steps):
+                yield XmlTag(tag, {}, block)
+
+    def _invokes(self, state: State) -> Iterator[XmlTag]:
+        """The behaviours that run within it, by the names of the files that they are in when exported too."""
+        for invoke in state.invoke:
+            file = f"{invoke.behavior}.scxml"
+            try:
+                params = [
+                    XmlTag("param", {"name": key, "expr": self.orders.value(value)})
+                    for key, value in invoke.input.items()
+                ]
+            except ScriptError as error:
+                self.report.lost(f"`invoke` of `{invoke.behavior}` is left out: {error}", invoke.where)
+                continue
+            hint = f"lumen export scxml {invoke.behavior} -o {file}"
+            self.report.changed(f"`invoke` of `{invoke.behavior}` looks for `{file}`", invoke.where, hint)
+            yield XmlTag(
+                "invoke", {"type": SCXML_INVOKE_TYPE, "id": invoke.id, "src": file, "autoforward": "true"}, params
+            )
+
+    def _event(self, state: State, event: str) -> str:
+        """An event of the state's own (`after`, `onDone`), by its id in the document."""
+        return event.removesuffix(state.name) + self.ids[state.path] if event.endswith(f".{state.name}") else event
+
+    def _transitions(self, state: State) -> Iterator[XmlTag]:
+        for transition in state.transitions:
+            attributes = {"event": self._event(state, transition.event) if transition.exact else transition.event}
+            if transition.guard:
+                try:
+                    attributes["cond"] = self.orders.expression(transition.guard)
+                except ScriptError as error:
+                    message = f"the transition on `{transition.event}` is left out: {error}"
+                    self.report.lost(message, transition.where)
+                    continue
+            attributes["target"] = self._ids(transition.targets)
+            if self._inside(state, transition) and not transition.reenter:
+                attributes["type"] = "internal"
+            yield XmlTag("transition", attributes, self.orders.block(transition.actions))
+
+    def _inside(self, state: State, transition: Transition) -> bool:
+        below = f"{state.path}." if state.path else ""
+        targets = transition.targets
+        return state.kind is StateKind.COMPOUND and bool(targets) and all(t and t.startswith(below) for t in targets)
+
+    def _output(self, state: State) -> Iterator[XmlTag]:
+        try:
+            yield XmlTag("donedata", {}, self.orders.data(state.output))
+        except ScriptError as error:
+            self.report.lost(f"the output of `{state.name}` is left out: {error}", (*state.where, "output"))
+
+
+def _free(key: str, others: Container[str]) -> str:
+    """A name for a context key that ECMAScript leaves to the author."""
+    name = key
+    while is_reserved(name) or (name != key and name in others):
+        name += "_"
+    return name
+
+
+def _listed(table: Any) -> Any:
+    """Phrases by language; those of every language without one."""
+    return list(table[""]) if set(table) == {""} else {language: list(rows) for language, rows in table.items()}
+
+
+def _json(name: str, data: Any) -> XmlTag:
+    return XmlTag(f"lumen:{name}", {}, [], json.dumps(data, ensure_ascii=False))

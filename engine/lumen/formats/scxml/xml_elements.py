@@ -1,0 +1,129 @@
+"""XML as a tree of elements that know their line; nothing of a hostile file is expanded, fetched or believed."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+from lumen.formats.conversion_findings import broken
+from lumen.language.diagnostics import Place
+
+SCXML_NAMESPACE = "http://www.w3.org/2005/07/scxml"
+SCXML_INVOKE_TYPE = "http://www.w3.org/TR/scxml/"
+"""The type of an `<invoke>` of another chart (SCXML 6.4.3)."""
+LUMEN_NAMESPACE = "urn:lumen:behavior"
+"""The namespace of what only Lumen knows: `do`, robot verbs, phrases, answers."""
+
+MAX_XML_BYTES = 4_000_000
+MAX_XML_LEVELS = 100
+MAX_XML_ELEMENTS = 50_000
+
+_XML = "http://www.w3.org/XML/1998/namespace"
+
+
+@dataclass(slots=True)
+class XmlElement:
+    """`tag` is `state` for SCXML's elements, `{namespace}name` for others, as are the names of attributes.
+
+    `text` holds the characters directly inside.
+    """
+
+    tag: str
+    attributes: Mapping[str, str]
+    place: Place
+    children: list["XmlElement"] = field(default_factory=list)
+    parts: list[str] = field(default_factory=list)
+
+    @property
+    def text(self) -> str:
+        return "".join(self.parts)
+
+    def get(self, name: str, otherwise: str = "") -> str:
+        """The attribute without blanks around it."""
+        return self.attributes.get(name, otherwise).strip()
+
+    def of(self, *tags: str) -> Iterator["XmlElement"]:
+        """The children with one of these tags."""
+        return (child for child in self.children if child.tag in tags)
+
+    def walk(self) -> Iterator["XmlElement"]:
+        """Itself and everything below, in document order."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
+
+def parse_xml(file: str, content: bytes, most: int = MAX_XML_ELEMENTS) -> XmlElement:
+    """The root of at most `most` elements; raises ForeignFileError for no XML, or for more than a tree of elements."""
+    if len(content) > MAX_XML_BYTES:
+        hint = f"at most {MAX_XML_BYTES // 1_000_000} MB are read"
+        raise broken(Place(file), "too-large", f"the file has {len(content) / 1e6:.0f} MB", hint)
+    return _Reader(file, most).read(content)
+
+
+class _Reader:
+    """Expat's handlers, and the way from the root to the element that is open."""
+
+    def __init__(self, file: str, most: int) -> None:
+        self.file, self.most = file, most
+        self.parser = expat.ParserCreate(namespace_separator=" ")
+        self.open: list[XmlElement] = []
+        self.root: XmlElement | None = None
+        self.count = 0
+
+    def read(self, content: bytes) -> XmlElement:
+        parser = self.parser
+        parser.buffer_text = True
+        parser.StartElementHandler = self.start
+        parser.EndElementHandler = self.end
+        parser.CharacterDataHandler = self.characters
+        parser.StartDoctypeDeclHandler = self.refuse
+        parser.EntityDeclHandler = self.refuse
+        try:
+            parser.Parse(content, True)
+        except expat.ExpatError as error:
+            place = self.place(error.lineno, error.offset)
+            raise broken(place, "not-xml", f"this is not XML: {expat.ErrorString(error.code)}") from None
+        except (LookupError, ValueError, UnicodeError):
+            hint = "save it as UTF-8"
+            raise broken(Place(self.file), "not-xml", "the file's encoding is unknown", hint) from None
+        assert self.root is not None  # else expat would have complained
+        return self.root
+
+    def place(self, line: int, column: int) -> Place:
+        return Place(self.file, line, column + 1, line, column + 2)
+
+    @property
+    def here(self) -> Place:
+        return self.place(self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber)
+
+    def refuse(self, *_: object) -> None:
+        hint = "delete the `<!DOCTYPE …>`; it is not needed"
+        raise broken(self.here, "not-xml", "the file declares a document type or entities, which are not read", hint)
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        self.count += 1
+        if len(self.open) >= MAX_XML_LEVELS or self.count > self.most:
+            what = (
+                f"more than {MAX_XML_LEVELS} levels"
+                if len(self.open) >= MAX_XML_LEVELS
+                else f"more than {self.most:,} parts"
+            )
+            raise broken(self.here, "too-large", f"the file is too large to be read: it has {what}")
+        known = {_local(key): value for key, value in attributes.items() if not key.startswith(_XML)}
+        element = XmlElement(_local(name), known, self.here)
+        if self.open:
+            self.open[-1].children.append(element)
+        else:
+            self.root = element
+        self.open.append(element)
+
+    def end(self, name: str) -> None:
+        self.open.pop()
+
+    def characters(self, text: str) -> None:
+        self.open[-1].parts.append(text)
+
+
+def _local(name: str) -> str:
+    namespace, _, local = name.rpartition(" ")
+    return local if namespace in ("", SCXML_NAMESPACE) else f"{{{namespace}}}{local}"

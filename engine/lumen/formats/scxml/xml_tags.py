@@ -1,0 +1,38 @@
+"""XML as text, indented."""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from xml.sax.saxutils import escape
+
+_FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_QUOTES = {'"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
+
+
+@dataclass
+class XmlTag:
+    """An element to be written; attributes that are empty are left out."""
+
+    name: str
+    attributes: Mapping[str, str] = field(default_factory=dict)
+    children: "list[XmlTag]" = field(default_factory=list)
+    text: str = ""
+
+    def lines(self, depth: int = 0) -> Iterator[str]:
+        indent = "  " * depth
+        pairs = ((key, escape(_sound(value), _QUOTES)) for key, value in self.attributes.items() if value)
+        start = " ".join([self.name, *(f'{key}="{value}"' for key, value in pairs)])
+        if self.children:
+            yield f"{indent}<{start}>"
+            for child in self.children:
+                yield from child.lines(depth + 1)
+            yield f"{indent}</{self.name}>"
+        elif self.text:
+            yield f"{indent}<{start}>{escape(_sound(self.text))}</{self.name}>"
+        else:
+            yield f"{indent}<{start}/>"
+
+
+def _sound(text: str) -> str:
+    """The text without characters that XML can't hold."""
+    return _FORBIDDEN.sub("\ufffd", text)

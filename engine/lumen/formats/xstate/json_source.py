@@ -1,0 +1,67 @@
+"""A JSON file whose values know their lines."""
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from lumen.formats.conversion_findings import broken
+from lumen.language.diagnostics import NodePath, Place
+from lumen.loading.source import Document, parse
+
+MAX_JSON_BYTES = 4_000_000
+MAX_JSON_LEVELS = 95
+
+
+@dataclass(frozen=True)
+class JsonSource:
+    """The data, and where each part of it stands."""
+
+    data: Any
+    document: Document
+
+    def place(self, path: NodePath) -> Place:
+        """The place of a key (or item), or of the nearest thing around it."""
+        return self.document.place(path, key=True)
+
+
+def parse_json(file: str, content: bytes) -> JsonSource:
+    """The file; raises ForeignFileError for what is no JSON, or too large."""
+    if len(content) > MAX_JSON_BYTES:
+        hint = f"at most {MAX_JSON_BYTES // 1_000_000} MB are read"
+        raise broken(Place(file), "too-large", f"the file has {len(content) / 1e6:.0f} MB", hint)
+    try:
+        data = json.loads(content, parse_constant=_refuse)
+    except UnicodeDecodeError:
+        raise broken(Place(file), "not-json", "the file's encoding is unknown", "save it as UTF-8") from None
+    except json.JSONDecodeError as error:
+        place = Place(file, error.lineno, error.colno, error.lineno, error.colno + 1)
+        raise broken(place, "not-json", f"this is not JSON: {error.msg.lower()}") from None
+    except ValueError as error:
+        raise broken(Place(file), "not-json", f"this is not JSON: {error}") from None
+    except RecursionError:
+        raise broken(Place(file), "too-large", "the file is nested too deeply to be read") from None
+    if _depth(data) > MAX_JSON_LEVELS:
+        raise broken(Place(file), "too-large", f"the file is nested deeper than {MAX_JSON_LEVELS} levels")
+    return JsonSource(data, _placed(file, content, data))
+
+
+def _refuse(name: str) -> Any:
+    raise ValueError(f"`{name}` is no number")
+
+
+def _depth(data: Any) -> int:
+    level, values = 0, [data]
+    while values:
+        level += 1
+        values = [
+            child
+            for value in values
+            for child in (value.values() if isinstance(value, dict) else value if isinstance(value, list) else ())
+        ]
+    return level
+
+
+def _placed(file: str, content: bytes, data: Any) -> Document:
+    """JSON is YAML, but for tabs and surrogates: where those stand, places are unknown."""
+    document, _ = parse(file, content.replace(b"\t", b" "))
+    return document if document is not None and document.data == data else Document(file, data)

@@ -1,0 +1,145 @@
+"""The states of an XState machine before anything in them is read, and what its targets mean."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_key
+from lumen.formats.xstate.json_source import JsonSource
+from lumen.language.diagnostics import NodePath
+
+
+class XStateNode(ForeignState):
+    """A state; `source` is its JSON, `original` its key there, `where` its path in the file, `named` its children,
+    `regular` those that can be active."""
+
+    __slots__ = ("named", "original", "regular", "where")
+
+    original: str
+    where: NodePath
+    named: "dict[str, XStateNode]"
+    regular: "list[XStateNode]"
+
+    @property
+    def kind(self) -> str:
+        kind = self.source.get("type")
+        if kind in ("final", "history") or (kind == "parallel" and self.regular):
+            return str(kind)
+        return "compound" if self.regular else "atomic"
+
+    def child(self, key: str) -> "XStateNode | None":
+        return self.named.get(key)
+
+
+class XStateStateTree:
+    """The tree of states, and all of them by id."""
+
+    def __init__(self, source: JsonSource, title: str, findings: ConversionFindings) -> None:
+        self.source, self.findings = source, findings
+        own = source.data.get("id")
+        self.machine_id = own if isinstance(own, str) and own else "(machine)"
+        self.title = clean_id(own) if isinstance(own, str) and own else title
+        self.ids = set(_ids(source.data))
+        self.by_id: dict[str, XStateNode] = {}
+        self.root = self._state(source.data, None, "", "", ())
+        self._fill(self.root, 1)
+
+    def _state(
+        self, data: Mapping[str, Any], parent: ForeignState | None, key: str, original: str, where: NodePath
+    ) -> XStateNode:
+        id = data.get("id") if parent is not None else None
+        named = clean_id(id) if isinstance(id, str) else ""
+        path = parent.below(key) if parent else ""
+        state = XStateNode(data, parent, key, "" if named == path else named, path)
+        state.original, state.where, state.named, state.regular = original, where, {}, []
+        return state
+
+    def _fill(self, parent: XStateNode, level: int) -> None:
+        for original, data in self._states(parent, level).items():
+            where = (*parent.where, "states", original)
+            if data is None:
+                data = {}
+            id = data.get("id") if isinstance(data, dict) else None
+            if not isinstance(data, dict):
+                self.findings.lost(self.source.place(where), f"`{original}` is no state", "a state is an object")
+            elif parent.source.get("type") == "parallel" and data.get("type") == "final":
+                hint = "put it into one of the regions"
+                self.findings.lost(self.source.place(where), f"`{original}` is final in a parallel state", hint)
+            elif isinstance(id, str) and id in self.by_id:
+                self.findings.lost(self.source.place(where), f"a second state has the id `{id}`", "give each its own")
+            else:
+                key = free_key(parent, original, id if isinstance(id, str) else "", self.ids)
+                state = self._state(data, parent, key, original, where)
+                parent.add(state)
+                parent.named[original] = state
+                if data.get("type") != "history":
+                    parent.regular.append(state)
+                if isinstance(id, str):
+                    self.by_id[id] = state
+                self._fill(state, level + 1)
+        if parent.children and not parent.regular:
+            self.findings.lost(
+                self.source.place(parent.where), "a state has a history and no other states", "delete it"
+            )
+            parent.children.clear()
+            parent.named.clear()
+
+    def _states(self, parent: XStateNode, level: int) -> Mapping[str, Any]:
+        states = parent.source.get("states") or {}
+        if level > MAX_STATE_LEVELS or not isinstance(states, dict):
+            what = (
+                f"states more than {MAX_STATE_LEVELS} levels deep"
+                if level > MAX_STATE_LEVELS
+                else "`states` is no object"
+            )
+            if states:
+                self.findings.lost(self.source.place((*parent.where, "states")), what)
+            return {}
+        if parent.source.get("type") in ("final", "history") and states:
+            self.findings.lost(self.source.place((*parent.where, "states")), "a final state has no states within")
+            return {}
+        return states
+
+    def resolve(self, state: XStateNode, target: str) -> XStateNode | None:
+        """The state that a target of this one means, None where there is none."""
+        if target.startswith("#"):
+            return self._by_id(target[1:])
+        if target.startswith("."):
+            return _descend(state, target[1:])
+        parent = state.parent
+        return _descend(parent, target) if isinstance(parent, XStateNode) else None
+
+    def _by_id(self, id: str) -> XStateNode | None:
+        if id in self.by_id:
+            return self.by_id[id]
+        heads: dict[str, XStateNode] = {**self.by_id, self.machine_id: self.root}
+        for head in sorted(heads, key=len, reverse=True):
+            if id == head:
+                return heads[head]
+            if id.startswith(f"{head}."):
+                return _descend(heads[head], id[len(head) + 1 :])
+        return None
+
+
+def _descend(state: XStateNode | None, path: str) -> XStateNode | None:
+    """Down the keys, which may hold dots themselves."""
+    if state is None:
+        return None
+    if (found := state.child(path)) is not None:
+        return found
+    head, _, rest = path.partition(".")
+    below = state.child(head)
+    return _descend(below, rest) if rest else below
+
+
+def _ids(data: Any) -> list[str]:
+    found, states = [], [data]
+    while states:
+        state = states.pop()
+        if not isinstance(state, dict):
+            continue
+        if isinstance(state.get("id"), str):
+            found.append(state["id"])
+        children = state.get("states")
+        states += children.values() if isinstance(children, dict) else ()
+    return found

@@ -1,0 +1,107 @@
+"""Transitions of XState as ours."""
+
+from typing import Any
+
+from lumen.formats.xstate.action_reader import XStateActionReader
+from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
+from lumen.language.diagnostics import NodePath
+
+TransitionData = dict[str, Any]
+
+_MEANT = {"target", "guard", "cond", "actions", "reenter", "description", "meta"}
+
+
+class XStateTransitionReader:
+    """Reads the transitions of one file."""
+
+    def __init__(self, outline: XStateStateTree, parts: XStateActionReader) -> None:
+        self.outline, self.parts = outline, parts
+
+    def rows(self, state: XStateNode, key: str) -> list[TransitionData]:
+        """What stands under a key of the state."""
+        return self.under(state, (*state.where, key), state.source[key], eventless=key == "always")
+
+    def under(self, state: XStateNode, where: NodePath, data: Any, *, eventless: bool = False) -> list[TransitionData]:
+        """A target, an object, or a list of these."""
+        rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
+        found = [self._row(state, place, {} if row is None else row) for place, row in rows]
+        kept = [row for row in found if row is not None]
+        if eventless and any("target" not in row and "guard" not in row for row in kept):
+            self.parts.lost(where, "a transition without event, guard and target runs for ever")
+            kept = [row for row in kept if "target" in row or "guard" in row]
+        return kept
+
+    def _row(self, state: XStateNode, where: NodePath, data: Any) -> TransitionData | None:
+        if isinstance(data, str):
+            data = {"target": data}
+        if not isinstance(data, dict):
+            self.parts.lost(where, "this is no transition")
+            return None
+        for key in data.keys() - _MEANT:
+            self.parts.lost((*where, key), f"`{key}` of a transition has no counterpart")
+        if "meta" in data:
+            self.parts.changed((*where, "meta"), "`meta` is not carried over")
+        row: TransitionData = {}
+        guard = data.get("guard", data.get("cond"))
+        if guard is not None:
+            source = self.parts.guard(guard, (*where, "guard"))
+            if source is None:
+                return None
+            row["guard"] = source
+        if data.get("target") is not None:
+            targets = self.targets(state, data["target"], (*where, "target"))
+            if targets is None:
+                return None
+            row.update(self._way(state, where, targets, data.get("reenter") is True))
+        if actions := self.parts.actions(data.get("actions"), (*where, "actions")):
+            row["actions"] = actions
+        return row
+
+    def targets(self, state: XStateNode, data: Any, where: NodePath) -> list[XStateNode] | None:
+        """The states meant, None (and reported) where one does not exist."""
+        found = []
+        for text in data if isinstance(data, list) else [data]:
+            target = self.outline.resolve(state, text) if isinstance(text, str) else None
+            if target is None:
+                self.parts.lost(where, f"there is no state `{text}` to go to", "the transition is left out")
+                return None
+            found.append(target)
+        return found
+
+    def named(self, state: XStateNode, targets: list[XStateNode]) -> Any:
+        """One target, or the list."""
+        names = [state.calls(target, self.outline.title) for target in targets]
+        return names[0] if len(names) == 1 else names
+
+    def _way(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> TransitionData:
+        """`target` and `reenter`; a transition to the state itself that does not re-enter it stays in it."""
+        if targets == [state] and not reenter and state.kind == "atomic":
+            return {}
+        if targets == [state] and not reenter and state.kind == "compound":
+            self.parts.changed(
+                where, f"`{state.original or self.outline.title}` itself is not left: its first state is the target"
+            )
+            first = state.regular[0]
+            initial = state.source.get("initial")
+            entered = state.child(initial) if isinstance(initial, str) else None
+            return {"target": state.calls(entered or first, self.outline.title)}
+        row: TransitionData = {"target": self.named(state, targets)}
+        below = bool(targets) and all(target.lies_below(state) for target in targets)
+        if reenter and below and state.kind == "compound":
+            row["reenter"] = True
+        self._parallel(state, where, targets, reenter)
+        return row
+
+    def _parallel(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> None:
+        """Tell where W3C's rule leaves and enters more: a parallel state is no domain of a transition there."""
+        domain: XStateNode | None = (
+            state if not reenter and all(t is state or t.lies_below(state) for t in targets) else None
+        )
+        ancestor = state.parent
+        while domain is None and isinstance(ancestor, XStateNode):
+            if all(target.lies_below(ancestor) for target in targets):
+                domain = ancestor
+            ancestor = ancestor.parent
+        if domain is not None and domain.kind == "parallel":
+            hint = "W3C's rule: a parallel state is entered whole"
+            self.parts.changed(where, f"this leaves and enters `{domain.original or self.outline.title}` too", hint)

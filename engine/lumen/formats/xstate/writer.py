@@ -1,0 +1,225 @@
+"""A machine as an XState v5 configuration: JSON for `createMachine`."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from lumen.formats.action_data import plain_action, plain_block, plain_value
+from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
+from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD
+from lumen.formats.xstate.descriptors import EventDescriptors
+from lumen.interpreters.expressions import ExpressionError, parse_expression
+from lumen.interpreters.expressions.tree import Literal
+from lumen.language.actions import ComputedValue, Expression, PlacedAction
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.machines import Answer, Invoke, MachineDefinition, State, StateKind, Transition
+
+_HINT = "give XState an implementation of that name"
+
+
+def write_xstate(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
+    """The configuration, and what in it is missing or needs code.
+
+    An action of ours is `{"type": "lumen.say", "params": …}`, a guard `{"type": "lumen.expression", "params":
+    {"source": …}}`, and `do` an invocation of `lumen.do`: their code is for `setup`. What XState has no place for
+    stands in `meta`.
+    """
+    report = ExportReport(place, _HINT)
+    data = _Config(machine, report).data()
+    return json.dumps(data, ensure_ascii=False, indent=2) + "\n", report.diagnostics
+
+
+class _Config:
+    """Writes the states of one machine."""
+
+    def __init__(self, machine: MachineDefinition, report: ExportReport) -> None:
+        self.machine, self.report = machine, report
+        self.descriptors = EventDescriptors(machine)
+
+    def data(self) -> dict[str, Any]:
+        machine = self.machine
+        data: dict[str, Any] = {"id": machine.id} if machine.id else {}
+        if machine.context:
+            data["context"] = machine.context
+        return {**data, **self._state(machine.root)}
+
+    def _state(self, state: State) -> dict[str, Any]:
+        data: dict[str, Any] = {"id": state.alias} if state.alias and state.path else {}
+        if state.kind in (StateKind.PARALLEL, StateKind.FINAL, StateKind.HISTORY):
+            data["type"] = str(state.kind)
+        if state.kind is StateKind.HISTORY:
+            data["history"] = "deep" if state.deep else "shallow"
+            return data | ({"target": self._targets(state, state.initial)} if state.initial else {})
+        below = [s for s in self.machine.states.values() if s.parent == state.path and s.path]
+        extra = self._begin(state, data)
+        data.update(self._behaviour(state))
+        if below:
+            data["states"] = {s.path.rpartition(".")[2]: self._state(s) for s in below} | extra
+        return data
+
+    def _begin(self, state: State, data: dict[str, Any]) -> dict[str, Any]:
+        """`initial`; where that is no single child, a state that leads there at once."""
+        if state.kind is not StateKind.COMPOUND:
+            return {}
+        if len(state.initial) == 1 and self.machine.states[state.initial[0]].parent == state.path:
+            data["initial"] = state.initial[0].rpartition(".")[2]
+            return {}
+        prefix = f"{state.path}." if state.path else ""
+        key = "begin"
+        while prefix + key in self.machine.states:
+            key += "_"
+        data["initial"] = key
+        message = f"XState enters only children at first: `{key}`, which is passed through, leads deeper"
+        self.report.changed(message, (*state.where, "initial"))
+        targets = [self._id(path) for path in state.initial]
+        return {key: {"always": {"target": targets[0] if len(targets) == 1 else targets}}}
+
+    def _id(self, path: str) -> str:
+        alias = self.machine.states[path].alias
+        if alias:
+            return f"#{alias}"
+        return f"#{self.machine.id or '(machine)'}.{path}" if path else f"#{self.machine.id or '(machine)'}"
+
+    def _targets(self, source: State, paths: Sequence[str]) -> Any:
+        names = [self._target(source, path) for path in paths]
+        return names[0] if len(names) == 1 else names
+
+    def _target(self, source: State, path: str) -> str:
+        parent, _, key = path.rpartition(".")
+        if path and parent == source.path and self.machine.states[path].parent == source.path:
+            return f".{key}"
+        if path and source.path and source.parent == self.machine.states[path].parent:
+            return key
+        return self._id(path)
+
+    def _behaviour(self, state: State) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        for key, steps in (("entry", state.entry), ("exit", state.exit)):
+            if steps:
+                data[key] = self._actions(steps)
+        rows = self._rows(state)
+        invokes = [self._invoke(invoke, rows) for invoke in state.invoke]
+        name = state.name
+        done, failed = rows.pop(f"!done.do.{name}", []), rows.pop(f"!error.do.{name}", [])
+        if state.do:
+            invokes.append(self._do(state, done, failed))
+        if invokes:
+            data["invoke"] = invokes[0] if len(invokes) == 1 else invokes
+        if ended := rows.pop(f"!done.state.{name}", []):
+            data["onDone"] = ended
+        if on := {event: row for event, row in rows.items() if not event.startswith("!")}:
+            data["on"] = on
+        if always := [self._row(state, t) for t in state.transitions if not t.event]:
+            data["always"] = always
+        if after := self._after(state):
+            data["after"] = after
+        if meta := dict(self._meta(state)):
+            data["meta"] = {"lumen": meta}
+        if state.output is not None:
+            data["output"] = _constant(state.output)
+        return data
+
+    def _rows(self, state: State) -> dict[str, list[Any]]:
+        """The transitions of `on`, and of the state's own events, by XState's descriptors."""
+        table = self.descriptors.arranged(state)
+        return {event: [self._row(state, t) for t in found] for event, found in table.items()}
+
+    def _after(self, state: State) -> dict[str, list[Any]]:
+        data: dict[str, list[Any]] = {}
+        for transition in state.transitions:
+            if transition.delay is not None:
+                length = round(transition.delay * 1000, 6)
+                key = f"{int(length)}" if length == int(length) else f"{length}"
+                data.setdefault(key, []).append(self._row(state, transition))
+        return data
+
+    def _invoke(self, invoke: Invoke, rows: dict[str, list[Any]]) -> dict[str, Any]:
+        """An actor called as the behaviour; what its input has to be computed from stands in `meta`."""
+        hint = f"give `setup` the actor `{invoke.behavior}`: lumen export xstate {invoke.behavior}"
+        self.report.changed(f"`invoke` of `{invoke.behavior}` names an actor", invoke.where, hint)
+        data: dict[str, Any] = {"id": invoke.id, "src": invoke.behavior}
+        if invoke.input:
+            data["input"] = {key: _constant(value) for key, value in invoke.input.items()}
+        for key, kind in (("onDone", "done"), ("onError", "error")):
+            if found := rows.pop(f"!{kind}.invoke.{invoke.id}", []):
+                data[key] = found
+        return data
+
+    def _do(self, state: State, done: list[Any], failed: list[Any]) -> dict[str, Any]:
+        self.report.foreign(f"`{DO_ACTOR}`", (*state.where, "do"))
+        data: dict[str, Any] = {"src": DO_ACTOR, "input": {"steps": plain_block(state.do)}}
+        return data | ({"onDone": done} if done else {}) | ({"onError": failed} if failed else {})
+
+    def _row(self, state: State, transition: Transition) -> dict[str, Any]:
+        row: dict[str, Any] = {}
+        if transition.targets:
+            row["target"] = self._targets(state, transition.targets)
+        if transition.guard:
+            self.report.foreign(f"the guard `{EXPRESSION_GUARD}`", transition.where)
+            row["guard"] = {"type": EXPRESSION_GUARD, "params": {"source": transition.guard.source}}
+        if transition.actions:
+            row["actions"] = self._actions(transition.actions)
+        if transition.targets and self._leaves_itself(state, transition):
+            row["reenter"] = True
+        return row
+
+    def _leaves_itself(self, state: State, transition: Transition) -> bool:
+        """Whether XState would stay in the state, and we leave it."""
+        prefix = f"{state.path}." if state.path else ""
+        within = all(path == state.path or path.startswith(prefix) for path in transition.targets)
+        return within and (
+            transition.reenter or state.kind is not StateKind.COMPOUND or state.path in transition.targets
+        )
+
+    def _actions(self, steps: Sequence[PlacedAction]) -> list[dict[str, Any]]:
+        return [self._action(step) for step in steps]
+
+    def _action(self, step: PlacedAction) -> dict[str, Any]:
+        plain = plain_action(step.action)
+        verb = next(iter(plain))
+        self.report.foreign(f"the action `{ACTION_PREFIX}{verb}`", step.where)
+        body = plain if verb == "if" else plain[verb]
+        whole = isinstance(body, dict) and set(body) != {"value"}
+        return {"type": f"{ACTION_PREFIX}{verb}", "params": body if whole else {"value": body}}
+
+    def _meta(self, state: State) -> Iterator[tuple[str, Any]]:
+        if not state.path:
+            yield from self._machine()
+        if state.on_reload:
+            yield "onReload", self._target(state, state.on_reload)
+        if state.output is not None:
+            yield "output", plain_value(state.output)
+        if state.invoke:
+            yield "invoke", {invoke.id: plain_value(invoke.input) for invoke in state.invoke}
+
+    def _machine(self) -> Iterator[tuple[str, Any]]:
+        machine = self.machine
+        yield from ((key, table) for key in ("types", "events", "renamed") if (table := getattr(machine, key)))
+        if machine.phrases:
+            yield "phrases", {name: _phrases(table) for name, table in machine.phrases.items()}
+        if machine.answers:
+            yield "answers", {name: [_answer(row) for row in rows] for name, rows in machine.answers.items()}
+
+
+def _phrases(table: Mapping[str, Sequence[str]]) -> Any:
+    return list(table[""]) if set(table) == {""} else {language: list(rows) for language, rows in table.items()}
+
+
+def _answer(row: Answer) -> dict[str, Any]:
+    return {"phrases": _phrases(row.phrases), "value": row.value}
+
+
+def _constant(value: ComputedValue) -> Any:
+    """A value with the texts in it that are written out; expressions stay what they are."""
+    match value:
+        case Expression(source):
+            try:
+                tree = parse_expression(source)
+            except ExpressionError:
+                return source
+            return tree.value if isinstance(tree, Literal) else source
+        case tuple():
+            return [_constant(item) for item in value]
+        case Mapping():
+            return {key: _constant(item) for key, item in value.items()}
+    return value

@@ -1,0 +1,80 @@
+"""The data of a behaviour, or of a file of another kind, as its text."""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import yaml
+from yaml.representer import SafeRepresenter
+
+from lumen.loading.source import resolve
+
+SCHEMA_COMMENT = "# yaml-language-server: $schema=../schemas/{kind}.schema.json\n"
+MAX_FLOW_WIDTH = 90
+"""Characters up to which a map or a list stands in one line."""
+
+_HARD, _SPECIAL = frozenset('"\\\n\t'), frozenset("'!&*#:,[]{}%@`|>")
+_TABLES = frozenset(("on", "after", "context", "types", "events", "phrases", "answers", "renamed"))
+_TAGS = {type(None): "null", bool: "bool", int: "int", float: "float", str: "str"}
+
+
+class _Dumper(yaml.SafeDumper):
+    """Writes YAML 1.2: quotes stand where a text would be something else without, so `on` has none."""
+
+    def resolve(self, kind: Any, value: Any, implicit: Any) -> str:
+        if kind is yaml.ScalarNode and implicit[0]:
+            return f"tag:yaml.org,2002:{_TAGS[type(resolve(value))]}" if value else "tag:yaml.org,2002:null"
+        return str(super().resolve(kind, value, implicit))  # type: ignore[no-untyped-call]
+
+    def increase_indent(self, flow: bool = False, indentless: bool = False) -> None:
+        super().increase_indent(flow, False)
+
+
+def document_yaml(data: Mapping[str, Any], kind: str = "behavior") -> str:
+    """The file: states as blocks, transitions and actions in one line where they fit; read again the same data."""
+    text: str = yaml.serialize(_state(data), Dumper=_Dumper, width=116, allow_unicode=True)
+    return SCHEMA_COMMENT.format(kind=kind) + text
+
+
+def _state(data: Mapping[str, Any]) -> yaml.Node:
+    return _mapping({key: _part(key, value) for key, value in data.items()}, flow=not data)
+
+
+def _part(key: str, value: Any) -> yaml.Node:
+    """What stands under a key of a state."""
+    if key == "states":
+        return _mapping({name: _state(state or {}) for name, state in value.items()}, flow=False)
+    if key in _TABLES and isinstance(value, Mapping):
+        return _mapping({name: _compact(item) for name, item in value.items()}, flow=not value)
+    if isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
+        return _sequence([_compact(item) for item in value], flow=False)
+    return _compact(value)
+
+
+def _compact(value: Any) -> yaml.Node:
+    """In one line where that is short, else one line for each of its parts."""
+    flow = not isinstance(value, Mapping | list) or len(json.dumps(value, ensure_ascii=False)) <= MAX_FLOW_WIDTH
+    match value:
+        case Mapping():
+            return _mapping({key: _compact(item) for key, item in value.items()}, flow=flow or not value)
+        case list():
+            return _sequence([_compact(item) for item in value], flow=flow or not value)
+    return _scalar(value)
+
+
+def _scalar(value: Any) -> yaml.Node:
+    node = SafeRepresenter().represent_data(value)
+    if not (isinstance(node, yaml.ScalarNode) and isinstance(value, str) and "'" in value):
+        return node
+    if _HARD.isdisjoint(value) and not _SPECIAL.isdisjoint(value):
+        node.style = '"'
+    return node
+
+
+def _mapping(parts: Mapping[str, yaml.Node], *, flow: bool) -> yaml.Node:
+    pairs = [(_scalar(key), node) for key, node in parts.items()]
+    return yaml.MappingNode("tag:yaml.org,2002:map", pairs, flow_style=flow)
+
+
+def _sequence(parts: list[yaml.Node], *, flow: bool) -> yaml.Node:
+    return yaml.SequenceNode("tag:yaml.org,2002:seq", parts, flow_style=flow)
