@@ -13,7 +13,7 @@ from lumen.language.diagnostics import Diagnostic, Place, has_errors
 from lumen.loading.project import read_files
 from lumen.rules import check_files
 from lumen.rules.fixes import edited, fixes
-from lumen.rules.fixes.words import near
+from lumen.rules.fixes.misspellings import near
 from lumen.rules.repairs import repaired
 
 HERE = Path(__file__).parent

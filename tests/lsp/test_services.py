@@ -12,9 +12,9 @@ from lumen.lsp.analysis import Analysis
 from lumen.lsp.completion import complete
 from lumen.lsp.definitions import definitions, uses
 from lumen.lsp.hover import hover
+from lumen.lsp.names import NameKind
 from lumen.lsp.renaming import applied, renamable, rename
 from lumen.lsp.symbols import symbols
-from lumen.lsp.words import Kind
 from tests.mutation.mutants import Nursery
 
 ROOT = Path(__file__).parents[2]
@@ -142,7 +142,7 @@ def test_rename(file: str, text: str, name: str, edits: int, moved: tuple[str, s
     assert (len(found.edits), found.moved) == (edits, moved)
     after = applied(SHIPPED, found)
     assert not after.diagnostics
-    assert name in after.index.names(word.kind, word.scope) or word.kind is Kind.STATE
+    assert name in after.index.names(word.kind, word.scope) or word.kind is NameKind.STATE
 
 
 @pytest.mark.parametrize(
@@ -166,8 +166,8 @@ def test_names_that_can_not_be_given(file: str, text: str, name: str, reason: st
 
 def test_every_state_key_phrase_and_route_can_be_renamed() -> None:
     """A sample of all words that can: the project after it says the same, so it has no findings."""
-    words = [w for w in SHIPPED.index.words if w.defines and w.text and w.place.file in (TOUR, "lumen.yaml")]
-    chosen = Random(1).sample([w for w in words if w.kind in (Kind.STATE, Kind.CONTEXT, Kind.PHRASE)], 5)
+    uses = [w for w in SHIPPED.index.uses if w.defines and w.text and w.place.file in (TOUR, "lumen.yaml")]
+    chosen = Random(1).sample([w for w in uses if w.kind in (NameKind.STATE, NameKind.CONTEXT, NameKind.PHRASE)], 5)
     for word in chosen:
         assert not applied(SHIPPED, rename(SHIPPED, word, "renamed_thing")).diagnostics
 
@@ -182,7 +182,7 @@ def test_uses_and_symbols() -> None:
 
 def test_words_stand_where_they_say() -> None:
     lines = {file: SHIPPED.text(file).split("\n") for file in SHIPPED.files}
-    named = [word for word in SHIPPED.index.words if word.text]
+    named = [word for word in SHIPPED.index.uses if word.text]
     assert len(named) > 1_500
     for word in named:
         assert lines[word.place.file][word.place.line - 1][word.place.column - 1 :].startswith(word.text)

@@ -13,7 +13,7 @@ from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.rules import check_files
-from lumen.rules.physics import Case, Make, Outcome, Rehearsal, attempt
+from lumen.rules.physics import Case, CaseResult, Outcome, SubjectFactory, attempt
 from lumen.rules.physics.cases import cases
 from lumen.rules.physics.verdict import findings
 
@@ -26,7 +26,7 @@ Tell = Callable[[int, int, str], None]
 
 def played(
     found: Findings, wanted: Callable[[Diagnostic], bool], robots: int, *, keep: bool = True
-) -> tuple[Findings, list[Rehearsal]]:
+) -> tuple[Findings, list[CaseResult]]:
     """The findings of a project with those of its motions in simulation, where it has no errors; and what was played.
 
     Only motions in files that somebody asked about are played, and with `keep` only where they were not before.
@@ -44,7 +44,9 @@ def played(
     return replace(found, diagnostics=everything), rehearsals
 
 
-def rehearse(chosen: Sequence[Case], make: Make, robots: int, memory: Rehearsed | None, tell: Tell) -> list[Rehearsal]:
+def rehearse(
+    chosen: Sequence[Case], make: SubjectFactory, robots: int, memory: Rehearsed | None, tell: Tell
+) -> list[CaseResult]:
     """What comes of each case with the robot of the model and `robots` others; what is remembered is not played."""
     done, whole, rehearsals = 0, len(chosen) * (robots + 1), []
     for case in chosen:
@@ -56,11 +58,11 @@ def rehearse(chosen: Sequence[Case], make: Make, robots: int, memory: Rehearsed 
                 outcomes[number] = _attempt(case, make, number)
                 if memory:
                     memory.keep(case, outcomes)
-        rehearsals.append(Rehearsal(case, [outcomes[number] for number in range(robots + 1)]))
+        rehearsals.append(CaseResult(case, [outcomes[number] for number in range(robots + 1)]))
     return rehearsals
 
 
-def summary(rehearsals: Sequence[Rehearsal]) -> str:
+def summary(rehearsals: Sequence[CaseResult]) -> str:
     """A line for each case: how many came to its end, and how far the torso leaned."""
     lines = []
     for rehearsal in rehearsals:
@@ -82,7 +84,7 @@ def number_of_robots(text: str) -> int:
     return int(number)
 
 
-def _attempt(case: Case, make: Make, number: int) -> Outcome:
+def _attempt(case: Case, make: SubjectFactory, number: int) -> Outcome:
     robot = make(number)
     try:
         return attempt(case, robot)
@@ -90,7 +92,7 @@ def _attempt(case: Case, make: Make, number: int) -> Outcome:
         robot.close()
 
 
-def _maker(project: Project) -> Make:
+def _maker(project: Project) -> SubjectFactory:
     from lumen.robots.simulation.subject import subject
 
     models = Path(project.root) / "models"

@@ -13,7 +13,7 @@ from lumen.formats.fll.controller_draft import ControllerDraft, operators, range
 from lumen.formats.fll.fuzzylite_names import SHAPES, plain
 from lumen.language.controllers import TERMS, WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.loading.rules import RuleWord
+from lumen.loading.rule_parser import RuleWord
 
 _COMMENT = re.compile(r"(?P<open>\(\*|/\*)|//[^\n]*")
 _OPEN = re.compile(r"(VAR_INPUT|VAR_OUTPUT|FUZZIFY|DEFUZZIFY|RULEBLOCK)\b", re.IGNORECASE)

@@ -14,7 +14,7 @@ from lumen.formats.fll.controller_draft import ControllerDraft, operators, range
 from lumen.formats.fll.fuzzylite_names import written
 from lumen.language.controllers import WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.loading.rules import RuleWord
+from lumen.loading.rule_parser import RuleWord
 
 _SECTION = re.compile(r"\[(System|Input|Output|Rules)\s*(\d*)\]", re.IGNORECASE)
 _TERM = re.compile(r"'(?P<name>[^']*)'\s*:\s*'(?P<shape>\w+)'\s*,\s*\[(?P<values>[^\]]*)\]")

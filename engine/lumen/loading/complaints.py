@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean, nearest
-from lumen.loading.wording import Error, describe, node, wording
+from lumen.loading.schema_messages import Error, describe, node, wording
 
 MOST_KEYS = 50
 """Unknown keys of a node for which it is looked what was meant; if there are more, it is something else."""

@@ -18,7 +18,7 @@ from lumen.interpreters.expressions.tree import (
 from lumen.interpreters.inference.formulas import FUNCTIONS
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.loading.source import DocumentReport
-from lumen.loading.words import report_word
+from lumen.loading.word_places import report_word
 
 _PLAIN = (Identifier, Unary, Logic, Conditional)
 

@@ -11,6 +11,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
+from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_files
@@ -18,7 +19,6 @@ from lumen.loading.linking import link
 from lumen.loading.messages import ENDING, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
-from lumen.loading.reading import Build, BuiltFile, read_file
 from lumen.loading.settings import build_settings
 from lumen.loading.source import DocumentReport
 from lumen.loading.stories import build_story

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeVar
 import yaml
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related, Severity
-from lumen.loading.recollection import memoize
+from lumen.loading.memoization import memoize
 
 T = TypeVar("T")
 

@@ -7,7 +7,7 @@ from typing import Any
 from lumen.language.controllers import TERMS, Term
 from lumen.language.diagnostics import NodePath
 from lumen.loading.formulas import check_formula
-from lumen.loading.rules import KEYWORDS
+from lumen.loading.rule_parser import KEYWORDS
 from lumen.loading.source import DocumentReport
 
 _POSITIVE: Mapping[str, tuple[int, ...]] = {

@@ -1,6 +1,6 @@
 """A project as an editor sees it: the files on disk, those being edited laid over them, and what is known of all."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 
@@ -10,10 +10,8 @@ from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.project import draft
 from lumen.loading.source import Document, parse
 from lumen.lsp.grammar import kind_of
-from lumen.lsp.index import Index
+from lumen.lsp.index import NameIndex
 from lumen.rules import check_files
-
-Check = Callable[[Path, Mapping[str, bytes]], tuple[Diagnostic, ...]]
 
 
 class Analysis:
@@ -39,11 +37,11 @@ class Analysis:
         return {file: document for file, document in read.items() if document}
 
     @cached_property
-    def index(self) -> Index:
+    def index(self) -> NameIndex:
         """Every name, and what it means."""
         main = self.documents[MAIN_FILE].data if MAIN_FILE in self.documents else None
         named = main.get("behavior") if isinstance(main, dict) else ""
-        return Index(self.documents, frozenset(self.files), named if isinstance(named, str) else "")
+        return NameIndex(self.documents, frozenset(self.files), named if isinstance(named, str) else "")
 
     def text(self, file: str) -> str:
         """The text of a file, empty where there is none."""

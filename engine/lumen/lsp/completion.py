@@ -10,13 +10,13 @@ from lumen.language.events import ROBOT_EVENTS
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.cursor import MARK, Cursor, cursor
 from lumen.lsp.grammar import key_kind, kind_of, value_kind
-from lumen.lsp.index import Index, stem
+from lumen.lsp.index import NameIndex, stem
+from lumen.lsp.names import NameKind
 from lumen.lsp.schemas import keys_at, values_at
-from lumen.lsp.words import Kind
 from lumen.rules.events import FAMILIES, hears
 
 _CALL = re.compile(r"\b(heard|lookup|In)\([^()]*?(?:\([^()]*\)[^()]*?)*['\"](\w*)$")
-_NAMED = {"heard": Kind.PHRASE, "lookup": Kind.ANSWERS, "In": Kind.STATE}
+_NAMED = {"heard": NameKind.PHRASE, "lookup": NameKind.ANSWERS, "In": NameKind.STATE}
 _FIELD = re.compile(r"\b(context|event\.data|event|state)\.(\w*)$")
 
 
@@ -44,7 +44,7 @@ def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item
 class _Completion:
     def __init__(self, analysis: Analysis, kind: str, file: str, here: Cursor) -> None:
         self.analysis, self.kind, self.file, self.here = analysis, kind, file, here
-        self.index: Index = analysis.index
+        self.index: NameIndex = analysis.index
         self.scope = self.index.behavior(file)
 
     def items(self) -> Iterator[Item]:
@@ -55,13 +55,13 @@ class _Completion:
             return
         named = value_kind(self.kind, path)
         match named:
-            case Kind.EXPRESSION:
+            case NameKind.EXPRESSION:
                 yield from self.expression(here.before, path)
-            case Kind.TEMPLATE:
+            case NameKind.TEMPLATE:
                 opened = here.before.rpartition("{{")[2] if "{{" in here.before else "}}"
                 if "}}" not in opened:
                     yield from self.expression(opened, path)
-            case Kind.FIELD:
+            case NameKind.FIELD:
                 yield from self.field(here.before)
             case None:
                 pass
@@ -78,7 +78,7 @@ class _Completion:
             if key not in taken:
                 yield Item(f"{key}: ", "key", len(self.here.word), str(schema.get("description", "")))
 
-    def names(self, kind: Kind, path: NodePath, *, key: bool = False) -> Iterator[Item]:
+    def names(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[Item]:
         wide, end = len(self.here.word), ": " if key else ""
         for name, detail in self.candidates(kind, path, key=key):
             if MARK not in name:
@@ -89,19 +89,19 @@ class _Completion:
         """Whether the cursor stands in quotes, where a `#` begins no comment."""
         return self.here.quote != ""
 
-    def candidates(self, kind: Kind, path: NodePath, *, key: bool) -> Iterator[tuple[str, str]]:
+    def candidates(self, kind: NameKind, path: NodePath, *, key: bool) -> Iterator[tuple[str, str]]:
         match kind:
-            case Kind.STATE:
+            case NameKind.STATE:
                 yield from self.states(path) if not key else ()
-            case Kind.EVENT:
+            case NameKind.EVENT:
                 yield from self.events(waits=key)
-            case Kind.FIELD:
+            case NameKind.FIELD:
                 yield from self.body(path)
-            case Kind.LANGUAGE if key and path[-2:-1] == ("say",):
+            case NameKind.LANGUAGE if key and path[-2:-1] == ("say",):
                 yield from ((name, "") for name in [*self.index.names(kind), "any"])
             case _:
-                scope = self.scope if kind in (Kind.CONTEXT, Kind.PHRASE, Kind.ANSWERS) else ""
-                scope = stem(self.file) if kind is Kind.POSE else scope
+                scope = self.scope if kind in (NameKind.CONTEXT, NameKind.PHRASE, NameKind.ANSWERS) else ""
+                scope = stem(self.file) if kind is NameKind.POSE else scope
                 yield from ((name, "") for name in self.index.names(kind, scope))
 
     def states(self, path: NodePath) -> Iterator[tuple[str, str]]:
@@ -125,8 +125,8 @@ class _Completion:
 
     def events(self, *, waits: bool) -> Iterator[tuple[str, str]]:
         """Events that may come, where one is waited for; those waited for, where one is raised."""
-        words = [w for w in self.index.words if w.kind is Kind.EVENT]
-        names = dict.fromkeys(w.name for w in words if w.defines or not waits or w.place.file == self.file)
+        uses = [w for w in self.index.uses if w.kind is NameKind.EVENT]
+        names = dict.fromkeys(w.name for w in uses if w.defines or not waits or w.place.file == self.file)
         yield from ((name, "") for name in names)
         if waits:
             yield from ((name, "the robot's") for name in ROBOT_EVENTS if name not in names)
@@ -137,7 +137,7 @@ class _Completion:
         if dot:
             yield from (Item(name, "field", len(part)) for name in self.fields(self.schema(route)))
         else:
-            yield from (Item(name, "route", len(route)) for name in self.index.names(Kind.ROUTE))
+            yield from (Item(name, "route", len(route)) for name in self.index.names(NameKind.ROUTE))
 
     def body(self, path: NodePath) -> Iterator[tuple[str, str]]:
         around = self.value(path[:-2])
@@ -148,12 +148,12 @@ class _Completion:
         if call := _CALL.search(before):
             kind = _NAMED[call[1]]
             names = self.index.names(kind, self.scope)
-            if kind is Kind.STATE and (tree := self.index.outlines.get(self.scope)):
+            if kind is NameKind.STATE and (tree := self.index.outlines.get(self.scope)):
                 names = [entry.name for entry in tree.entries.values() if entry.parent]
             yield from (Item(name, str(kind), len(call[2])) for name in names)
         elif found := _FIELD.search(before):
             named = {
-                "context": self.index.names(Kind.CONTEXT, self.scope),
+                "context": self.index.names(NameKind.CONTEXT, self.scope),
                 "event": ["name", "data"],
                 "event.data": self.event_fields(path),
                 "state": [],

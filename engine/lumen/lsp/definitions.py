@@ -6,11 +6,11 @@ from lumen.lsp.analysis import Analysis
 
 def definitions(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:
     """Where what stands at a line and column, from 1, is made known; a state by its key rather than its id."""
-    word = analysis.index.at(file, line, column)
-    return [other.place for other in analysis.index.of(word) if other.defines] if word else []
+    use = analysis.index.at(file, line, column)
+    return [other.place for other in analysis.index.of(use) if other.defines] if use else []
 
 
 def uses(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:
     """Every place that names what stands at a line and column, from 1."""
-    word = analysis.index.at(file, line, column)
-    return [other.place for other in analysis.index.of(word) if other.text] if word else []
+    use = analysis.index.at(file, line, column)
+    return [other.place for other in analysis.index.of(use) if other.text] if use else []

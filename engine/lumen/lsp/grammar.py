@@ -5,7 +5,7 @@ from pathlib import PurePosixPath
 
 from lumen.language.diagnostics import NodePath
 from lumen.loading.packaged import MAIN_FILE
-from lumen.lsp.words import Kind
+from lumen.lsp.names import NameKind
 
 FILES: Mapping[str, str] = {
     "behaviors": "behavior",
@@ -18,105 +18,105 @@ FILES: Mapping[str, str] = {
 }
 """The folders and the kinds of file in them, as the schemas call those."""
 
-Table = Mapping[tuple[str, ...], Kind]
+Table = Mapping[tuple[str, ...], NameKind]
 """The ends of paths, `*` for any step; the indices of lists are left out."""
 
 _KEYS: Mapping[str, Table] = {
     "behavior": {
-        ("states", "*"): Kind.STATE,
-        ("on", "*"): Kind.EVENT,
-        ("assign", "*"): Kind.CONTEXT,
-        ("say", "*"): Kind.LANGUAGE,
-        ("track", "*"): Kind.CONTROLLER,
-        ("phrases", "*", "*"): Kind.LANGUAGE,
-        ("phrases", "*"): Kind.LANGUAGE,
-        ("value", "*"): Kind.LANGUAGE,
+        ("states", "*"): NameKind.STATE,
+        ("on", "*"): NameKind.EVENT,
+        ("assign", "*"): NameKind.CONTEXT,
+        ("say", "*"): NameKind.LANGUAGE,
+        ("track", "*"): NameKind.CONTROLLER,
+        ("phrases", "*", "*"): NameKind.LANGUAGE,
+        ("phrases", "*"): NameKind.LANGUAGE,
+        ("value", "*"): NameKind.LANGUAGE,
     },
-    "story": {("context", "*"): Kind.CONTEXT},
-    "controller": {("sweep", "*"): Kind.JOINT, ("ahead", "*"): Kind.JOINT},
-    "motion": {("joints", "*"): Kind.JOINT, ("handles", "*"): Kind.JOINT},
-    "body": {("postures", "*", "*"): Kind.JOINT, ("shared", "*"): Kind.JOINT},
+    "story": {("context", "*"): NameKind.CONTEXT},
+    "controller": {("sweep", "*"): NameKind.JOINT, ("ahead", "*"): NameKind.JOINT},
+    "motion": {("joints", "*"): NameKind.JOINT, ("handles", "*"): NameKind.JOINT},
+    "body": {("postures", "*", "*"): NameKind.JOINT, ("shared", "*"): NameKind.JOINT},
 }
 _ROOT_KEYS: Mapping[str, Table] = {
     "behavior": {
-        ("context", "*"): Kind.CONTEXT,
-        ("types", "*"): Kind.CONTEXT,
-        ("phrases", "*"): Kind.PHRASE,
-        ("answers", "*"): Kind.ANSWERS,
-        ("events", "*"): Kind.EVENT,
+        ("context", "*"): NameKind.CONTEXT,
+        ("types", "*"): NameKind.CONTEXT,
+        ("phrases", "*"): NameKind.PHRASE,
+        ("answers", "*"): NameKind.ANSWERS,
+        ("events", "*"): NameKind.EVENT,
     },
-    "lumen": {("routes", "*"): Kind.ROUTE},
-    "motion": {("poses", "*"): Kind.POSE},
-    "body": {("joints", "*"): Kind.JOINT, ("postures", "*"): Kind.POSTURE},
+    "lumen": {("routes", "*"): NameKind.ROUTE},
+    "motion": {("poses", "*"): NameKind.POSE},
+    "body": {("joints", "*"): NameKind.JOINT, ("postures", "*"): NameKind.POSTURE},
 }
 _VALUES: Mapping[str, Table] = {
     "behavior": {
-        ("on", "*"): Kind.STATE,
-        ("after", "*"): Kind.STATE,
-        ("assign", "*"): Kind.EXPRESSION,
-        ("input", "*"): Kind.EXPRESSION,
-        ("say", "*"): Kind.TEMPLATE,
-        ("say",): Kind.TEMPLATE,
-        ("log",): Kind.TEMPLATE,
-        ("guard",): Kind.EXPRESSION,
-        ("if",): Kind.EXPRESSION,
-        ("output",): Kind.EXPRESSION,
-        ("always",): Kind.STATE,
-        ("onDone",): Kind.STATE,
-        ("onError",): Kind.STATE,
-        ("target",): Kind.STATE,
-        ("initial",): Kind.STATE,
-        ("onReload",): Kind.STATE,
-        ("play",): Kind.MOTION,
-        ("posture",): Kind.POSTURE,
-        ("posture", "name"): Kind.POSTURE,
-        ("track",): Kind.CONTROLLER,
-        ("publish",): Kind.ROUTE,
-        ("publish", "route"): Kind.ROUTE,
-        ("raise",): Kind.EVENT,
-        ("raise", "event"): Kind.EVENT,
-        ("send",): Kind.EVENT,
-        ("send", "event"): Kind.EVENT,
-        ("language",): Kind.LANGUAGE,
-        ("invoke",): Kind.BEHAVIOR,
-        ("invoke", "behavior"): Kind.BEHAVIOR,
+        ("on", "*"): NameKind.STATE,
+        ("after", "*"): NameKind.STATE,
+        ("assign", "*"): NameKind.EXPRESSION,
+        ("input", "*"): NameKind.EXPRESSION,
+        ("say", "*"): NameKind.TEMPLATE,
+        ("say",): NameKind.TEMPLATE,
+        ("log",): NameKind.TEMPLATE,
+        ("guard",): NameKind.EXPRESSION,
+        ("if",): NameKind.EXPRESSION,
+        ("output",): NameKind.EXPRESSION,
+        ("always",): NameKind.STATE,
+        ("onDone",): NameKind.STATE,
+        ("onError",): NameKind.STATE,
+        ("target",): NameKind.STATE,
+        ("initial",): NameKind.STATE,
+        ("onReload",): NameKind.STATE,
+        ("play",): NameKind.MOTION,
+        ("posture",): NameKind.POSTURE,
+        ("posture", "name"): NameKind.POSTURE,
+        ("track",): NameKind.CONTROLLER,
+        ("publish",): NameKind.ROUTE,
+        ("publish", "route"): NameKind.ROUTE,
+        ("raise",): NameKind.EVENT,
+        ("raise", "event"): NameKind.EVENT,
+        ("send",): NameKind.EVENT,
+        ("send", "event"): NameKind.EVENT,
+        ("language",): NameKind.LANGUAGE,
+        ("invoke",): NameKind.BEHAVIOR,
+        ("invoke", "behavior"): NameKind.BEHAVIOR,
     },
     "story": {
-        ("expect", "state"): Kind.STATE,
-        ("never",): Kind.STATE,
-        ("played",): Kind.MOTION,
-        ("published",): Kind.ROUTE,
-        ("published", "route"): Kind.ROUTE,
-        ("message", "route"): Kind.ROUTE,
-        ("touch",): Kind.SENSOR,
-        ("release",): Kind.SENSOR,
-        ("event",): Kind.EVENT,
-        ("event", "name"): Kind.EVENT,
-        ("behavior",): Kind.BEHAVIOR,
-        ("language",): Kind.LANGUAGE,
+        ("expect", "state"): NameKind.STATE,
+        ("never",): NameKind.STATE,
+        ("played",): NameKind.MOTION,
+        ("published",): NameKind.ROUTE,
+        ("published", "route"): NameKind.ROUTE,
+        ("message", "route"): NameKind.ROUTE,
+        ("touch",): NameKind.SENSOR,
+        ("release",): NameKind.SENSOR,
+        ("event",): NameKind.EVENT,
+        ("event", "name"): NameKind.EVENT,
+        ("behavior",): NameKind.BEHAVIOR,
+        ("language",): NameKind.LANGUAGE,
     },
     "lumen": {
-        ("behavior",): Kind.BEHAVIOR,
-        ("story",): Kind.STORY,
-        ("model",): Kind.MODEL,
-        ("languages",): Kind.LANGUAGE,
-        ("schema",): Kind.MESSAGE,
-        ("event",): Kind.EVENT,
+        ("behavior",): NameKind.BEHAVIOR,
+        ("story",): NameKind.STORY,
+        ("model",): NameKind.MODEL,
+        ("languages",): NameKind.LANGUAGE,
+        ("schema",): NameKind.MESSAGE,
+        ("event",): NameKind.EVENT,
     },
-    "controller": {("bind", "inputs", "*"): Kind.FIELD, ("joint",): Kind.JOINT},
+    "controller": {("bind", "inputs", "*"): NameKind.FIELD, ("joint",): NameKind.JOINT},
     "motion": {
-        ("start",): Kind.POSTURE,
-        ("end",): Kind.POSTURE,
-        ("posture",): Kind.POSTURE,
-        ("pose",): Kind.POSE,
-        ("play",): Kind.MOTION,
+        ("start",): NameKind.POSTURE,
+        ("end",): NameKind.POSTURE,
+        ("posture",): NameKind.POSTURE,
+        ("pose",): NameKind.POSE,
+        ("play",): NameKind.MOTION,
     },
     "body": {
-        ("parts", "*"): Kind.JOINT,
-        ("coupled", "joint"): Kind.JOINT,
-        ("coupled", "on"): Kind.JOINT,
-        ("shared", "*"): Kind.JOINT,
-        ("tactile",): Kind.SENSOR,
+        ("parts", "*"): NameKind.JOINT,
+        ("coupled", "joint"): NameKind.JOINT,
+        ("coupled", "on"): NameKind.JOINT,
+        ("shared", "*"): NameKind.JOINT,
+        ("tactile",): NameKind.SENSOR,
     },
 }
 _DEFINING = {
@@ -138,7 +138,7 @@ def kind_of(file: str) -> str:
     return FILES.get(str(path.parent), "") if path.suffix in (".yaml", ".json") else ""
 
 
-def key_kind(kind: str, path: NodePath) -> Kind | None:
+def key_kind(kind: str, path: NodePath) -> NameKind | None:
     """What the key at the end of a path names, in a file of that kind."""
     steps = _steps(path)
     if kind == "behavior" and steps[:1] in (("types",), ("events",)) and len(steps) > 2:
@@ -146,34 +146,34 @@ def key_kind(kind: str, path: NodePath) -> Kind | None:
     if found := _found(_ROOT_KEYS.get(kind, {}), steps, whole=True):
         return found
     if _in_data(kind, steps[:-1]):
-        return Kind.FIELD if len(steps) > 1 and steps[-2] in _DATA[kind] else None
+        return NameKind.FIELD if len(steps) > 1 and steps[-2] in _DATA[kind] else None
     return _found(_KEYS.get(kind, {}), steps)
 
 
-def value_kind(kind: str, path: NodePath) -> Kind | None:
+def value_kind(kind: str, path: NodePath) -> NameKind | None:
     """What the text at a path names, in a file of that kind."""
     steps = _steps(path)
     if kind == "behavior":
         if steps[:1] and steps[0] in _OPAQUE:
             return None
         if _in_data(kind, steps):
-            return Kind.EXPRESSION
+            return NameKind.EXPRESSION
     elif _in_data(kind, steps):
         return None
     return _found(_VALUES.get(kind, {}), steps)
 
 
-def defines(kind: str, path: NodePath, what: Kind) -> bool:
+def defines(kind: str, path: NodePath, what: NameKind) -> bool:
     """Whether the name at that path is where the thing is made known."""
     steps = _steps(path)
-    if kind == "behavior" and what is Kind.STATE:
+    if kind == "behavior" and what is NameKind.STATE:
         return steps[-2:-1] == ("states",)
-    if kind == "behavior" and what is Kind.EVENT and {"raise", "send"} & {*steps[-2:]}:
+    if kind == "behavior" and what is NameKind.EVENT and {"raise", "send"} & {*steps[-2:]}:
         return True
-    if kind == "lumen" and what is Kind.EVENT:
+    if kind == "lumen" and what is NameKind.EVENT:
         return True
-    depth = 1 if what in (Kind.SENSOR, Kind.LANGUAGE) else 2
-    return len(steps) == depth and steps[0] in _DEFINING.get(kind, frozenset()) and what is not Kind.MESSAGE
+    depth = 1 if what in (NameKind.SENSOR, NameKind.LANGUAGE) else 2
+    return len(steps) == depth and steps[0] in _DEFINING.get(kind, frozenset()) and what is not NameKind.MESSAGE
 
 
 def _in_data(kind: str, steps: tuple[str, ...]) -> bool:
@@ -184,7 +184,7 @@ def _steps(path: NodePath) -> tuple[str, ...]:
     return tuple(step for step in path if isinstance(step, str))
 
 
-def _found(table: Table, steps: tuple[str, ...], *, whole: bool = False) -> Kind | None:
+def _found(table: Table, steps: tuple[str, ...], *, whole: bool = False) -> NameKind | None:
     """The entry whose end matches; one that says more of the path wins, as `on: {play: …}` is no motion."""
     lengths = (len(steps),) if whole else (3, 2, 1)
     for length in lengths:

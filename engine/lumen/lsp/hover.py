@@ -1,4 +1,4 @@
-"""What there is to know about the word under a cursor, in Markdown."""
+"""What there is to know about the name under a cursor, in Markdown."""
 
 from math import degrees
 from pathlib import PurePosixPath
@@ -7,8 +7,8 @@ from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.loading.draft import ProjectDraft
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import kind_of
+from lumen.lsp.names import NameKind, NameUse, covers
 from lumen.lsp.schemas import description_at
-from lumen.lsp.words import Kind, Word, covers
 from lumen.rules.codes import CODES
 from lumen.rules.pages import page
 
@@ -16,20 +16,20 @@ from lumen.rules.pages import page
 def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
     """What to show for a line and column, from 1; empty where there is nothing to say."""
     parts = []
-    word = analysis.index.at(file, line, column)
-    if word:
-        parts.append(describe(analysis, word))
+    use = analysis.index.at(file, line, column)
+    if use:
+        parts.append(describe(analysis, use))
     elif said := _described(analysis, file, line, column):
         parts.append(said)
     parts += [explain(d) for d in analysis.diagnostics if d.place.file == file and covers(d.place, line, column)]
     return "\n\n---\n\n".join(filter(None, parts))
 
 
-def describe(analysis: Analysis, word: Word) -> str:
-    """What a word names: a state's path, a motion's duration, a joint's limits."""
-    title = f"{word.kind} `{word.name}`"
-    facts = _facts(analysis, word)
-    uses = sum(1 for other in analysis.index.of(word) if not other.defines and other.text)
+def describe(analysis: Analysis, use: NameUse) -> str:
+    """What a name stands for: a state's path, a motion's duration, a joint's limits."""
+    title = f"{use.kind} `{use.name}`"
+    facts = _facts(analysis, use)
+    uses = sum(1 for other in analysis.index.of(use) if not other.defines and other.text)
     return "\n\n".join(filter(None, [f"**{title}**", facts, f"used {uses} times" if uses > 1 else ""]))
 
 
@@ -45,41 +45,41 @@ def explain(diagnostic: Diagnostic) -> str:
     return f"**{diagnostic.code}**: {rule.what}\n\n{rule.why}"
 
 
-def _facts(analysis: Analysis, word: Word) -> str:
+def _facts(analysis: Analysis, use: NameUse) -> str:
     draft = analysis.draft
-    match word.kind:
-        case Kind.STATE:
-            return _state(draft, word)
-        case Kind.MOTION:
-            motion = draft.motions.get(word.name)
+    match use.kind:
+        case NameKind.STATE:
+            return _state(draft, use)
+        case NameKind.MOTION:
+            motion = draft.motions.get(use.name)
             moves = f"{motion.duration:g} s, moves {len(motion.tracks)} joints" if motion else ""
             return f"{moves}{f', begins in {motion.start}' if motion and motion.start else ''}"
-        case Kind.JOINT:
-            return _joint(draft, word.name)
-        case Kind.CONTEXT:
-            machine = draft.behaviors.get(word.scope)
-            known = machine is not None and word.name in machine.context
-            return f"begins with `{machine.context[word.name]!r}`" if machine and known else ""
-        case Kind.ROUTE:
-            route = draft.settings.routes.get(word.name) if draft.settings else None
+        case NameKind.JOINT:
+            return _joint(draft, use.name)
+        case NameKind.CONTEXT:
+            machine = draft.behaviors.get(use.scope)
+            known = machine is not None and use.name in machine.context
+            return f"begins with `{machine.context[use.name]!r}`" if machine and known else ""
+        case NameKind.ROUTE:
+            route = draft.settings.routes.get(use.name) if draft.settings else None
             event = f", becomes the event `{route.event}`" if route and route.event else ""
             return f"`{route.key}` ({route.direction}){event}" if route else ""
-        case Kind.PHRASE:
-            machine = draft.behaviors.get(word.scope)
-            rows = machine.phrases.get(word.name, {}) if machine else {}
+        case NameKind.PHRASE:
+            machine = draft.behaviors.get(use.scope)
+            rows = machine.phrases.get(use.name, {}) if machine else {}
             return "\n".join(f"- {language or 'any'}: {', '.join(said)}" for language, said in rows.items())
-        case Kind.EVENT:
+        case NameKind.EVENT:
             routes = draft.settings.routes.values() if draft.settings else ()
-            return "\n".join(f"from the route `{r.name}` (`{r.key}`)" for r in routes if r.event == word.name)
-        case Kind.MESSAGE:
-            schema = draft.messages.get(word.name, {})
+            return "\n".join(f"from the route `{r.name}` (`{r.key}`)" for r in routes if r.event == use.name)
+        case NameKind.MESSAGE:
+            schema = draft.messages.get(use.name, {})
             return str(schema.get("description", schema.get("title", "")))
     return ""
 
 
-def _state(draft: ProjectDraft, word: Word) -> str:
-    machine = draft.behaviors.get(word.scope)
-    state = machine.states.get(word.name) if machine else None
+def _state(draft: ProjectDraft, use: NameUse) -> str:
+    machine = draft.behaviors.get(use.scope)
+    state = machine.states.get(use.name) if machine else None
     if state is None:
         return ""
     inner = f", with {len(state.children)} states" if state.children else ""

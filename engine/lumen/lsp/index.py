@@ -10,12 +10,12 @@ from lumen.loading.messages import ENDING
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.source import Document, DocumentReport
 from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
-from lumen.lsp.locating import Lines, Part, in_expression, in_template
-from lumen.lsp.words import FOLDERS, SCOPED, Kind, Word, covers
+from lumen.lsp.locating import DocumentText, NameInText, in_expression, in_template
+from lumen.lsp.names import FOLDERS, SCOPED, NameKind, NameUse, covers
 
 
-class Index:
-    """The words of a project, from its documents by file; files that are no YAML have none.
+class NameIndex:
+    """All uses of names in a project, from its documents by file; files that are no YAML have none.
 
     `files` are the names of all files, for those that can't be read are there all the same.
     """
@@ -25,26 +25,30 @@ class Index:
         self.outlines = {stem(file): tree for file, d in documents.items() if (tree := _outline(file, d))}
 
     @cached_property
-    def words(self) -> tuple[Word, ...]:
+    def uses(self) -> tuple[NameUse, ...]:
         """All of them, in the order of the files."""
-        found = [word for document in self.documents.values() for word in _Reader(self, document).words()]
+        found = [use for document in self.documents.values() for use in _Reader(self, document).uses()]
         for file in sorted(filter(kind_of, self.files)):
             folder = str(PurePosixPath(file).parent)
-            found += [Word(kind, "", stem(file), "", Place(file), True) for kind, f in FOLDERS.items() if f == folder]
+            found += [
+                NameUse(kind, "", stem(file), "", Place(file), True) for kind, f in FOLDERS.items() if f == folder
+            ]
         return tuple(found)
 
-    def at(self, file: str, line: int, column: int) -> Word | None:
-        """The word at that line and column, from 1; the shortest where several stand there."""
-        here = [w for w in self.words if w.place.file == file and w.text and covers(w.place, line, column)]
-        return min(here, key=lambda w: len(w.text), default=None)
+    def at(self, file: str, line: int, column: int) -> NameUse | None:
+        """The name at that line and column, from 1; the shortest where several stand there."""
+        here = [use for use in self.uses if use.place.file == file and use.text and covers(use.place, line, column)]
+        return min(here, key=lambda use: len(use.text), default=None)
 
-    def of(self, word: Word) -> list[Word]:
-        """All words of the same thing."""
-        return [other for other in self.words if other.thing == word.thing]
+    def of(self, use: NameUse) -> list[NameUse]:
+        """All uses of the same thing's name."""
+        return [other for other in self.uses if other.thing == use.thing]
 
-    def names(self, kind: Kind, scope: str = "") -> list[str]:
+    def names(self, kind: NameKind, scope: str = "") -> list[str]:
         """The names of all things of a kind, in the order of the files."""
-        return list(dict.fromkeys(w.name for w in self.words if w.kind is kind and w.scope == scope and w.defines))
+        return list(
+            dict.fromkeys(use.name for use in self.uses if use.kind is kind and use.scope == scope and use.defines)
+        )
 
     def behavior(self, file: str) -> str:
         """The behaviour that the names in a file are about: its own, or the one that a story plays."""
@@ -56,15 +60,15 @@ class Index:
 
 
 class _Reader:
-    """Finds the words of one document."""
+    """Finds the names in one document."""
 
-    def __init__(self, index: Index, document: Document) -> None:
+    def __init__(self, index: NameIndex, document: Document) -> None:
         self.document, self.kind = document, kind_of(document.file)
-        self.lines = Lines(document)
+        self.lines = DocumentText(document)
         self.scope = index.behavior(document.file)
         self.outline = index.outlines.get(self.scope)
 
-    def words(self) -> Iterator[Word]:
+    def uses(self) -> Iterator[NameUse]:
         for path, span in self.document.spans.items():
             if span.key and isinstance(path[-1], str) and (kind := key_kind(self.kind, path)):
                 yield from self.named(kind, path, key=True)
@@ -74,38 +78,38 @@ class _Reader:
             elif isinstance(value, str) and path[-1:] == ("id",) and path[-3:-2] == ("states",):
                 yield from self.alias(path, value)
 
-    def named(self, kind: Kind, path: NodePath, *, key: bool = False) -> Iterator[Word]:
-        """The word that a whole key or value is."""
+    def named(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[NameUse]:
+        """The name that a whole key or value is."""
         place = self.lines.scalar(path, key=key)
         text = str(path[-1]) if key else str(_value(self.document.data, path))
-        if place is None or kind is Kind.FIELD:
+        if place is None or kind is NameKind.FIELD:
             return
-        name = _state_at(path) if kind is Kind.STATE else text
-        yield self.word(kind, name, text, place, defining=defines(self.kind, path, kind))
+        name = _state_at(path) if kind is NameKind.STATE else text
+        yield self.use(kind, name, text, place, defining=defines(self.kind, path, kind))
 
-    def valued(self, kind: Kind, path: NodePath, value: str) -> Iterator[Word]:
+    def valued(self, kind: NameKind, path: NodePath, value: str) -> Iterator[NameUse]:
         match kind:
-            case Kind.EXPRESSION:
+            case NameKind.EXPRESSION:
                 yield from self.parts(path, value, in_expression(value))
-            case Kind.TEMPLATE:
+            case NameKind.TEMPLATE:
                 yield from self.parts(path, value, in_template(value))
-            case Kind.STATE:
+            case NameKind.STATE:
                 yield from self.target(path, value)
-            case Kind.FIELD:
+            case NameKind.FIELD:
                 route = value.partition(".")[0]
-                yield from self.parts(path, value, iter([Part(Kind.ROUTE, route, 0)]))
+                yield from self.parts(path, value, iter([NameInText(NameKind.ROUTE, route, 0)]))
             case _:
                 yield from self.named(kind, path)
 
-    def parts(self, path: NodePath, value: str, parts: Iterator[Part]) -> Iterator[Word]:
+    def parts(self, path: NodePath, value: str, parts: Iterator[NameInText]) -> Iterator[NameUse]:
         place = self.document.place(path)
         for part in parts:
-            if part.kind is Kind.STATE:
+            if part.kind is NameKind.STATE:
                 yield from self.segments(path, value, part.text, part.offset, self._named_state)
             elif here := self.lines.part(place, value, part.offset, len(part.text)):
-                yield self.word(part.kind, part.text, part.text, here)
+                yield self.use(part.kind, part.text, part.text, here)
 
-    def target(self, path: NodePath, value: str) -> Iterator[Word]:
+    def target(self, path: NodePath, value: str) -> Iterator[NameUse]:
         """A target, or a state as a story calls it: each step of a dotted one is a state's name."""
         if self.kind == "story":
             yield from self.segments(path, value, value, 0, self._named_state)
@@ -119,8 +123,8 @@ class _Reader:
                 found = lambda text: outline.resolve(source, written[:begin] + text, path)  # noqa: E731
                 yield from self.segments(path, value, written[begin:], begin + shift, found)
 
-    def segments(self, path: NodePath, value: str, dotted: str, offset: int, find: Any) -> Iterator[Word]:
-        """A word for each step of a dotted name that leads to a state; an id may hold dots itself."""
+    def segments(self, path: NodePath, value: str, dotted: str, offset: int, find: Any) -> Iterator[NameUse]:
+        """A name for each step of a dotted name that leads to a state; an id may hold dots itself."""
         place, done = self.document.place(path), 0
         steps = dotted.split(".")
         for i in range(1, len(steps) + 1):
@@ -131,19 +135,19 @@ class _Reader:
             at = offset + len(".".join(steps[:done])) + (done > 0)
             done = i
             if here := self.lines.part(place, value, at, len(text)):
-                yield self.word(Kind.STATE, entry.path, text, here)
+                yield self.use(NameKind.STATE, entry.path, text, here)
 
     def _named_state(self, name: str) -> OutlinedState | None:
         if self.outline is None:
             return None
         return self.outline.entries.get(name) or self.outline.aliases.get(name)
 
-    def alias(self, path: NodePath, value: str) -> Iterator[Word]:
+    def alias(self, path: NodePath, value: str) -> Iterator[NameUse]:
         if place := self.lines.scalar(path):
-            yield self.word(Kind.STATE, _state_at(path), value, place)
+            yield self.use(NameKind.STATE, _state_at(path), value, place)
 
-    def word(self, kind: Kind, name: str, text: str, place: Place, *, defining: bool = False) -> Word:
-        return Word(kind, self.scope if kind in SCOPED else "", name, text, place, defining)
+    def use(self, kind: NameKind, name: str, text: str, place: Place, *, defining: bool = False) -> NameUse:
+        return NameUse(kind, self.scope if kind in SCOPED else "", name, text, place, defining)
 
 
 def stem(file: str) -> str:

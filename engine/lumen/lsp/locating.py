@@ -1,4 +1,4 @@
-"""Words inside texts: the exact place of a part of a scalar, however it is quoted, folded or escaped."""
+"""Names inside texts: the exact place of a part of a scalar, however it is quoted, folded or escaped."""
 
 import re
 from bisect import bisect_right
@@ -9,21 +9,21 @@ from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.tokens import Token, tokenize
 from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.source import Document
-from lumen.lsp.words import Kind
+from lumen.lsp.names import NameKind
 
 _TEMPLATE = re.compile(r"\{\{(.*?)\}\}", re.DOTALL)
-_NAMED = {"heard": Kind.PHRASE, "lookup": Kind.ANSWERS, "In": Kind.STATE}
+_NAMED = {"heard": NameKind.PHRASE, "lookup": NameKind.ANSWERS, "In": NameKind.STATE}
 
 
-class Part(NamedTuple):
+class NameInText(NamedTuple):
     """A name within a text, with its offset in it."""
 
-    kind: Kind
+    kind: NameKind
     text: str
     offset: int
 
 
-class Lines:
+class DocumentText:
     """The text of a document by offsets and by lines."""
 
     def __init__(self, document: Document) -> None:
@@ -68,7 +68,7 @@ class Lines:
         return node
 
 
-def in_expression(source: str, base: int = 0) -> Iterator[Part]:
+def in_expression(source: str, base: int = 0) -> Iterator[NameInText]:
     """The context keys, phrases, tables and states that an expression names; nothing where it can't be read."""
     try:
         tokens = tokenize(source)
@@ -77,14 +77,14 @@ def in_expression(source: str, base: int = 0) -> Iterator[Part]:
     for i, token in enumerate(tokens):
         if token.text == "context" and _signs(tokens, i + 1, ".") and tokens[i + 2].kind == "name":
             key = tokens[i + 2]
-            yield Part(Kind.CONTEXT, key.text, base + key.offset)
+            yield NameInText(NameKind.CONTEXT, key.text, base + key.offset)
         elif token.kind == "name" and token.text in _NAMED and _signs(tokens, i + 1, "("):
             name = _last_text(tokens, i + 2)
             if name and isinstance(name.value, str):
-                yield Part(_NAMED[token.text], name.value, base + name.offset + 1)
+                yield NameInText(_NAMED[token.text], name.value, base + name.offset + 1)
 
 
-def in_template(text: str) -> Iterator[Part]:
+def in_template(text: str) -> Iterator[NameInText]:
     """The names in the `{{ expressions }}` of a text."""
     for found in _TEMPLATE.finditer(text):
         yield from in_expression(found[1], found.start(1))

@@ -7,21 +7,21 @@ from lsprotocol import types as lsp
 from pygls.workspace import PositionCodec
 
 from lumen.language.diagnostics import Place
-from lumen.rules.fixes import Sheet
+from lumen.rules.fixes import FileText
 
 
 class Ranges:
     """The places of one file in the units that the client counts columns in; by default UTF-16."""
 
-    def __init__(self, sheet: Sheet, codec: PositionCodec) -> None:
-        self._sheet, self._codec = sheet, codec
+    def __init__(self, text: FileText, codec: PositionCodec) -> None:
+        self._text, self._codec = text, codec
 
     def position(self, line: int, column: int) -> lsp.Position:
         """The protocol's position of a line and column; the end of the file where they lie beyond it."""
-        count = len(self._sheet.lines)
+        count = len(self._text.lines)
         if line > count:
-            line, column = count, len(self._sheet.line(count)) + 1
-        before = self._sheet.line(line)[: column - 1]
+            line, column = count, len(self._text.line(count)) + 1
+        before = self._text.line(line)[: column - 1]
         return lsp.Position(line - 1, self._codec.client_num_units(before))
 
     def range(self, place: Place) -> lsp.Range:
@@ -31,7 +31,7 @@ class Ranges:
 
     def place(self, position: lsp.Position) -> tuple[int, int]:
         """Line and column, from 1, of a position of the client's."""
-        text = self._sheet.line(position.line + 1)
+        text = self._text.line(position.line + 1)
         units, column = 0, 0
         while column < len(text) and units < position.character:
             units += self._codec.client_num_units(text[column])

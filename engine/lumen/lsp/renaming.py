@@ -6,21 +6,21 @@ from typing import NamedTuple
 from lumen.errors import UsageError
 from lumen.language.routes import MEANINGS
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.words import FOLDERS, SCOPED, Kind, Word
+from lumen.lsp.names import FOLDERS, SCOPED, NameKind, NameUse
 from lumen.rules.fixes import Edit, edited
 
 _NAMES = {
-    Kind.STATE: (r"[^\s.#*,\[\]{}:'\"]+", "without spaces, dots, `#` or `*`"),
-    Kind.CONTEXT: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`"),
-    Kind.PHRASE: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`"),
-    Kind.ANSWERS: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`"),
-    Kind.ROUTE: (r"[A-Za-z_][A-Za-z0-9_-]*", "made of letters, digits, `_` and `-`"),
-    Kind.EVENT: (r"[A-Za-z_][\w-]*(\.[\w-]+)*", "made of words with dots between them"),
-    Kind.POSE: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    Kind.MOTION: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    Kind.CONTROLLER: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    Kind.BEHAVIOR: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
-    Kind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
+    NameKind.STATE: (r"[^\s.#*,\[\]{}:'\"]+", "without spaces, dots, `#` or `*`"),
+    NameKind.CONTEXT: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`"),
+    NameKind.PHRASE: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`"),
+    NameKind.ANSWERS: (r"[A-Za-z_][A-Za-z0-9_]*", "made of letters, digits and `_`"),
+    NameKind.ROUTE: (r"[A-Za-z_][A-Za-z0-9_-]*", "made of letters, digits, `_` and `-`"),
+    NameKind.EVENT: (r"[A-Za-z_][\w-]*(\.[\w-]+)*", "made of words with dots between them"),
+    NameKind.POSE: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
+    NameKind.MOTION: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
+    NameKind.CONTROLLER: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
+    NameKind.BEHAVIOR: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
+    NameKind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
 }
 """The kinds that can be renamed, and what their names look like."""
 _RESERVED = re.compile(r"(?i:null|true|false|yes|no|on|off|y|n|~|any)|[\d.+-].*")
@@ -33,28 +33,28 @@ class Renaming(NamedTuple):
     moved: tuple[str, str] | None = None
 
 
-def renamable(analysis: Analysis, file: str, line: int, column: int) -> Word | None:
-    """The word at a line and column, from 1, where it can be renamed."""
-    word = analysis.index.at(file, line, column)
-    defined = word is not None and any(other.defines for other in analysis.index.of(word))
-    return word if word and word.kind in _NAMES and defined else None
+def renamable(analysis: Analysis, file: str, line: int, column: int) -> NameUse | None:
+    """The use of a name at a line and column, from 1, where it can be renamed."""
+    use = analysis.index.at(file, line, column)
+    defined = use is not None and any(other.defines for other in analysis.index.of(use))
+    return use if use and use.kind in _NAMES and defined else None
 
 
-def rename(analysis: Analysis, word: Word, name: str) -> Renaming:
-    """What gives a word's thing another name. Raises UsageError where it can't have that one.
+def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
+    """What gives the thing that is named there another name. Raises UsageError where it can't have that one.
 
-    A state keeps its `id` where that is another word than its key.
+    A state keeps its `id` where that is another name than its key.
     """
-    pattern, look = _NAMES[word.kind]
+    pattern, look = _NAMES[use.kind]
     if not re.fullmatch(pattern, name) or _RESERVED.fullmatch(name):
-        raise UsageError(f"`{name}` can't be the name of a {word.kind}: it has to be {look}")
-    if word.kind is Kind.ROUTE and word.name in MEANINGS:
-        raise UsageError(f"the route `{word.name}` means something to Lumen itself: {MEANINGS[word.name]}")
-    if _taken(analysis, word, name):
-        raise UsageError(f"there is a {word.kind} `{name}` already")
-    words = [w for w in analysis.index.of(word) if w.text == word.text]
-    edits = tuple(Edit(w.place, name) for w in words)
-    return _sound(analysis, Renaming(edits, _moved(analysis, word, name)))
+        raise UsageError(f"`{name}` can't be the name of a {use.kind}: it has to be {look}")
+    if use.kind is NameKind.ROUTE and use.name in MEANINGS:
+        raise UsageError(f"the route `{use.name}` means something to Lumen itself: {MEANINGS[use.name]}")
+    if _taken(analysis, use, name):
+        raise UsageError(f"there is a {use.kind} `{name}` already")
+    uses = [other for other in analysis.index.of(use) if other.text == use.text]
+    edits = tuple(Edit(other.place, name) for other in uses)
+    return _sound(analysis, Renaming(edits, _moved(analysis, use, name)))
 
 
 def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
@@ -78,17 +78,17 @@ def _sound(analysis: Analysis, renaming: Renaming) -> Renaming:
     return renaming
 
 
-def _taken(analysis: Analysis, word: Word, name: str) -> bool:
-    scope = word.scope if word.kind in SCOPED else ""
-    if word.kind is Kind.STATE:
+def _taken(analysis: Analysis, use: NameUse, name: str) -> bool:
+    scope = use.scope if use.kind in SCOPED else ""
+    if use.kind is NameKind.STATE:
         tree = analysis.index.outlines.get(scope)
-        beside = f"{word.name.rpartition('.')[0]}.{name}".lstrip(".")
+        beside = f"{use.name.rpartition('.')[0]}.{name}".lstrip(".")
         return tree is not None and (beside in tree.entries or name in tree.aliases)
-    return name in analysis.index.names(word.kind, scope)
+    return name in analysis.index.names(use.kind, scope)
 
 
-def _moved(analysis: Analysis, word: Word, name: str) -> tuple[str, str] | None:
-    if word.kind not in FOLDERS:
+def _moved(analysis: Analysis, use: NameUse, name: str) -> tuple[str, str] | None:
+    if use.kind not in FOLDERS:
         return None
-    old = f"{FOLDERS[word.kind]}/{word.name}.yaml"
-    return (old, f"{FOLDERS[word.kind]}/{name}.yaml") if old in analysis.files else None
+    old = f"{FOLDERS[use.kind]}/{use.name}.yaml"
+    return (old, f"{FOLDERS[use.kind]}/{name}.yaml") if old in analysis.files else None

@@ -6,14 +6,14 @@ from lumen.language.diagnostics import Place
 from lumen.loading.source import Document
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import defines, key_kind, kind_of
-from lumen.lsp.words import Kind
+from lumen.lsp.names import NameKind
 
 
 class Symbol(NamedTuple):
     """A thing that is made known: `place` of its name, `whole` with all that is said of it."""
 
     name: str
-    kind: Kind
+    kind: NameKind
     place: Place
     whole: Place
     children: tuple["Symbol", ...] = ()

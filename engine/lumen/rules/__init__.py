@@ -27,8 +27,8 @@ from lumen.rules import (
     traps,
     units,
     unused,
-    ways,
 )
+from lumen.rules import dead_ends as ways
 from lumen.rules.ignores import obey
 
 FAMILIES = (

@@ -7,7 +7,7 @@ from lumen.language.controllers import ControllerDefinition, InputBinding, Outpu
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.recollection import memoize
+from lumen.loading.memoization import memoize
 from lumen.loading.source import DocumentReport
 from lumen.rules import aims, rulebooks, shapes, surfaces
 from lumen.rules.finding import find
@@ -35,7 +35,7 @@ def _sense(controller: ControllerDefinition, report: DocumentReport, draft: Proj
     shapes.check(controller, report)
     aims.check(controller, report, draft)
     given = draft.files[f"fuzzy/{name}.yaml"]
-    surfaces.check(controller, report, memoize(("surface", name), given, lambda: surfaces.look(controller)))
+    surfaces.check(controller, report, memoize(("surface", name), given, lambda: surfaces.sample_surface(controller)))
 
 
 def _input(draft: ProjectDraft, report: DocumentReport, binding: InputBinding) -> None:

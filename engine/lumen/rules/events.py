@@ -11,7 +11,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.endings import ending_fault
 from lumen.rules.finding import find, first
-from lumen.rules.walk import sites
+from lumen.rules.walk import action_sites
 
 FAMILIES = (
     "done.state.", "done.do.", "done.invoke.", "done.command.", "error.do.", "error.invoke.", "error.command.",
@@ -136,7 +136,7 @@ def _descriptor(where: NodePath, event: str) -> NodePath:
 
 def _raised(machine: MachineDefinition, report: DocumentReport) -> None:
     waited = set(descriptors(machine))
-    for site in sites(machine):
+    for site in action_sites(machine):
         match site.step.action:
             case Raise(event=event) | Send(event=event) if not any(hears(d, event) for d in waited):
                 verb = "raise" if isinstance(site.step.action, Raise) else "send"

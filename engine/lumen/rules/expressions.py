@@ -14,7 +14,7 @@ from lumen.loading.expressions import cause_of, place_within
 from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 from lumen.rules.events import declared, hears, outcome, raised
-from lumen.rules.walk import Spot, spots
+from lumen.rules.walk import ExpressionSite, expression_sites
 
 BOOLEAN: Mapping[str, Any] = {"type": "boolean"}
 
@@ -40,11 +40,11 @@ class _Expressions:
         self.states = {n for state in machine.states.values() for n in (state.path, state.alias) if n}
 
     def check(self) -> None:
-        for spot in spots(self.machine):
+        for spot in expression_sites(self.machine):
             for finding in self.findings(spot):
                 self.say(spot, finding)
 
-    def findings(self, spot: Spot) -> list[ExpressionFinding]:
+    def findings(self, spot: ExpressionSite) -> list[ExpressionFinding]:
         around: dict[str, Any] = {
             "context": self.context,
             "events": self.possible(spot.transition),
@@ -65,7 +65,7 @@ class _Expressions:
             return outcome(self.machine, transition)
         return {name: schema for name, schema in self.events.items() if hears(transition.event, name)} or None
 
-    def declared(self, spot: Spot, part: str, finding: ExpressionFinding) -> Iterator[Related]:
+    def declared(self, spot: ExpressionSite, part: str, finding: ExpressionFinding) -> Iterator[Related]:
         """Where the context keys stand whose types don't fit."""
         if finding.code == "type-mismatch":
             keys = [*re.findall(r"\bcontext\.(\w+)", part), *([spot.key] if spot.key else [])]
@@ -80,7 +80,7 @@ class _Expressions:
         alone = key and self.machine.context[key] is None and key not in self.machine.types
         return f"{self.report.document.file} null {key}" if alone else ""
 
-    def say(self, spot: Spot, finding: ExpressionFinding) -> None:
+    def say(self, spot: ExpressionSite, finding: ExpressionFinding) -> None:
         source = spot.text.text if isinstance(spot.text, Template) else spot.text.source
         place = place_within(self.report.document, spot.text.where, source, finding.offset, finding.length)
         severity = CODES[finding.code].severity

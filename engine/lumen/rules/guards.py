@@ -13,13 +13,13 @@ from lumen.loading.source import DocumentReport
 from lumen.rules.events import hears
 from lumen.rules.finding import find
 from lumen.rules.logic import always, implies, never, tree
-from lumen.rules.walk import spots
+from lumen.rules.walk import expression_sites
 
 MOST = 60
 """Candidates of a state that are compared with one another."""
 
 
-class Heard(NamedTuple):
+class HeardCall(NamedTuple):
     """`heard(text, name)` as a whole guard."""
 
     text: ExpressionNode
@@ -30,7 +30,7 @@ def check(draft: ProjectDraft) -> None:
     """Report guards whose answer is known, and candidates that come too late."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
-        for guard in dict.fromkeys(spot.text for spot in spots(machine) if spot.guard):
+        for guard in dict.fromkeys(spot.text for spot in expression_sites(machine) if spot.guard):
             if isinstance(guard, Expression) and not _told(report, guard.where):
                 _constant(guard, report)
         for state in machine.states.values():
@@ -110,14 +110,14 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
     return False
 
 
-def _heard(node: ExpressionNode) -> Heard | None:
+def _heard(node: ExpressionNode) -> HeardCall | None:
     match node:
         case FunctionCall(function="heard", arguments=(text, Literal(value=str() as name))):
-            return Heard(text, name)
+            return HeardCall(text, name)
     return None
 
 
-def _taken(first: Heard, second: Heard, phrases: Mapping[str, Mapping[str, tuple[str, ...]]]) -> Iterator[str]:
+def _taken(first: HeardCall, second: HeardCall, phrases: Mapping[str, Mapping[str, tuple[str, ...]]]) -> Iterator[str]:
     """The phrases of the second in which one of the first is heard, and which are not the first's own as well."""
     if first.text != second.text or first.name not in phrases or second.name not in phrases:
         return

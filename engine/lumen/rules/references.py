@@ -8,7 +8,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 from lumen.rules.finding import References, find, first
-from lumen.rules.walk import Site, sites
+from lumen.rules.walk import ActionSite, action_sites
 
 
 def check(draft: ProjectDraft) -> None:
@@ -17,7 +17,7 @@ def check(draft: ProjectDraft) -> None:
     _main(draft, references)
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
-        for site in sites(machine):
+        for site in action_sites(machine):
             _action(draft, report, references, site)
 
 
@@ -71,7 +71,7 @@ def _model_file(draft: ProjectDraft, report: DocumentReport, path: NodePath, nam
         find(report, "missing-file", path, f"there is no file models/{name}", did_you_mean(name, there, "models/ has"))
 
 
-def _action(draft: ProjectDraft, report: DocumentReport, references: References, site: Site) -> None:
+def _action(draft: ProjectDraft, report: DocumentReport, references: References, site: ActionSite) -> None:
     where = site.step.where
     match site.step.action:
         case Play(name):

@@ -9,8 +9,8 @@ from lumen.language.diagnostics import Diagnostic, Severity, has_errors
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.fixes import Edit, Fix, edited, fixes
 
-Files = Mapping[str, bytes]
-Check = Callable[[Files], Sequence[Diagnostic]]
+FileContents = Mapping[str, bytes]
+FileLinter = Callable[[FileContents], Sequence[Diagnostic]]
 
 _HIDING = frozenset(("tab", "yaml-syntax", "duplicate-key"))
 """What hides the rest of a file: repaired, it may show more."""
@@ -26,7 +26,9 @@ class Repair(NamedTuple):
     fix: Fix
 
 
-def repaired(files: Files, check: Check, wanted: Callable[[Diagnostic], bool]) -> tuple[Files, list[Repair]]:
+def repaired(
+    files: FileContents, check: FileLinter, wanted: Callable[[Diagnostic], bool]
+) -> tuple[FileContents, list[Repair]]:
     """The files with every fix of a wanted finding that leaves them better, and what was done.
 
     Better is: the finding is gone and none has come. All at once where that goes well, else by halves.
@@ -49,14 +51,16 @@ def repaired(files: Files, check: Check, wanted: Callable[[Diagnostic], bool]) -
     return files, done
 
 
-def _steps(found: Sequence[Diagnostic], files: Files, wanted: Callable[[Diagnostic], bool]) -> list[list[Repair]]:
+def _steps(
+    found: Sequence[Diagnostic], files: FileContents, wanted: Callable[[Diagnostic], bool]
+) -> list[list[Repair]]:
     """What to try, the last one first: the likeliest fix of each finding together, then the others one by one."""
     proposals = [(d, fixes(d, files)) for d in found if wanted(d)]
     others = [[Repair(d, fix)] for d, proposed in proposals for fix in proposed[1:]]
     return [*reversed(others), [Repair(d, proposed[0]) for d, proposed in proposals if proposed]]
 
 
-def applied(files: Files, repairs: Iterable[Repair]) -> dict[str, bytes]:
+def applied(files: FileContents, repairs: Iterable[Repair]) -> dict[str, bytes]:
     """The files with the edits of these repairs."""
     edits: dict[str, list[Edit]] = {}
     for repair in repairs:

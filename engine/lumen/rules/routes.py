@@ -22,7 +22,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.events import descriptors, hears
 from lumen.rules.finding import References, find
-from lumen.rules.walk import sites
+from lumen.rules.walk import action_sites
 
 PREFIXES = ("avatar", "lumen")
 MAX_BYTES = 255
@@ -100,7 +100,7 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
     if has_errors(draft.diagnostics):
         return
     for behavior, machine in draft.behaviors.items():
-        tracks = any(isinstance(site.step.action, Track) for site in sites(machine))
+        tracks = any(isinstance(site.step.action, Track) for site in action_sites(machine))
         waits = any(d != "*" and hears(d, HEARD) for d in descriptors(machine))
         for name, needed, what in ((JOINT, tracks, "uses `track`"), (HEARD, waits, "waits for `heard`")):
             if needed and name not in routes and name not in report.lost:

@@ -17,7 +17,7 @@ EPSILON = 0.01
 
 POINTS = 129
 
-Row = tuple[Term, list[float]]
+SampledTerm = tuple[Term, list[float]]
 
 
 def check(controller: ControllerDefinition, report: DocumentReport) -> None:
@@ -39,7 +39,7 @@ def _memberships(term: Term, xs: list[float]) -> list[float]:
     return [float(shape(x)) for x in xs]
 
 
-def _order(variable: Variable, rows: list[Row], xs: list[float], report: DocumentReport) -> None:
+def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report: DocumentReport) -> None:
     """Report each term that stands on the wrong side of the one before it by name."""
     places = {term.name: _top(degrees, xs) for term, degrees in rows}
     places |= {term.name: term.parameters[0] for term in variable.terms.values() if term.kind == VALUES[0]}
@@ -63,7 +63,7 @@ def _top(degrees: list[float], xs: list[float]) -> float:
     return sum(tops) / len(tops)
 
 
-def _reached(variable: Variable, row: Row, report: DocumentReport) -> bool:
+def _reached(variable: Variable, row: SampledTerm, report: DocumentReport) -> bool:
     term, degrees = row
     inside = [x for x in term.parameters if variable.minimum <= x <= variable.maximum]
     if max(degrees) > 0.0 or max(_memberships(term, inside), default=0.0) > 0.0:
@@ -74,7 +74,7 @@ def _reached(variable: Variable, row: Row, report: DocumentReport) -> bool:
     return False
 
 
-def _gaps(variable: Variable, rows: list[Row], xs: list[float], report: DocumentReport) -> None:
+def _gaps(variable: Variable, rows: list[SampledTerm], xs: list[float], report: DocumentReport) -> None:
     """Report where no term of an input is true, though terms lie around it or end before its range does."""
     whole = [max(degrees) for degrees in zip(*(degrees for _, degrees in rows), strict=True)]
     for first, last in _runs([degree < EPSILON for degree in whole]):
@@ -86,7 +86,7 @@ def _gaps(variable: Variable, rows: list[Row], xs: list[float], report: Document
         find(report, "coverage-gap", (*variable.where, "range"), message, hint)
 
 
-def _narrow(rows: list[Row]) -> bool:
+def _narrow(rows: list[SampledTerm]) -> bool:
     """Whether a term may slip between two points of the grid."""
     return any(sum(degree > EPSILON for degree in degrees) < 2 for _, degrees in rows)
 

@@ -12,7 +12,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 from lumen.rules.finding import find, value_at
-from lumen.rules.walk import sites
+from lumen.rules.walk import action_sites
 
 FEW = 4
 """With fewer texts it is the texts that lack a language; with more it is the language that has none."""
@@ -74,7 +74,7 @@ def _silent(draft: ProjectDraft, languages: tuple[str, ...]) -> dict[str, tuple[
 
 def _spoken(machine: MachineDefinition) -> Iterator[NodePath]:
     """Where texts stand that the machine says or answers."""
-    yield from ((*s.step.where, "say") for s in sites(machine) if isinstance(s.step.action, SayText))
+    yield from ((*s.step.where, "say") for s in action_sites(machine) if isinstance(s.step.action, SayText))
     for table, rows in machine.answers.items():
         yield from (("answers", table, i, "value") for i, row in enumerate(rows) if isinstance(row.value, Mapping))
 
@@ -89,7 +89,7 @@ class _Speech:
         self.languages, self.lost = languages, set(lost)
 
     def behavior(self, machine: MachineDefinition, report: DocumentReport) -> None:
-        for site in sites(machine):
+        for site in action_sites(machine):
             match site.step.action:
                 case SayText(texts):
                     self.texts(report, (*site.step.where, "say"), texts)

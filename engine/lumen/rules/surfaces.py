@@ -23,7 +23,7 @@ CORNERS = 5, 400
 """Points of each input's range, and how many combinations are asked at most."""
 
 
-class Look(NamedTuple):
+class SurfaceSamples(NamedTuple):
     """All that was seen of a controller's surface."""
 
     slices: list[Slice]
@@ -34,7 +34,7 @@ class Look(NamedTuple):
     off: dict[str, float]
 
 
-def look(controller: ControllerDefinition) -> Look:
+def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
     """The surface of a controller."""
     survey = Survey(controller)
     slices = list(survey.slices())
@@ -49,7 +49,7 @@ def look(controller: ControllerDefinition) -> Look:
         found = next((point for point, outputs in _all(slices, corners, survey.rest, name) if isnan(outputs)), None)
         if found is not None:
             silent[name] = found
-    return Look(slices, steps, survey.at({}), reach, silent, _off(controller, slices))
+    return SurfaceSamples(slices, steps, survey.at({}), reach, silent, _off(controller, slices))
 
 
 def _corners(controller: ControllerDefinition) -> Iterator[dict[str, float]]:
@@ -96,7 +96,7 @@ def _finer(controller: ControllerDefinition) -> ControllerDefinition:
     return replace(controller, outputs=outputs)
 
 
-def check(controller: ControllerDefinition, report: DocumentReport, seen: Look) -> None:
+def check(controller: ControllerDefinition, report: DocumentReport, seen: SurfaceSamples) -> None:
     """Report what the surface has that it should not: silence, steps, turns, a value at rest, an unused range."""
     for variable in controller.outputs.values():
         _silence(controller, variable, report, seen)
@@ -114,7 +114,9 @@ def check(controller: ControllerDefinition, report: DocumentReport, seen: Look) 
             _rests(controller, found, report, seen)
 
 
-def _silence(controller: ControllerDefinition, variable: Variable, report: DocumentReport, seen: Look) -> None:
+def _silence(
+    controller: ControllerDefinition, variable: Variable, report: DocumentReport, seen: SurfaceSamples
+) -> None:
     point = seen.silent.get(variable.name)
     if point is not None and variable.default is None:
         where = ", ".join(f"{name} = {x:.4g}" for name, x in point.items() if name in asked(controller, variable.name))
@@ -123,7 +125,9 @@ def _silence(controller: ControllerDefinition, variable: Variable, report: Docum
         find(report, "no-default", variable.where, message, "write `default: 0`, or cover it by rules", key=True)
 
 
-def _reached(controller: ControllerDefinition, variable: Variable, report: DocumentReport, seen: Look) -> None:
+def _reached(
+    controller: ControllerDefinition, variable: Variable, report: DocumentReport, seen: SurfaceSamples
+) -> None:
     concluded = {c.term for rule in controller.rules for c in rule.consequents if c.variable == variable.name}
     low, high = seen.reach[variable.name]
     width = variable.maximum - variable.minimum
@@ -137,7 +141,7 @@ def _reached(controller: ControllerDefinition, variable: Variable, report: Docum
         find(report, "attainable-range", where, message, "move its terms outwards, or narrow the range")
 
 
-def _coarse(variable: Variable, report: DocumentReport, seen: Look) -> None:
+def _coarse(variable: Variable, report: DocumentReport, seen: SurfaceSamples) -> None:
     off = seen.off.get(variable.name, 0.0)
     if variable.accuracy is not None and off > variable.accuracy:
         message = (
@@ -186,7 +190,7 @@ def _height(point: tuple[float, float]) -> float:
     return point[1]
 
 
-def _rests(controller: ControllerDefinition, found: Slice, report: DocumentReport, seen: Look) -> None:
+def _rests(controller: ControllerDefinition, found: Slice, report: DocumentReport, seen: SurfaceSamples) -> None:
     output, variable = controller.outputs[found.output], controller.inputs[found.input]
     value = seen.rest[output.name]
     if abs(value) > REST * (output.maximum - output.minimum) and output.minimum <= 0.0 <= output.maximum:

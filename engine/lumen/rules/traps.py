@@ -9,7 +9,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find, value_at
-from lumen.rules.walk import sites
+from lumen.rules.walk import action_sites
 
 _TRUTHS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
 _TRUTH = re.compile(r"(?i)(?<=[:,\[-] )(yes|no|on|off|y|n)(?=\s|[,}\]]|$)", re.MULTILINE)
@@ -74,7 +74,7 @@ def _quotes(report: DocumentReport, path: NodePath, source: str, value: object) 
 
 def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
     """Texts that are said with the name of a value in place of the value."""
-    for site in sites(machine):
+    for site in action_sites(machine):
         if isinstance(site.step.action, SayText):
             for template in (t for said in site.step.action.texts.values() for t in said):
                 if found := _HALF.search(template.text) or _BARE.fullmatch(template.text):

@@ -13,7 +13,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, LENGTHS
 from lumen.rules.finding import find, value_at
-from lumen.rules.walk import sites
+from lumen.rules.walk import action_sites
 
 FAR = 20.0
 """No walk at an exhibition is longer [m]."""
@@ -70,7 +70,7 @@ def _angles(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
 def _actions(machine: MachineDefinition, report: DocumentReport, body: Body | None, stage: Stage | None) -> None:
     units = value_at(report, ("units",)) or {}
     angle, length = units.get("angle", "rad"), units.get("length", "m")
-    for site in sites(machine):
+    for site in action_sites(machine):
         where = site.step.where
         match site.step.action:
             case Look(yaw, pitch):

@@ -13,7 +13,7 @@ from lumen.loading.source import DocumentReport
 from lumen.rules.codes import FAMILIES as CODES_OF
 from lumen.rules.events import descriptors, hears
 from lumen.rules.finding import find
-from lumen.rules.walk import sites
+from lumen.rules.walk import action_sites
 
 _DECLARED = ("context", "types", "phrases", "events", "answers", "description", "units", "renamed")
 _FIELD = re.compile(r"context\s*(?:\.\s*(\w+)|\[\s*['\"]([^'\"]+)['\"])")
@@ -54,7 +54,7 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
 
 
 def _context(machine: MachineDefinition, report: DocumentReport, read: set[str]) -> None:
-    written = {key for site in sites(machine) for key in getattr(site.step.action, "values", ())}
+    written = {key for site in action_sites(machine) for key in getattr(site.step.action, "values", ())}
     for key in machine.context:
         if key not in read:
             hint = "use it in an expression, or delete it"
@@ -84,7 +84,7 @@ def _expected(draft: ProjectDraft, name: str) -> set[str]:
 def _files(draft: ProjectDraft) -> None:
     """Files that nothing names."""
     assert draft.settings is not None
-    actions = [site.step.action for machine in draft.behaviors.values() for site in sites(machine)]
+    actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
     expected = {
         s.action.played for story in draft.stories.values() for s in story.steps if isinstance(s.action, Expect)
     }

@@ -21,7 +21,7 @@ from lumen.language.actions import (
 from lumen.language.machines import Invoke, MachineDefinition, State, Transition
 
 
-class Site(NamedTuple):
+class ActionSite(NamedTuple):
     """An action in its state; `transition` is the one it belongs to, None for `entry`, `do` and `exit`."""
 
     state: State
@@ -29,7 +29,7 @@ class Site(NamedTuple):
     step: PlacedAction
 
 
-class Spot(NamedTuple):
+class ExpressionSite(NamedTuple):
     """An expression or template; `key` is the context key that its value goes to, `guard` whether it is a condition.
 
     `expected` is the JSON Schema that its value has to fit, where neither says so.
@@ -42,34 +42,34 @@ class Spot(NamedTuple):
     expected: Mapping[str, Any] | None = None
 
 
-def sites(machine: MachineDefinition) -> Iterator[Site]:
+def action_sites(machine: MachineDefinition) -> Iterator[ActionSite]:
     """All actions, those inside `if` and `parallel` too, in the order of the file."""
     for state in machine.states.values():
         for block in (state.entry, state.do, state.exit):
-            yield from (Site(state, None, step) for step in nested(block))
+            yield from (ActionSite(state, None, step) for step in nested(block))
         for transition in state.transitions:
-            yield from (Site(state, transition, step) for step in nested(transition.actions))
+            yield from (ActionSite(state, transition, step) for step in nested(transition.actions))
 
 
-def spots(machine: MachineDefinition) -> Iterator[Spot]:
+def expression_sites(machine: MachineDefinition) -> Iterator[ExpressionSite]:
     """All expressions and templates."""
     for state in machine.states.values():
-        yield from (Spot(text, None) for text in _values(state.output))
+        yield from (ExpressionSite(text, None) for text in _values(state.output))
         for invoke in state.invoke:
             yield from _input(invoke, machine.invoked.get(invoke.behavior))
         for transition in state.transitions:
             if transition.guard:
-                yield Spot(transition.guard, transition, guard=True)
-    for site in sites(machine):
+                yield ExpressionSite(transition.guard, transition, guard=True)
+    for site in action_sites(machine):
         yield from _spots(site)
 
 
-def _input(invoke: Invoke, machine: MachineDefinition | None) -> Iterator[Spot]:
+def _input(invoke: Invoke, machine: MachineDefinition | None) -> Iterator[ExpressionSite]:
     for key, value in invoke.input.items():
         if isinstance(value, Expression) and machine and key in machine.context:
-            yield Spot(value, None, expected=machine.types.get(key, schema_of(machine.context[key])))
+            yield ExpressionSite(value, None, expected=machine.types.get(key, schema_of(machine.context[key])))
         else:
-            yield from (Spot(text, None) for text in _values(value))
+            yield from (ExpressionSite(text, None) for text in _values(value))
 
 
 def nested(block: tuple[PlacedAction, ...]) -> Iterator[PlacedAction]:
@@ -84,23 +84,23 @@ def nested(block: tuple[PlacedAction, ...]) -> Iterator[PlacedAction]:
                 yield from nested(branches)
 
 
-def _spots(site: Site) -> Iterator[Spot]:
+def _spots(site: ActionSite) -> Iterator[ExpressionSite]:
     transition = site.transition
     match site.step.action:
         case If(guard=guard):
-            yield Spot(guard, transition, guard=True)
+            yield ExpressionSite(guard, transition, guard=True)
         case Assign(values):
             for key, value in values.items():
                 if isinstance(value, Expression):
-                    yield Spot(value, transition, key=key)
+                    yield ExpressionSite(value, transition, key=key)
                 else:
-                    yield from (Spot(text, transition) for text in _values(value))
+                    yield from (ExpressionSite(text, transition) for text in _values(value))
         case SayText(texts):
-            yield from (Spot(text, transition) for said in texts.values() for text in said)
+            yield from (ExpressionSite(text, transition) for said in texts.values() for text in said)
         case LogText(text):
-            yield Spot(text, transition)
+            yield ExpressionSite(text, transition)
         case PublishBody(body=value) | Raise(data=value) | Send(data=value):
-            yield from (Spot(text, transition) for text in _values(value))
+            yield from (ExpressionSite(text, transition) for text in _values(value))
 
 
 def _values(value: ComputedValue) -> Iterator[Expression]:

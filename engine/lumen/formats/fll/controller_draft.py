@@ -10,7 +10,7 @@ from lumen.formats.fll.fuzzylite_names import plain
 from lumen.formats.fll.rule_text import rule_text
 from lumen.language.controllers import TERMS
 from lumen.language.diagnostics import Place
-from lumen.loading.rules import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
+from lumen.loading.rule_parser import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
 
 _UNFIT = re.compile(r"[^A-Za-z0-9_\-]+")
 _ENDLESS = ("triangle", "trapezoid", "binary", "rectangle")

@@ -13,7 +13,7 @@ from lumen.formats.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES,
 from lumen.formats.fll.infix_formulas import read_formula
 from lumen.language.controllers import ACTIVATIONS, S_NORMS, T_NORMS, WEIGHTED
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.loading.rules import RuleWord
+from lumen.loading.rule_parser import RuleWord
 
 _SIDES = {"InputVariable": "inputs", "OutputVariable": "outputs"}
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}

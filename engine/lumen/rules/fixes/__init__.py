@@ -8,13 +8,13 @@ from collections.abc import Callable, Mapping
 
 from lumen.language.diagnostics import Diagnostic
 from lumen.rules.codes import FAMILIES
-from lumen.rules.fixes.edits import Edit, Fix, Sheet, edited
+from lumen.rules.fixes.edits import Edit, FileText, Fix, edited
 from lumen.rules.fixes.lines import fewer_ignores, once, spaces
-from lumen.rules.fixes.words import filled_in, outnumbered, point, slip, straight_quotes
+from lumen.rules.fixes.misspellings import filled_in, outnumbered, point, slip, straight_quotes
 
-__all__ = ["Edit", "Fix", "Sheet", "edited", "fixes"]
+__all__ = ["Edit", "FileText", "Fix", "edited", "fixes"]
 
-_FIXERS: Mapping[str, Callable[[Diagnostic, Sheet], list[Fix]]] = {
+_FIXERS: Mapping[str, Callable[[Diagnostic, FileText], list[Fix]]] = {
     "curly-quotes": straight_quotes,
     "decimal-comma": point,
     "duplicate-key": once,
@@ -32,8 +32,8 @@ def fixes(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> list[Fix]:
     fixer = _FIXERS.get(diagnostic.code) or (slip if diagnostic.code.startswith(("unknown-", "wrong-")) else None)
     if content is None or fixer is None:
         return []
-    sheet = Sheet(diagnostic.place.file, content)
-    proposed = fixer(diagnostic, sheet)
+    source = FileText(diagnostic.place.file, content)
+    proposed = fixer(diagnostic, source)
     if fixer is not slip or diagnostic.code in FAMILIES["shape"]:
         return proposed
-    return [fix for fix in proposed for edit in fix.edits if not outnumbered(sheet.at(edit.place), edit.text, files)]
+    return [fix for fix in proposed for edit in fix.edits if not outnumbered(source.at(edit.place), edit.text, files)]

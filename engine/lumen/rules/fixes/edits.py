@@ -24,7 +24,7 @@ class Fix(NamedTuple):
     edits: tuple[Edit, ...]
 
 
-class Sheet:
+class FileText:
     """The text of a file by its lines, as places count them."""
 
     def __init__(self, file: str, content: bytes) -> None:
@@ -56,10 +56,10 @@ class Sheet:
 
 def edited(content: bytes, edits: Sequence[Edit]) -> bytes:
     """The file after these edits; of two that overlap the first one counts."""
-    sheet = Sheet("", content)
-    spans = [(sheet.offset(*e.place[1:3]), sheet.offset(*e.place[3:5]), e.text) for e in dict.fromkeys(edits)]
-    text, done = sheet.text, len(sheet.text) + 1
+    source = FileText("", content)
+    spans = [(source.offset(*e.place[1:3]), source.offset(*e.place[3:5]), e.text) for e in dict.fromkeys(edits)]
+    text, done = source.text, len(source.text) + 1
     for start, end, new in sorted(spans, reverse=True):
         if end <= done and not (end == done and start == end):
             text, done = text[:start] + new + text[end:], start
-    return (_BOM if sheet.bom else b"") + text.encode("utf-8", "surrogatepass")
+    return (_BOM if source.bom else b"") + text.encode("utf-8", "surrogatepass")

@@ -3,39 +3,39 @@
 import re
 
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.rules.fixes.edits import Edit, Fix, Sheet
+from lumen.rules.fixes.edits import Edit, FileText, Fix
 
 _INDENT = re.compile(r"^[ \t]*\t[ \t]*")
 _COMMENT = re.compile(r"[ \t]*#[ \t]*lumen:[ \t]*ignore.*")
 
 
-def spaces(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+def spaces(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
     """Tabs in the indentation of the file as two, four or eight spaces each."""
-    lines = [(n, m) for n, line in enumerate(sheet.lines, 1) if (m := _INDENT.match(line))]
+    lines = [(n, m) for n, line in enumerate(source.lines, 1) if (m := _INDENT.match(line))]
     return [
         Fix(
             f"write {wide} spaces for each tab",
-            tuple(Edit(Place(sheet.file, n, 1, n, m.end() + 1), m[0].replace("\t", " " * wide)) for n, m in lines),
+            tuple(Edit(Place(source.file, n, 1, n, m.end() + 1), m[0].replace("\t", " " * wide)) for n, m in lines),
         )
         for wide in (2, 4, 8)
     ]
 
 
-def once(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+def once(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
     """One of two lines that say the same, the one without a comment where one has one."""
     number = diagnostic.place.line
-    line = sheet.line(number)
-    if line[: diagnostic.place.column - 1].strip() or _deeper(sheet, number):
+    line = source.line(number)
+    if line[: diagnostic.place.column - 1].strip() or _deeper(source, number):
         return []
     said = _said(line)
-    first = next((n for n in range(number - 1, 0, -1) if _said(sheet.line(n)) == said and not _deeper(sheet, n)), 0)
+    first = next((n for n in range(number - 1, 0, -1) if _said(source.line(n)) == said and not _deeper(source, n)), 0)
     if not first:
         return []
-    comments = [sheet.line(n)[len(said) :].strip() for n in (first, number)]
+    comments = [source.line(n)[len(said) :].strip() for n in (first, number)]
     if all(comments) and comments[0] != comments[1]:
         return []
     doomed = first if comments[1] and not comments[0] else number
-    return [Fix("delete one of the two", (Edit(sheet.whole(doomed), ""),))]
+    return [Fix("delete one of the two", (Edit(source.whole(doomed), ""),))]
 
 
 def _said(line: str) -> str:
@@ -44,29 +44,29 @@ def _said(line: str) -> str:
     return before.rstrip() if "'" not in before and '"' not in before else line
 
 
-def _deeper(sheet: Sheet, number: int) -> bool:
+def _deeper(source: FileText, number: int) -> bool:
     """Whether what is in that line goes on below it."""
 
     def depth(line: str) -> int:
         return len(line) - len(line.lstrip())
 
-    rest = (line for line in sheet.lines[number:] if line.strip() and not line.lstrip().startswith("#"))
+    rest = (line for line in source.lines[number:] if line.strip() and not line.lstrip().startswith("#"))
     below = next(rest, "")
-    return bool(below) and (depth(below) > depth(sheet.line(number)) or below.lstrip().startswith("- "))
+    return bool(below) and (depth(below) > depth(source.line(number)) or below.lstrip().startswith("- "))
 
 
-def fewer_ignores(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+def fewer_ignores(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
     """An ignore comment without one of its codes, or without it where it has one."""
-    place, line = diagnostic.place, sheet.line(diagnostic.place.line)
+    place, line = diagnostic.place, source.line(diagnostic.place.line)
     comment = next((m for m in _COMMENT.finditer(line) if m.start() < place.column - 1), None)
     if comment is None:
         return []
     codes = line[line.find("[", comment.start()) + 1 : line.find("]", comment.start())]
-    if left := [code for code in re.findall(r"[^,\s]+", codes) if code != sheet.at(place)]:
+    if left := [code for code in re.findall(r"[^,\s]+", codes) if code != source.at(place)]:
         start = line.find("[", comment.start()) + 2
         spot = place._replace(column=start, end_column=start + len(codes))
         return [Fix(f"ignore {', '.join(left)} only", (Edit(spot, ", ".join(left)),))]
     if not line[: comment.start()].strip():
-        return [Fix("delete the comment", (Edit(sheet.whole(place.line), ""),))]
+        return [Fix("delete the comment", (Edit(source.whole(place.line), ""),))]
     spot = place._replace(column=comment.start() + 1, end_column=len(line) + 1)
     return [Fix("delete the comment", (Edit(spot, ""),))]

@@ -21,7 +21,7 @@ _FENCE = re.compile(
 )
 
 
-class Mark(NamedTuple):
+class MarkedWord(NamedTuple):
     """The word of an example that lint points at; line and columns from 1, the last column exclusive."""
 
     line: int
@@ -35,7 +35,7 @@ class Example(NamedTuple):
     file: str
     language: str
     text: str
-    mark: Mark | None = None
+    mark: MarkedWord | None = None
     note: str = ""
 
 
@@ -65,7 +65,7 @@ def _examples(text: str) -> tuple[Example, ...]:
             found["file"],
             found["language"],
             found["text"],
-            Mark(*(int(found[key]) for key in ("line", "first", "last"))) if found["line"] else None,
+            MarkedWord(*(int(found[key]) for key in ("line", "first", "last"))) if found["line"] else None,
             found["note"] or "",
         )
         for found in _FENCE.finditer(text)

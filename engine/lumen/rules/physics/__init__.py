@@ -10,12 +10,12 @@ from lumen.ports import Subject
 from lumen.rules.physics.cases import Case
 from lumen.rules.physics.trial import DONE, FELL, Outcome, attempt
 
-Make = Callable[[int], Subject]
+SubjectFactory = Callable[[int], Subject]
 """A robot in `Stand`: 0 is the one that the model describes, every other number a brother of it."""
 
 
 @dataclass(frozen=True)
-class Rehearsal:
+class CaseResult:
     """A case, and what came of it with each robot, the first of them as the model describes it."""
 
     case: Case
@@ -35,4 +35,4 @@ class Rehearsal:
 AGAIN = 1.5
 """A passage that takes so much longer than its motion was tried again [s]."""
 
-__all__ = ["AGAIN", "DONE", "FELL", "Case", "Make", "Outcome", "Rehearsal", "attempt"]
+__all__ = ["AGAIN", "DONE", "FELL", "Case", "CaseResult", "Outcome", "SubjectFactory", "attempt"]

@@ -28,7 +28,7 @@ SLID = 0.01
 BEARING = 5.0
 """A foot bears load from here on [N]."""
 
-Moment = tuple[float, float]
+TimedAmount = tuple[float, float]
 """When it was [s from the motion's beginning], and how long or how much it came to."""
 
 _KINDS = ("collisions", "exhausted", "behind", "slid")
@@ -47,10 +47,10 @@ class Outcome:
     at: float = 0.0
     tilt: float = 0.0
     leaned: float = 0.0
-    collisions: dict[str, Moment] = field(default_factory=dict)
-    exhausted: dict[str, Moment] = field(default_factory=dict)
-    behind: dict[str, Moment] = field(default_factory=dict)
-    slid: dict[str, Moment] = field(default_factory=dict)
+    collisions: dict[str, TimedAmount] = field(default_factory=dict)
+    exhausted: dict[str, TimedAmount] = field(default_factory=dict)
+    behind: dict[str, TimedAmount] = field(default_factory=dict)
+    slid: dict[str, TimedAmount] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         return asdict(self)
@@ -155,7 +155,7 @@ class _Watch:
             _most(self.outcome.slid, side, since if most >= SLID else self._now, far)
 
 
-def _most(found: dict[str, Moment], what: str, at: float, value: float) -> None:
+def _most(found: dict[str, TimedAmount], what: str, at: float, value: float) -> None:
     """Keep the moment with the greatest value."""
     if value > found.get(what, (0.0, 0.0))[1]:
         found[what] = round(at, 3), round(value, 4)

@@ -6,8 +6,8 @@ from math import degrees
 from lumen.language.diagnostics import Diagnostic, NodePath, Places
 from lumen.language.motions import Keyframe
 from lumen.rules.codes import CODES
-from lumen.rules.physics import FELL, Outcome, Rehearsal
-from lumen.rules.physics.trial import FALLS, SLID, Moment
+from lumen.rules.physics import FELL, CaseResult, Outcome
+from lumen.rules.physics.trial import FALLS, SLID, TimedAmount
 
 TOUCH = 0.04
 """How long two links have to press into each other [s]."""
@@ -26,7 +26,7 @@ _JOINTS = ("comes-late", "overloaded")
 _LEGS = ("Hip", "Knee", "Ankle")
 
 
-def findings(rehearsal: Rehearsal, document: Places) -> list[Diagnostic]:
+def findings(rehearsal: CaseResult, document: Places) -> list[Diagnostic]:
     """What is wrong with a motion; `document` is its file."""
     return [*_Judge(rehearsal, document).judge()]
 
@@ -34,7 +34,7 @@ def findings(rehearsal: Rehearsal, document: Places) -> list[Diagnostic]:
 class _Judge:
     """Looks at the outcomes of one case."""
 
-    def __init__(self, rehearsal: Rehearsal, document: Places) -> None:
+    def __init__(self, rehearsal: CaseResult, document: Places) -> None:
         self._rehearsal, self._case, self._document = rehearsal, rehearsal.case, document
 
     def judge(self) -> Iterator[Diagnostic]:
@@ -90,7 +90,7 @@ class _Judge:
     def _worst(
         self,
         code: str,
-        of: Callable[[Outcome], Mapping[str, Moment]],
+        of: Callable[[Outcome], Mapping[str, TimedAmount]],
         limit: float,
         spared: Iterable[str] = (),
     ) -> Iterator[Diagnostic]:

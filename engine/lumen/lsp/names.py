@@ -6,7 +6,7 @@ from typing import NamedTuple
 from lumen.language.diagnostics import Place
 
 
-class Kind(StrEnum):
+class NameKind(StrEnum):
     """What a name can stand for; `EXPRESSION`, `TEMPLATE` and `FIELD` hold other names."""
 
     STATE = "state"
@@ -32,22 +32,26 @@ class Kind(StrEnum):
 
 
 FOLDERS = {
-    Kind.BEHAVIOR: "behaviors", Kind.STORY: "behaviors/stories", Kind.MOTION: "motions", Kind.CONTROLLER: "fuzzy",
-    Kind.MODEL: "models", Kind.MESSAGE: "schemas/messages",
-}  # fmt: skip
+    NameKind.BEHAVIOR: "behaviors",
+    NameKind.STORY: "behaviors/stories",
+    NameKind.MOTION: "motions",
+    NameKind.CONTROLLER: "fuzzy",
+    NameKind.MODEL: "models",
+    NameKind.MESSAGE: "schemas/messages",
+}
 """The kinds that are files, and where those are."""
 
-SCOPED = frozenset((Kind.STATE, Kind.CONTEXT, Kind.PHRASE, Kind.ANSWERS, Kind.POSE))
+SCOPED = frozenset((NameKind.STATE, NameKind.CONTEXT, NameKind.PHRASE, NameKind.ANSWERS, NameKind.POSE))
 """The kinds whose names mean something within one file only."""
 
 
-class Word(NamedTuple):
-    """One name: `name` says which thing of its kind, `scope` in which file's, `text` how it is written at `place`.
+class NameUse(NamedTuple):
+    """A use of a name: `name` says which thing of its kind, `scope` in which file's, `text` how it stands at `place`.
 
     A state's name is its path, however it is written.
     """
 
-    kind: Kind
+    kind: NameKind
     scope: str
     name: str
     text: str
@@ -55,8 +59,8 @@ class Word(NamedTuple):
     defines: bool = False
 
     @property
-    def thing(self) -> tuple[Kind, str, str]:
-        """What all words of one thing have in common."""
+    def thing(self) -> tuple[NameKind, str, str]:
+        """What all uses of one thing's name have in common."""
         return self.kind, self.scope, self.name
 
 

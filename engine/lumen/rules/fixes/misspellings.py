@@ -4,16 +4,16 @@ import re
 from collections.abc import Mapping
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.rules.fixes.edits import Edit, Fix, Sheet
+from lumen.rules.fixes.edits import Edit, FileText, Fix
 
 _MEANT = re.compile(r"did you mean `([^`]+)`\?")
 _INSTEAD = re.compile(r"write `(true|false)`|leave out the quotes: (\S+)")
 _SAYS = re.compile(r"`([^`]+)`")
 
 
-def slip(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+def slip(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
     """The word that was meant, where it is so near that there is no doubt."""
-    there = sheet.at(diagnostic.place)
+    there = source.at(diagnostic.place)
     if instead := _INSTEAD.search(diagnostic.hint):
         new = instead[1] or instead[2]
         return [Fix(f"write {new}", (Edit(diagnostic.place, new),))] if there else []
@@ -65,23 +65,23 @@ def _one_slip(a: str, b: str) -> bool:
     )
 
 
-def straight_quotes(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+def straight_quotes(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
     """Straight quotes around a text that has curly ones around it, and no others in it."""
-    there = sheet.at(diagnostic.place)
+    there = source.at(diagnostic.place)
     if len(there) < 2 or there[0] not in "“”„‟" or there[-1] not in "“”‟" or any(c in '"\\' for c in there):
         return []
     return [Fix("write straight quotes", (Edit(diagnostic.place, f'"{there[1:-1]}"'),))]
 
 
-def point(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+def point(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
     """The number with a point in place of its comma."""
-    there = sheet.at(diagnostic.place)
+    there = source.at(diagnostic.place)
     return [Fix("write a point", (Edit(diagnostic.place, there.replace(",", ".")),))] if there.count(",") == 1 else []
 
 
-def filled_in(diagnostic: Diagnostic, sheet: Sheet) -> list[Fix]:
+def filled_in(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
     """Two braces on both sides of what is to be filled in."""
-    there, said, right = sheet.at(diagnostic.place), _SAYS.search(diagnostic.message), _SAYS.search(diagnostic.hint)
+    there, said, right = source.at(diagnostic.place), _SAYS.search(diagnostic.message), _SAYS.search(diagnostic.hint)
     if said is None or right is None or there.count(said[1]) != 1 or not right[1].startswith("{{"):
         return []
     start = diagnostic.place.column + there.index(said[1])

@@ -5,7 +5,7 @@ from pathlib import PurePosixPath
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.recollection import memoize
+from lumen.loading.memoization import memoize
 from lumen.loading.schema import check_schema
 from lumen.loading.source import DocumentReport, parse
 

@@ -12,7 +12,7 @@ from lumen.rules.finding import find
 from lumen.rules.statecharts import reachable
 from lumen.rules.walk import nested
 
-Node = tuple[str, str]
+GraphNode = tuple[str, str]
 """`in` a state, or on the way `to` one (which then begins), or `any` state below one; and its path."""
 
 _RESTLESS = ("endless-always", "always-loop")
@@ -50,8 +50,8 @@ class _Graph:
     """Where one gets from each node in one move, and from where one gets there; guards are taken to hold."""
 
     machine: MachineDefinition
-    after: dict[Node, list[Node]] = field(default_factory=dict)
-    before: dict[Node, list[Node]] = field(default_factory=dict)
+    after: dict[GraphNode, list[GraphNode]] = field(default_factory=dict)
+    before: dict[GraphNode, list[GraphNode]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for path, state in self.machine.states.items():
@@ -68,7 +68,7 @@ class _Graph:
                 for target in transition.targets:
                     self.go(path, target)
 
-    def join(self, one: Node, other: Node) -> None:
+    def join(self, one: GraphNode, other: GraphNode) -> None:
         self.after.setdefault(one, []).append(other)
         self.before.setdefault(other, []).append(one)
 
@@ -97,7 +97,7 @@ def within(path: str, other: str) -> bool:
     return path == other or not other or path.startswith(f"{other}.")
 
 
-def spread(begin: Iterable[Node], moves: dict[Node, list[Node]]) -> set[Node]:
+def spread(begin: Iterable[GraphNode], moves: dict[GraphNode, list[GraphNode]]) -> set[GraphNode]:
     """All nodes that some row of moves leads to from these, they among them."""
     found = set(begin)
     waiting = list(found)
@@ -189,7 +189,7 @@ class _Ways:
         ends = [("in", path) for path in dead]
         ends += [("in", p) for p in track.children if self.machine.states[p].kind is StateKind.FINAL]
         ended = spread(ends, self.graph.before)
-        told: set[Node] = set()
+        told: set[GraphNode] = set()
         for path in lost:
             if ("in", path) in ended or ("in", path) in told:
                 continue

@@ -1,4 +1,4 @@
-"""The language services' values in the protocol's words."""
+"""The language services' values as the types of the Language Server Protocol."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,11 +9,11 @@ from pygls.workspace import PositionCodec
 from lumen.language.diagnostics import Diagnostic, Place, Severity
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.completion import Item
+from lumen.lsp.names import NameKind
 from lumen.lsp.ranges import Ranges
 from lumen.lsp.renaming import Renaming
 from lumen.lsp.symbols import Symbol
-from lumen.lsp.words import Kind
-from lumen.rules.fixes import Edit, Sheet
+from lumen.rules.fixes import Edit, FileText
 
 SEVERITIES = {
     Severity.ERROR: lsp.DiagnosticSeverity.Error,
@@ -21,14 +21,20 @@ SEVERITIES = {
     Severity.INFO: lsp.DiagnosticSeverity.Information,
 }
 _ICONS = {
-    Kind.STATE: lsp.SymbolKind.Class, Kind.CONTEXT: lsp.SymbolKind.Variable, Kind.EVENT: lsp.SymbolKind.Event,
-    Kind.ROUTE: lsp.SymbolKind.Interface, Kind.POSE: lsp.SymbolKind.Struct, Kind.POSTURE: lsp.SymbolKind.Struct,
-    Kind.JOINT: lsp.SymbolKind.Field, Kind.PHRASE: lsp.SymbolKind.String, Kind.ANSWERS: lsp.SymbolKind.Array,
-}  # fmt: skip
+    NameKind.STATE: lsp.SymbolKind.Class,
+    NameKind.CONTEXT: lsp.SymbolKind.Variable,
+    NameKind.EVENT: lsp.SymbolKind.Event,
+    NameKind.ROUTE: lsp.SymbolKind.Interface,
+    NameKind.POSE: lsp.SymbolKind.Struct,
+    NameKind.POSTURE: lsp.SymbolKind.Struct,
+    NameKind.JOINT: lsp.SymbolKind.Field,
+    NameKind.PHRASE: lsp.SymbolKind.String,
+    NameKind.ANSWERS: lsp.SymbolKind.Array,
+}
 
 
-class Answers:
-    """Words things for one client: `codec` knows how it counts columns."""
+class ProtocolEncoder:
+    """Encodes results for one client: `codec` knows how it counts columns."""
 
     def __init__(self, analysis: Analysis, codec: PositionCodec) -> None:
         self.analysis, self._codec = analysis, codec
@@ -36,7 +42,7 @@ class Answers:
 
     def ranges(self, file: str) -> Ranges:
         if file not in self._ranges:
-            self._ranges[file] = Ranges(Sheet(file, self.analysis.files.get(file, b"")), self._codec)
+            self._ranges[file] = Ranges(FileText(file, self.analysis.files.get(file, b"")), self._codec)
         return self._ranges[file]
 
     def uri(self, file: str) -> str:

@@ -9,7 +9,7 @@ from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import kind_of
 
 
-class Desk:
+class OpenProjects:
     """Knows the unsaved texts by path; an analysis of a project lasts until something in it changes."""
 
     def __init__(self) -> None:

@@ -5,9 +5,11 @@ from typing import Any
 
 import pytest
 
-from lumen.loading import motions, reading, recollection
+from lumen.loading import built_file as reading
+from lumen.loading import memoization as recollection
+from lumen.loading import motions
 from lumen.loading.files import read_files
-from lumen.loading.recollection import memoize
+from lumen.loading.memoization import memoize
 from lumen.rules import check_files
 
 BASE = read_files(Path(__file__).parents[1] / "lint/base")
