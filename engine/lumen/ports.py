@@ -109,7 +109,7 @@ class Aim:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """Listen for `duration` [s]; then the robot tells of what it heard by an event `RECORDED`."""
+    """Listen for `duration` [s]; then the robot raises `RECORDED` with what it heard."""
 
     name: str
     duration: float
@@ -134,7 +134,7 @@ class Robot(Protocol):
     def poll(self) -> Sequence[Event]: ...
 
     def begun(self) -> Sequence[str]:
-        """The ids of the commands that began since this was last asked; the others that were started wait."""
+        """The ids of the commands that began since the last call; the others that were started wait."""
         ...
 
     def read(self, sense: Sense) -> Reading | None:
@@ -225,7 +225,7 @@ MessageHandler = Callable[[Message], None]
 class Refused(Exception):  # noqa: N818  not an error of whoever hands the message over
     """Raised by a handler for a message that it can't use; the text says why.
 
-    The sender is told where it wants an answer, and a broker puts the message aside, with the reason, to be looked at.
+    The sender gets an answer where it wants one, and a broker puts the message aside, with the reason, to be looked at.
     """
 
 

@@ -29,7 +29,9 @@ class Lockstep(NaoqiRobot):
     def settle(self) -> None:
         """Wait until every call but those that block has been answered, and every event heard."""
         deadline, pause = time.monotonic() + DEADLINE, threading.Event()
-        while self._link.up and (self._link.pending != self.nao.times.waiting or self._noticing.heard < self.nao.told):
+        while self._session.up and (
+            self._session.pending != self.nao.times.waiting or self._naoqi_events.heard < self.nao.told
+        ):
             assert time.monotonic() < deadline, "the fake robot and the adapter wait for each other"
             pause.wait(0.0005)
 

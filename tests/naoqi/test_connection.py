@@ -94,7 +94,7 @@ def test_a_connection_lost_in_a_motion_fails_it_and_comes_back(
     port = robot.nao.port
     with caplog.at_level(logging.WARNING):
         robot.nao.drop()
-        until(lambda: robot._keeper._changes)
+        until(lambda: robot._reconnector._changes)
         lost = live(0.1)
         assert {event.name for event in lost} == {"robot.lost", "error.command.dance"}
         assert ["robot is lost" in str(event.data) for event in lost if event.name != "robot.lost"] == [True]
@@ -103,7 +103,7 @@ def test_a_connection_lost_in_a_motion_fails_it_and_comes_back(
         robot.nao.world.life = "interactive"
         robot.nao.times.run()
         robot.nao.open(port)
-        until(lambda: robot._link.up and robot._keeper._changes)
+        until(lambda: robot._session.up and robot._reconnector._changes)
     assert [event.name for event in robot.poll()] == ["robot.back"]
     world = robot.nao.world
     assert world.called("setState") == [("disabled",), ("disabled",)]
@@ -114,5 +114,5 @@ def test_a_connection_lost_in_a_motion_fails_it_and_comes_back(
 
 def test_a_robot_that_is_silent_is_lost(robot: Lockstep, live: Live) -> None:
     """A cable that was pulled tells nobody."""
-    robot._link._broken(robot._link._session, "the robot has not answered for 2 s")
+    robot._session._broken(robot._session._session, "the robot has not answered for 2 s")
     assert live(0.1)[0].name == "robot.lost"

@@ -77,5 +77,5 @@ def test_a_robot_without_microphones_says_so(project: Project, caplog: pytest.Lo
 def test_a_connection_lost_in_a_recording_fails_it(robot: Lockstep, live: Live) -> None:
     robot.start("a", Record("r1", 5.0))
     live(1.0)
-    robot._link._broken(robot._link._session, "the robot has not answered for 2 s")
+    robot._session._broken(robot._session._session, "the robot has not answered for 2 s")
     assert reasons(live(0.1)) == ["the robot is lost: the robot has not answered for 2 s"]

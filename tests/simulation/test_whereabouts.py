@@ -76,7 +76,7 @@ def test_a_robot_that_sat_walks_only_where_it_is_safe_all_the_same(body: Body) -
 
 def believed(robot: SimulatedRobot) -> Pose:
     """Where the robot takes itself to stand, from where it began."""
-    return middle(robot._whereabouts.feet)
+    return middle(robot._odometry.feet)
 
 
 @pytest.mark.parametrize("seed", [0, 2])

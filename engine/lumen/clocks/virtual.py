@@ -1,4 +1,4 @@
-"""Time that passes when told to, stopping at everything that is due on the way."""
+"""Time that passes by `advance` alone, stopping at everything that is due on the way."""
 
 from math import inf
 from typing import Protocol

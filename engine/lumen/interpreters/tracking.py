@@ -4,7 +4,7 @@ Each sight moves the joints to where they stood *when the image was taken* plus 
 binding's gain. Adding the output to the angles last commanded instead overshoots as soon as camera and bus take time:
 the same error is then corrected again and again before its correction can be seen.
 
-A head that stands still stands a little beside where it was told to, for its weight and for friction. How far is
+A head that stands still stands a little beside where it was commanded to, for its weight and for friction. How far is
 learned while it stands, and added; else it would rest about as far beside the face.
 """
 
@@ -26,10 +26,10 @@ EARLY = 0.1
 """How far in the future [s] a message may say it was made, as clocks go; farther, it goes by another clock."""
 
 STILL, LITTLE = 0.12, 0.006
-"""A joint stands still that for `STILL` [s] has not moved, and not been told to, by more than `LITTLE` [rad]."""
+"""A joint stands still that for `STILL` [s] has not moved, and not been commanded to, by more than `LITTLE` [rad]."""
 
 SAG = 0.035
-"""How far [rad] weight and friction hold a joint off where it was told to go; farther off, something else does."""
+"""How far [rad] weight and friction hold a joint off its commanded angle; farther off, something else does."""
 
 LEARNING = 0.4
 """Which part of a new measurement of that is believed: the head may still be on its way."""
@@ -38,7 +38,7 @@ LEARNING = 0.4
 class Tracker:
     """What a bound controller asks of its joints. It reads no clock and moves nothing; times are in [s].
 
-    Tell it the joints' measured angles (`pose`) and what was seen (`see`); where nothing was seen, ask it what to do
+    Give it the joints' measured angles (`pose`) and what was seen (`see`); where nothing was seen, ask it what to do
     (`idle`). `routes` are those whose messages it wants, `joints` those that it moves.
     """
 
@@ -52,7 +52,7 @@ class Tracker:
         self._inputs: dict[str, float] = {}
         self._turn: JointAngles = {}
         self._poses = JointHistory(2.0 * controller.tracking.stale)
-        self._told = JointHistory(2.0 * controller.tracking.stale)
+        self._commanded = JointHistory(2.0 * controller.tracking.stale)
         self._seen = -inf
         self._lost_since: float | None = None
         self._held: JointAngles = {}
@@ -61,7 +61,7 @@ class Tracker:
     def succeed(self, before: "Tracker") -> None:
         """Go on where another one stood that moved the same joints: with the poses it knew, and what it saw last."""
         if set(self.joints) <= set(before.joints):
-            for mine, theirs in ((self._poses, before._poses), (self._told, before._told)):
+            for mine, theirs in ((self._poses, before._poses), (self._commanded, before._commanded)):
                 mine.known.extend((time, {j: angles[j] for j in self.joints}) for time, angles in theirs.known)
             self._seen, self._lost_since = before._seen, before._lost_since
             self._held = {joint: before._held[joint] for joint in self.joints if joint in before._held}
@@ -99,7 +99,7 @@ class Tracker:
             return None
         target = self.clamped({joint: self._stood(joint, captured) + self._turn[joint] for joint in pose})
         self._seen, self._lost_since, self._held = captured, None, target
-        return self._tell(target, now if isfinite(now) else self._poses.last)
+        return self._command(target, now if isfinite(now) else self._poses.last)
 
     def idle(self, now: float) -> JointAngles | None:
         """Where the joints should go [rad] while nothing is seen: None to stay, then a search, then ahead."""
@@ -114,21 +114,21 @@ class Tracker:
             return None
         if gone < times.search:
             swing = sin(2.0 * pi * gone / times.period)
-            return self._tell(self.clamped({j: a + swing * self._sweep(j) for j, a in self._held.items()}), now)
-        return self._tell(self.clamped({joint: times.ahead.get(joint, 0.0) for joint in self.joints}), now)
+            return self._command(self.clamped({j: a + swing * self._sweep(j) for j, a in self._held.items()}), now)
+        return self._command(self.clamped({joint: times.ahead.get(joint, 0.0) for joint in self.joints}), now)
 
     def _stood(self, joint: str, time: float) -> float:
         """Where the turn counts from [rad]: the joint's pose at that time, and how far it sags, as last learned."""
         pose, start = self._poses.at(time)[joint], time - STILL
         sag = self._sag.get(joint, 0.0)
-        if self._poses.steady(joint, start, time, LITTLE) and self._told.steady(joint, start, time, LITTLE):
-            found = self._told.at(time)[joint] - pose
+        if self._poses.steady(joint, start, time, LITTLE) and self._commanded.steady(joint, start, time, LITTLE):
+            found = self._commanded.at(time)[joint] - pose
             sag += LEARNING * (found - sag) if abs(found) <= SAG else -sag
             self._sag[joint] = sag
         return pose + sag
 
-    def _tell(self, target: JointAngles, now: float) -> JointAngles:
-        self._told.add(now, target)
+    def _command(self, target: JointAngles, now: float) -> JointAngles:
+        self._commanded.add(now, target)
         return target
 
     def clamped(self, angles: Mapping[str, float]) -> JointAngles:

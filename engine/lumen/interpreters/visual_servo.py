@@ -78,7 +78,7 @@ class VisualServo:
     def _after(
         self, inputs: Mapping[str, float], pose: Mapping[str, float], turned: Mapping[str, float]
     ) -> dict[str, float] | None:
-        """The inputs as the camera would have them after the turn; None where that can't be told."""
+        """The inputs as the camera would have them after the turn; None where that can't be computed."""
         if not (self._across and self._down and _YAW in pose and _PITCH in pose):
             return None
         before = (pose[_YAW], pose[_PITCH])

@@ -24,13 +24,13 @@ def _object(**fields: object) -> dict[str, object]:
 
 
 CUE = "cue"
-"""What a robot tells when a motion comes to words or a sound: its `motion`, `kind` (`say`, `sound`) and `value`.
+"""What a robot raises when a motion comes to words or a sound: its `motion`, `kind` (`say`, `sound`) and `value`.
 
 It is for who runs the exhibition, not for its behaviour, which hears no such event.
 """
 
 RECORDED = "recorded"
-"""What a robot tells when it has listened: the body of the route `recording`. It is for modules, and no behaviour."""
+"""What a robot raises when it has listened: the body of the route `recording`. It is for modules, and no behaviour."""
 
 ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "touched": _object(sensor={"type": "string"}),

@@ -32,7 +32,7 @@ PoseSource = Callable[[], Mapping[str, float]]
 
 
 def command_from(body: Any, project: Project, angles: PoseSource = dict) -> RobotCommand | Language:
-    """The command that a body asks for; `angles` is asked where the joints stand [rad], for `changeangle` alone.
+    """The command that a body asks for; `angles` gives where the joints stand [rad], for `changeangle` alone.
 
     `setlanguage` is a `Language`, for whoever keeps the language. Raises RobotError, saying what would be right, for a
     method that is unknown or can't be done, and for a parameter that is missing or wrong.

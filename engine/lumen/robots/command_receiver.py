@@ -47,7 +47,7 @@ class CommandReceiver:
     it. What rests or stops the robot is begun before everything that came with it, and what came before it is not
     begun at all. As many commands wait for `begin` as their route keeps, as long as its time to live; what stops is
     never one too many, nor too late. A command with an `id` is performed once, however often it comes. `clock` [s]
-    tells how long they have waited; `begins` is told of each that begins.
+    measures how long they have waited; `begins` is called for each that begins.
     """
 
     def __init__(
@@ -66,22 +66,22 @@ class CommandReceiver:
         self._reports = CommandReports(self._tell, self._reply)
         self._numbers = count(1)
         self._language = ""
-        self._ledger = DeduplicationLog()
+        self._log_of_begun = DeduplicationLog()
         self._undo: dict[str, tuple[str, Callable[[], None]]] = {}
         for route in (COMMAND, STOP, AIM):
             self._undo[route] = self._listen(route)
 
-    def recall(self, ledger: DeduplicationLog) -> None:
+    def recall(self, begun_before: DeduplicationLog) -> None:
         """Note what is begun from now on; what the process before began has failed, and is not begun again.
 
         What rests or stops the robot is not noted: that may be done twice.
         """
-        self._ledger = ledger
-        for id in ledger.before:
+        self._log_of_begun = begun_before
+        for id in begun_before.before:
             self._reports.remember(CommandRecord(Message("", None), id, state=FAILED, reason=RESTARTED))
 
     def begin(self) -> None:
-        """Start what has come, and tell of what the robot has begun.
+        """Start what has come, and report what the robot has begun.
 
         What can't be understood, or has waited too long, is answered at once.
         """
@@ -168,29 +168,29 @@ class CommandReceiver:
 
     def _refuse(self, message: Message, reason: str) -> None:
         """Answer a command that was not even looked at; it may be sent again."""
-        errand = CommandRecord(message, own_id(message.body), method_of(message.body), state=FAILED, reason=reason)
-        self._reply(message, errand.report() if errand.id else errand.text())
+        record = CommandRecord(message, own_id(message.body), method_of(message.body), state=FAILED, reason=reason)
+        self._reply(message, record.report() if record.id else record.text())
 
     def _take(self, arrival: _Arrival, *, overtaken: bool = False) -> None:
         """Do what a message asks, or report why not; `overtaken` by a command that stops everything."""
         message = arrival.message
-        errand = CommandRecord(message, own_id(message.body), method_of(message.body))
-        if errand.method in QUERY_METHODS:
+        record = CommandRecord(message, own_id(message.body), method_of(message.body))
+        if record.method in QUERY_METHODS:
             self._ask(message)
             return
-        if known := self._reports.find(errand.id):
+        if known := self._reports.find(record.id):
             self._reports.repeat(known, message)
             return
-        self._reports.remember(errand)
+        self._reports.remember(record)
         try:
             self._check_age(arrival)
             if overtaken:
-                self._reports.change(errand, CANCELLED)
+                self._reports.change(record, CANCELLED)
             else:
-                self._perform(errand, command_from(message.body, self._project, self._angles))
+                self._perform(record, command_from(message.body, self._project, self._angles))
         except RobotError as error:
             _log.warning("a command was refused: %s", error)
-            self._reports.change(errand, FAILED, str(error))
+            self._reports.change(record, FAILED, str(error))
 
     def _ask(self, message: Message) -> None:
         """`cancel` or `outcome` of the command whose `id` the parameter names.
@@ -203,41 +203,41 @@ class CommandReceiver:
             _log.warning("a command was refused: `%s` needs the `id` of a command", method_of(message.body))
             self._reply(message, "command failed: which command? `id` names it")
             return
-        errand = self._reports.find(id)
+        record = self._reports.find(id)
         cancelled = method_of(message.body) == "cancel"
-        if errand is None:
-            errand = CommandRecord(message, id, state=CANCELLED if cancelled else UNKNOWN)
+        if record is None:
+            record = CommandRecord(message, id, state=CANCELLED if cancelled else UNKNOWN)
             if cancelled:
-                self._reports.remember(errand)
-        elif cancelled and not errand.over:
-            self._robot.cancel(errand.at)
-        self._reports.repeat(errand, message)
+                self._reports.remember(record)
+        elif cancelled and not record.over:
+            self._robot.cancel(record.at)
+        self._reports.repeat(record, message)
 
     def _check_age(self, arrival: _Arrival) -> None:
         route = self._project.routes.get(COMMAND)
         if route and route.ttl and self._clock() - arrival.at > route.ttl and not stops(arrival.message.body):
             raise RobotError("it came too late")
 
-    def _perform(self, errand: CommandRecord, command: RobotCommand | Language) -> None:
+    def _perform(self, record: CommandRecord, command: RobotCommand | Language) -> None:
         if isinstance(command, Language):
             self._language = command.language
-            self._reports.change(errand, FINISHED)
+            self._reports.change(record, FINISHED)
             return
         if isinstance(command, Say) and not command.language:
             command = replace(command, language=self._language)
         if self._reports.running >= MAX_RUNNING_COMMANDS and not isinstance(command, Rest | Stop):
             raise RobotError(f"{MAX_RUNNING_COMMANDS} commands are waiting already")
-        if errand.id and not isinstance(command, Rest | Stop):
-            self._ledger.note(errand.id)
+        if record.id and not isinstance(command, Rest | Stop):
+            self._log_of_begun.note(record.id)
         if isinstance(command, Aim):
             self._robot.start(self._number(), command)
-            self._reports.change(errand, FINISHED)
+            self._reports.change(record, FINISHED)
             return
-        if errand.asker.body.get("replace") is True:
+        if record.asker.body.get("replace") is True:
             self._clear(command)
-        errand.at = self._number()
-        self._reports.accept(errand)
-        self._robot.start(errand.at, command)
+        record.at = self._number()
+        self._reports.accept(record)
+        self._robot.start(record.at, command)
         self._begins(command)
 
     def _clear(self, command: RobotCommand) -> None:

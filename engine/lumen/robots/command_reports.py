@@ -1,4 +1,4 @@
-"""How commands from the bus stand: told to who asked and to everybody who watches, and again to who asks again."""
+"""How commands from the bus stand: reported to the sender and to everybody who watches, and again on request."""
 
 from collections import OrderedDict
 from collections.abc import Callable
@@ -11,7 +11,7 @@ ACCEPTED, STARTED, FINISHED, FAILED, CANCELLED = "accepted", "started", "finishe
 UNKNOWN = "unknown"
 FINAL = (FINISHED, FAILED, CANCELLED)
 MAX_REMEMBERED_COMMANDS = 1_000
-"""How many commands with an id of their own are remembered: whoever sends one again is told what became of it."""
+"""How many commands with an id of their own are remembered: for whoever sends one again."""
 
 _ANSWERS = {"done": FINISHED, "error": FAILED, "cancelled": CANCELLED}
 
@@ -46,12 +46,12 @@ class CommandRecord:
         return {**body, "reason": self.reason} if self.reason else body
 
     def text(self) -> str:
-        """What the modules of 2015 are told at the end."""
+        """What the modules of 2015 receive at the end."""
         return f"command failed: {self.reason}" if self.state == FAILED else f"command {self.state}"
 
 
 class CommandReports:
-    """Remembers errands, and tells of every change of theirs.
+    """Remembers records, and reports every change of theirs.
 
     `tell` publishes a report; `reply` answers a message: with the report where it brought an id of its own, else with
     2015's text, at the end.
@@ -68,50 +68,50 @@ class CommandReports:
         return len(self._running)
 
     def find(self, id: str) -> CommandRecord | None:
-        """The errand with that id of its sender's."""
+        """The record with that id of its sender's."""
         return self._known.get(id)
 
-    def remember(self, errand: CommandRecord) -> None:
-        """From now on who sends this again is told how it stands."""
-        if errand.id:
-            self._known[errand.id] = errand
+    def remember(self, record: CommandRecord) -> None:
+        """From now on who sends this again gets a report of how it stands."""
+        if record.id:
+            self._known[record.id] = record
             if len(self._known) > MAX_REMEMBERED_COMMANDS:
                 self._known.pop(next((id for id, old in self._known.items() if old.over), next(iter(self._known))))
 
-    def accept(self, errand: CommandRecord) -> None:
+    def accept(self, record: CommandRecord) -> None:
         """The robot has it, under the id `at`."""
-        self._running[errand.at] = errand
-        self.change(errand, ACCEPTED)
+        self._running[record.at] = record
+        self.change(record, ACCEPTED)
 
     def begun(self, at: str) -> None:
-        if (errand := self._running.get(at)) and errand.state == ACCEPTED:
-            self.change(errand, STARTED)
+        if (record := self._running.get(at)) and record.state == ACCEPTED:
+            self.change(record, STARTED)
 
     def answered(self, kind: str, at: str, reason: str) -> bool:
         """The robot said `done`, `error` or `cancelled`; whether it was of one of ours."""
-        errand = self._running.pop(at, None)
-        if errand is None or kind not in _ANSWERS:
+        record = self._running.pop(at, None)
+        if record is None or kind not in _ANSWERS:
             return False
-        if errand.state == ACCEPTED and kind == "done":
-            self.change(errand, STARTED)
-        self.change(errand, _ANSWERS[kind], reason if kind == "error" else "")
+        if record.state == ACCEPTED and kind == "done":
+            self.change(record, STARTED)
+        self.change(record, _ANSWERS[kind], reason if kind == "error" else "")
         return True
 
-    def change(self, errand: CommandRecord, state: str, reason: str = "") -> None:
-        errand.state, errand.reason = state, reason
-        self.repeat(errand, errand.asker)
+    def change(self, record: CommandRecord, state: str, reason: str = "") -> None:
+        record.state, record.reason = state, reason
+        self.repeat(record, record.asker)
 
-    def repeat(self, errand: CommandRecord, asker: Message) -> None:
+    def repeat(self, record: CommandRecord, asker: Message) -> None:
         """Tell how it stands, and this message as well."""
-        errand.asker = asker
-        self._tell(errand.report())
-        if errand.id:
-            self._reply(asker, errand.report())
-        elif errand.over:
-            self._reply(asker, errand.text())
+        record.asker = asker
+        self._tell(record.report())
+        if record.id:
+            self._reply(asker, record.report())
+        elif record.over:
+            self._reply(asker, record.text())
 
     def end(self) -> None:
         """The robot takes no more commands: what runs counts as cancelled."""
-        for errand in self._running.values():
-            self.change(errand, CANCELLED)
+        for record in self._running.values():
+            self.change(record, CANCELLED)
         self._running.clear()

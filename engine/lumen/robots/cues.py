@@ -1,4 +1,4 @@
-"""The words and sounds of a motion, told as their times come."""
+"""The words and sounds of a motion, raised as events as their times come."""
 
 from collections.abc import Callable
 
@@ -6,7 +6,7 @@ from lumen.language.events import CUE, Event
 from lumen.language.motions import Cue, MotionDefinition
 
 NOTIFIED_KINDS = ("say", "sound")
-"""Kinds of cues that a robot tells of; the others it gives itself."""
+"""Kinds of cues that a robot raises as events; the others it performs itself."""
 
 EventSink = Callable[[Event], None]
 
@@ -17,7 +17,7 @@ def cue_event(motion: MotionDefinition, cue: Cue, now: float) -> Event:
 
 
 class CueNotifier:
-    """Tells of a motion's cues to `notice`, each when it comes."""
+    """Hands a motion's cues to `notice` as events, each at its time."""
 
     def __init__(self, motion: MotionDefinition, notice: EventSink) -> None:
         self._motion, self._notice = motion, notice

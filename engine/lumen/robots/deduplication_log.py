@@ -21,13 +21,13 @@ _log = logging.getLogger(__name__)
 class DeduplicationLog:
     """The ids of commands in a file, one to a line, each written before its command is begun; without a file none.
 
-    `before` are those of the process before that are `RECENT`, the oldest first: who counts its commands from 1 at each
-    start may do so. The system has what is written, so that a process that
-    is killed loses nothing; a disk that takes nothing is told of once, and the robot obeys all the same.
+    `before` are those of the process before that are younger than `DEDUPLICATION_WINDOW`, the oldest first: who counts
+    its commands from 1 at each start may do so. The system has what is written, so that a process that is killed loses
+    nothing; a disk that takes nothing is logged once, and the robot obeys all the same.
     """
 
     def __init__(self, file: Path | None = None) -> None:
-        self._file, self._lines, self._told = file, 0, False
+        self._file, self._lines, self._warned = file, 0, False
         since = time.time() - DEDUPLICATION_WINDOW
         self.before = tuple(id for at, id in self._read() if at >= since)
 
@@ -68,8 +68,8 @@ class DeduplicationLog:
             finally:
                 os.close(file)
         except OSError as error:
-            if not self._told:
-                self._told = True
+            if not self._warned:
+                self._warned = True
                 _log.warning("which commands were begun can't be kept in %s: %s", self._file, error.strerror)
 
 

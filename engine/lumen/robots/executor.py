@@ -71,7 +71,7 @@ class _Ended:
 class Executor:
     """Starts, queues, cancels and answers commands.
 
-    `begin` makes the activity of a command at a time [s], or raises RobotError; `parts` tells what it moves.
+    `begin` makes the activity of a command at a time [s], or raises RobotError; `parts` names what it moves.
     """
 
     def __init__(
@@ -111,7 +111,7 @@ class Executor:
         return next((t.id for t in self._tasks if t.activity and part in t.parts), "")
 
     def begun(self) -> list[str]:
-        """The ids of the commands that began since this was last asked."""
+        """The ids of the commands that began since the last call."""
         begun = list(self._begun)
         self._begun.clear()
         return begun

@@ -49,7 +49,7 @@ class _Lasting:
 
 
 class _Playing(_Lasting):
-    """A motion, its words and sounds told as they come."""
+    """A motion, its words and sounds raised as events as they come."""
 
     def __init__(self, until: float, begin: float, prompter: CueNotifier) -> None:
         super().__init__(until)
@@ -66,7 +66,8 @@ class RecordingRobot:
     """Every command takes as long as the real one would: a motion its duration, speech 0.4 s and 0.06 s a character.
 
     `behaves` maps a verb to `fails`, `hangs` or another duration [s]. `performed` lists (time [s], command) in the
-    order begun. `advance` is its passing of time; the head goes where it is told, so that faces move in its camera.
+    order begun. `advance` is its passing of time; the head goes where commands say, so that
+    faces move in its camera.
     """
 
     def __init__(self, body: Body, behaves: Mapping[str, str | float] | None = None) -> None:

@@ -83,7 +83,7 @@ class SensePublisher:
             self._changed.notify()
 
     def arm(self) -> None:
-        """Try again where the sense is off, and tell again of what is refused: the cause may be gone."""
+        """Try again where the sense is off, and log again what is refused: the cause may be gone."""
         with self._changed:
             self._said.clear()
             off, self.count.off = self.count.off, ""

@@ -39,8 +39,8 @@ class RobotServer:
     Whoever owns the clock calls `sample` at each tick; that reads the senses that are due and begins the commands that
     have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
     one seed says the same things in the same order; `settle` waits until they have. `date` is what images are dated;
-    `clock` [s] tells how long a command has waited: time as modules live through it, whatever the robot's clock says.
-    `told` hears of each command that the robot is given from the bus.
+    `clock` [s] measures how long a command has waited: time as modules live through it, whatever the robot's clock
+    says. `started` is called with each command that the robot is given from the bus.
     """
 
     def __init__(
@@ -51,9 +51,9 @@ class RobotServer:
         *,
         date: Callable[[], str] = _date,
         clock: Callable[[], float] = time.monotonic,
-        told: Callable[[RobotCommand], None] = lambda _: None,
+        started: Callable[[RobotCommand], None] = lambda _: None,
     ) -> None:
-        self._robot, self._bus, self._told = robot, bus, told
+        self._robot, self._bus, self._started = robot, bus, started
         self._frames, self._date = count(), date
         self._project = project
         self._routes: dict[Sense, Route] = {}
@@ -64,9 +64,9 @@ class RobotServer:
         self._orders = CommandReceiver(project, robot, bus, clock, self._given)
         self._closed = False
 
-    def recall(self, ledger: DeduplicationLog) -> None:
+    def recall(self, begun_before: DeduplicationLog) -> None:
         """Perform nothing that the process before had begun, and note what is begun from now on."""
-        self._orders.recall(ledger)
+        self._orders.recall(begun_before)
 
     @property
     def counts(self) -> Mapping[str, PublishCounts]:
@@ -121,7 +121,7 @@ class RobotServer:
         return False
 
     def begins(self, command: RobotCommand) -> None:
-        """The robot was told to do this: what it says is on the bus as a text, too, for a voice of its own."""
+        """The robot starts this: what it says is on the bus as a text, too, for a voice of its own."""
         if isinstance(command, Say) and TEXT in self._project.routes:
             body = {"name": self._project.robot, "text": command.text, "date": self._date()}
             self._tell(TEXT, {**body, "language": command.language})
@@ -135,17 +135,17 @@ class RobotServer:
         deadline = time.monotonic() + CLOSE_TIMEOUT
         ended = [b.close(deadline - time.monotonic()) for b in self._broadcasts.values()]
         if not all(ended):
-            _log.warning("a sense still works %g s after it was told to end", CLOSE_TIMEOUT)
+            _log.warning("a sense still works %g s after it was closed", CLOSE_TIMEOUT)
 
     def _given(self, command: RobotCommand) -> None:
-        self._told(command)
+        self._started(command)
         self.begins(command)
 
     def _tell(self, route: str, body: dict[str, Any]) -> None:
         try:
             tell(self._bus, self._project, route, body)
         except BusError as error:
-            _log.warning("what the robot tells on `%s` was not sent: %s", route, error)
+            _log.warning("what the robot publishes on `%s` was not sent: %s", route, error)
 
     def _schedule(self, sense: Sense, route: Route, now: float) -> None:
         """The next time on the grid of the sense's period; where ticks are coarser than that, a period from now."""

@@ -7,7 +7,7 @@ from lumen.robots.sense_codec import RECORDING_RATE, recording_body
 
 
 class SilentRecording:
-    """Tells `notice` of silence, as long as was asked for, once it is `until` [s]; of nothing where it is cancelled."""
+    """Hands `notice` silence as long as the command's duration, at `until` [s]; nothing where it is cancelled."""
 
     def __init__(self, command: Record, until: float, notice: EventSink) -> None:
         self._command, self._until, self._notice = command, until, notice

@@ -13,9 +13,9 @@ MOST = 20
 
 
 class CrashCounter:
-    """Counts in a home how often each bundle came in force and ended the exhibition before it had stood its probation.
+    """Counts in a home how often each bundle became active and ended the exhibition before it had stood its probation.
 
-    A count is written before the bundle is in force, for who crashes writes nothing.
+    A count is written before the bundle is active, for who crashes writes nothing.
     """
 
     def __init__(self, home: Home) -> None:

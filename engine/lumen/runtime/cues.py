@@ -12,7 +12,7 @@ _log = logging.getLogger(__name__)
 
 
 class MotionCues:
-    """Answers what a robot tells of the cues of a motion.
+    """Answers the events that a robot raises for the cues of a motion.
 
     Words wait for the voice as every `say` does, under ids `cue1`, `cue2`, …; they end with a motion that is cancelled
     or fails. A sound is an event that observers of the exhibition hear, so a player of audio is one of them; a file
@@ -32,7 +32,7 @@ class MotionCues:
                 self._playing[id] = motion
 
     def answered(self, event: Event, project: Project, language: str) -> list[Command]:
-        """What has to be done about something that the robot told."""
+        """What has to be done about an event of the robot."""
         if event.name == CUE and isinstance(event.data, Mapping):
             return self._cue(event.data, project, language)
         kind, _, id = event.name.partition(".command.")

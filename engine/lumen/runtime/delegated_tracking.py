@@ -17,7 +17,7 @@ _log = logging.getLogger(__name__)
 
 
 def motion_key(project: Project) -> str:
-    """Under which key the motion module of a project's robot is asked for something."""
+    """Under which key the motion module of a project's robot takes requests."""
     row = project.routes.get(ROUTE)
     return row.key_for(project.robot) if row else KEY.replace("{robot}", project.robot)
 
@@ -88,6 +88,6 @@ class DelegatedTracking:
         try:
             self._bus.publish(motion_key(self._project), body, ttl=LASTING)
         except BusError as error:
-            _log.warning("the motion module was not asked: %s", error)
+            _log.warning("the motion module got no request: %s", error)
             return False
         return True

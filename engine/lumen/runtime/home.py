@@ -16,7 +16,7 @@ DOOR = "door.json"
 class Home:
     """The folder of one running exhibition; `hold` takes it, and the system gives it back however the process ends.
 
-    Nothing here raises for what a disk does while the exhibition runs: `write` tells whether it could.
+    Nothing here raises for what a disk does while the exhibition runs: `write` returns why it could not.
     """
 
     def __init__(self, folder: Path) -> None:

@@ -24,7 +24,7 @@ TickHook = Callable[[float], None]
 
 
 class Observer:
-    """Somebody who watches: told of everything as it happens, and changing nothing of it."""
+    """Somebody who watches: called for everything as it happens, and changing nothing of it."""
 
     def stepped(self, step: Step) -> None:
         """The behaviour took a step."""
@@ -40,8 +40,8 @@ class BehaviorLoop:
     """A project on a robot, a bus and a clock.
 
     At each tick: the clock waits, the `parts` live, what happened becomes events, the behaviour steps, its commands are
-    performed; `observers` are told. Where ticks stop for `patience` [s] of the clock the behaviour is told
-    (`brain.lost`). Where a tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
+    performed; `observers` are called. Where ticks stop for `patience` [s] of the clock the behaviour gets the event
+    `brain.lost`. Where a tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
     `tracking` lets controllers follow what is seen; without one that is done here.
     """
 

@@ -147,7 +147,7 @@ class Presence:
         try:
             self._bus.publish(self._key, body, ttl=LASTING)
         except BusError as error:
-            _log.debug("nobody was told that we are here: %s", error)
+            _log.debug("our presence was not published: %s", error)
 
     def _hear(self, body: Any, now: float) -> None:
         match body:

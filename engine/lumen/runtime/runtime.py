@@ -14,7 +14,7 @@ from lumen.language.projects import Project
 _log = logging.getLogger(__name__)
 
 Rescue = Callable[[Exception], Sequence[Command] | None]
-"""Asked after a failure: goes on with another bundle, and tells what has to be done for that; None where it can't."""
+"""Called after a failure: goes on with another bundle, and returns the commands for that; None where it can't."""
 
 
 class Runtime:

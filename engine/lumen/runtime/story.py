@@ -1,4 +1,4 @@
-"""Plays a story: does what it says, waits for what it expects, and tells where it failed."""
+"""Plays a story: does what it says, waits for what it expects, and reports where it failed."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace

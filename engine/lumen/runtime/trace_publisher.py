@@ -23,7 +23,7 @@ _log = logging.getLogger(__name__)
 class TracePublisher(Observer):
     """Publishes each step that changed something, each command as it is given, and its answer.
 
-    `project` is asked for the bundle that runs, `now` for the time [s].
+    `project` returns the bundle that runs, `now` for the time [s].
     """
 
     def __init__(self, bus: Bus, project: Callable[[], Project], now: Callable[[], float]) -> None:
@@ -67,7 +67,7 @@ class TracePublisher(Observer):
         try:
             self._bus.publish(key, {"robot": project.robot, "time": round(self._now(), 3), **what}, ttl=ttl)
         except BusError as error:
-            _log.debug("what the behaviour does was not told: %s", error)
+            _log.debug("what the behaviour does was not published: %s", error)
 
 
 def _standing(snapshot: Snapshot) -> dict[str, Any]:

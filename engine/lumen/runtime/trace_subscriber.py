@@ -33,7 +33,7 @@ _VERBS: Mapping[str, type] = {
 
 
 class TraceListener(Protocol):
-    """Somebody who is told of what is seen."""
+    """Whoever is called with what is seen."""
 
     def see(self, states: frozenset[str], entered: tuple[str, ...], context: Mapping[str, Any]) -> None: ...
 
@@ -43,7 +43,7 @@ class TraceListener(Protocol):
 
 
 class TraceSubscriber:
-    """Hears what a behaviour does (`TracePublisher`) and tells `watchers` of it, at each `tick`.
+    """Hears what a behaviour does (`TracePublisher`) and calls `watchers` with it, at each `tick`.
 
     It is the scenery of a story: `happen` lets something happen to the robot.
     """
@@ -81,7 +81,7 @@ def _tell(watcher: TraceListener, body: dict[str, Any], now: float) -> None:
 
 
 def _command(said: dict[str, Any]) -> Command | None:
-    """The command that somebody tells of, None where nobody knows it."""
+    """The command in a trace's body, None where its verb is unknown."""
     fields = dict(said)
     verb, id = str(fields.pop("verb", "")), str(fields.pop("id", ""))
     if verb == "publish":

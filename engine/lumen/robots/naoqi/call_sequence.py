@@ -12,7 +12,7 @@ CANCEL_TIMEOUT = 1.5
 """How long what was cancelled may go on [s]: a walk ends after the step in the air."""
 
 ABORT_RETRY_PERIOD = 0.25
-"""How often what does not end is told to [s]: NAOqi may hear of the end before it hears of the beginning."""
+"""How often the abort is repeated while the command goes on [s]: NAOqi may hear of the end before the beginning."""
 
 
 @dataclass(frozen=True)
@@ -31,18 +31,18 @@ CallSteps = Generator[Awaited, Any, Any]
 class CallSequence:
     """An activity of the executor made of steps.
 
-    `abort` tells NAOqi to end it, `recover` are the steps thereafter. What does not end within `patience` [s] has
+    `abort` has NAOqi end it, `recover` are the steps thereafter. What does not end within `patience` [s] has
     failed, so that nothing waits for it for ever.
     """
 
     def __init__(
         self,
-        doing: CallSteps,
+        steps: CallSteps,
         abort: Callable[[], Sequence[NaoqiCall]] = lambda: (),
         recover: Callable[[], CallSteps] | None = None,
         patience: float = CANCEL_TIMEOUT,
     ) -> None:
-        self._doing, self._abort, self._recover, self._patience = doing, abort, recover, patience
+        self._steps, self._abort, self._recover, self._patience = steps, abort, recover, patience
         self._wait: Awaited = None
         self._begun = self._cancelled = False
         self._aborting: list[NaoqiCall] = []
@@ -52,10 +52,10 @@ class CallSequence:
         if self._cancelled:
             if not self._quiet(now):
                 return False
-            self._doing.close()
+            self._steps.close()
             if self._recover is None:
                 return True
-            self._doing, self._recover, self._cancelled, self._wait = self._recover(), None, False, None
+            self._steps, self._recover, self._cancelled, self._wait = self._recover(), None, False, None
             self._begun, self._abort = False, lambda: ()
         return self._go(now)
 
@@ -72,7 +72,7 @@ class CallSequence:
         if (call is None or call.done) and all(c.done for c in self._aborting):
             return True
         if now >= self._until:
-            raise RobotError(f"it was told to end, and has not within {self._patience:g} s")
+            raise RobotError(f"it was cancelled, and has not ended within {self._patience:g} s")
         if now >= self._again:
             self._again = now + ABORT_RETRY_PERIOD
             self._aborting = [c for c in self._aborting if not c.done] or list(self._abort())
@@ -82,9 +82,9 @@ class CallSequence:
         """Take the steps that can be taken by now; whether that was the last."""
         try:
             if not self._begun:
-                self._begun, self._wait = True, next(self._doing)
+                self._begun, self._wait = True, next(self._steps)
             elif self._wait is None:
-                self._wait = self._doing.send(now)
+                self._wait = self._steps.send(now)
             while self._wait is not None:
                 call = self._wait.call if isinstance(self._wait, WhileWaiting) else self._wait
                 if isinstance(self._wait, WhileWaiting):
@@ -100,5 +100,5 @@ class CallSequence:
         try:
             value = call.result()
         except RobotError as error:
-            return self._doing.throw(error)
-        return self._doing.send(value)
+            return self._steps.throw(error)
+        return self._steps.send(value)

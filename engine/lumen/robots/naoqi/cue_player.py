@@ -1,4 +1,4 @@
-"""What goes on beside the joints of a motion: lights, sounds, and the words and sounds that others are told of."""
+"""What goes on beside the joints of a motion: lights, sounds, and the words and sounds that others perform."""
 
 import logging
 

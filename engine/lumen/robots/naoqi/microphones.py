@@ -19,26 +19,26 @@ RECORDING_GRACE = 3.0
 
 
 class Microphones:
-    """Records from ALAudioDevice, one recording at a time; `notice` is told of each that was made."""
+    """Records from ALAudioDevice, one recording at a time; `notice` gets an event for each that was made."""
 
-    def __init__(self, link: NaoqiSession, notice: EventSink, clock: Callable[[], float]) -> None:
-        self._link, self._notice, self._clock = link, notice, clock
+    def __init__(self, session: NaoqiSession, notice: EventSink, clock: Callable[[], float]) -> None:
+        self._session, self._notice, self._clock = session, notice, clock
         self._heard, self._wanted = bytearray(), 0
 
     def begin(self, command: Record) -> CallSequence:
         """The recording under way. Raises RobotError where there is no microphone."""
-        if not self._link.has(AUDIO_DEVICE):
+        if not self._session.has(AUDIO_DEVICE):
             raise RobotError(f"this robot has no {AUDIO_DEVICE}")
         return CallSequence(self._listen(command), self._hush)
 
     def _listen(self, command: Record) -> CallSteps:
         """NAOqi calls `processRemote` of our service about six times a second; whatever came before does not count."""
-        yield self._link.serve(MICROPHONE_SERVICE, self._service)
-        yield self._link.post(
+        yield self._session.serve(MICROPHONE_SERVICE, self._service)
+        yield self._session.post(
             AUDIO_DEVICE, "setClientPreferences", MICROPHONE_SERVICE, RECORDING_RATE, FRONT_MICROPHONE, INTERLEAVED
         )
         self._heard, self._wanted = bytearray(), 2 * round(command.duration * RECORDING_RATE)
-        yield self._link.post(AUDIO_DEVICE, "subscribe", MICROPHONE_SERVICE)
+        yield self._session.post(AUDIO_DEVICE, "subscribe", MICROPHONE_SERVICE)
         until = self._clock() + command.duration + RECORDING_GRACE
         while len(self._heard) < self._wanted:
             if self._clock() > until:
@@ -52,7 +52,7 @@ class Microphones:
         self._notice(Event(RECORDED, recording_body(command.name, bytes(self._heard[: self._wanted])), self._clock()))
 
     def _hush(self) -> list[NaoqiCall]:
-        return [self._link.post(AUDIO_DEVICE, "unsubscribe", MICROPHONE_SERVICE)]
+        return [self._session.post(AUDIO_DEVICE, "unsubscribe", MICROPHONE_SERVICE)]
 
     def _service(self, qi: Any) -> object:
         """What NAOqi calls, on a thread of qi's, one call at a time."""

@@ -64,7 +64,7 @@ def _late(track: JointTrack, motion: MotionDefinition, body: Body) -> float:
 
 
 class MotionPlayer:
-    """Begins motions; `post` calls NAOqi, `notice` is told of what a motion says and sounds, `clock` is in [s]."""
+    """Begins motions; `post` calls NAOqi, `notice` is called for what a motion says and sounds, `clock` is in [s]."""
 
     def __init__(self, post: PostCall, body: Body, notice: EventSink, clock: Callable[[], float]) -> None:
         self._post, self._body, self._notice, self._clock = post, body, notice, clock
@@ -121,7 +121,7 @@ class MotionPlayer:
                 )
 
     def _stand(self, joints: list[str]) -> CallSteps:
-        """Where these joints were told to be, which is where NAOqi begins."""
+        """The commanded angles of these joints, which is where NAOqi begins."""
         if not joints:
             return {}
         angles = yield self._post("ALMotion", "getAngles", joints, False)

@@ -1,4 +1,4 @@
-"""What the robot notices by itself, as NAOqi tells of it, and the thresholds of battery and heat."""
+"""What the robot notices by itself, as NAOqi's events, and the thresholds of battery and heat."""
 
 import logging
 from collections import deque
@@ -18,9 +18,9 @@ FALLING = ("robotIsFalling", "ALMotion/RobotIsFalling")
 FULL = "BatteryFullChargedFlagChanged"
 
 BATTERY_LOW, BATTERY_RECOVERED = 20, 25
-"""Charge [%] at which the robot speaks up, and may do so again."""
+"""Charge [%] at which the robot raises `battery.low`, and may do so again."""
 MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
-"""Temperatures [degrees Celsius] at which it speaks up, and may do so again."""
+"""Temperatures [degrees Celsius] at which it raises `motors.hot`, and may do so again."""
 
 EVENT_SETTLE_TIME = 0.3
 """How much younger than an event a look at the sensors has to be, to count more [s]."""
@@ -46,15 +46,15 @@ class NaoqiEvents:
         self._came: deque[tuple[str, bool]] = deque(maxlen=1_000)
         self._kept: list[Any] = []
 
-    def listen(self, link: NaoqiSession) -> None:
+    def listen(self, session: NaoqiSession) -> None:
         """Subscribe to everything, in a new session; what can't be heard is logged."""
         self._kept = []
         for name in (*self.pressed, FALLEN, *FALLING, FULL):
             event = event_of(name) if name in self.pressed else name
             try:
-                self._kept.append(link.subscribe(event, partial(self._hear, name)))
+                self._kept.append(session.subscribe(event, partial(self._hear, name)))
             except RobotError as error:
-                _log.warning("the robot will not tell of `%s`: %s", event, error)
+                _log.warning("the robot will not raise `%s`: %s", event, error)
 
     def take(self, now: float, felt: Tactile | None) -> list[tuple[str, bool]]:
         """What has changed by `now` [s]: sensors pressed or let go of, falls, and the battery.
@@ -80,7 +80,7 @@ class NaoqiEvents:
 
 
 class HealthAlerts:
-    """Speaks up once about a battery that is low and motors that are hot, and again after they have recovered."""
+    """Raises `battery.low` and `motors.hot` once, and again after they have recovered."""
 
     def __init__(self) -> None:
         self._low = False

@@ -28,40 +28,40 @@ AUTONOMOUS_LIFE_TIMEOUT = 10.0
 _log = logging.getLogger(__name__)
 
 
-def prepare(link: NaoqiSession, body: Body, *, again: bool) -> None:
+def prepare(session: NaoqiSession, body: Body, *, again: bool) -> None:
     """Take the robot over: nothing else moves it, its reflexes are on, and what it did before a break has ended.
 
     Raises RobotError where it is no robot that this body is of, or its NAOqi is too old.
     """
-    _find(link)
-    _check_version(link)
-    _check_joints(link, body)
-    if link.has("ALAutonomousLife") and link.ask("ALAutonomousLife", "getState") != "disabled":
-        link.ask("ALAutonomousLife", "setState", "disabled", patience=AUTONOMOUS_LIFE_TIMEOUT)
+    _find(session)
+    _check_version(session)
+    _check_joints(session, body)
+    if session.has("ALAutonomousLife") and session.ask("ALAutonomousLife", "getState") != "disabled":
+        session.ask("ALAutonomousLife", "setState", "disabled", patience=AUTONOMOUS_LIFE_TIMEOUT)
     if again:
-        halt(link, list(body.joints))
-    _protect(link)
+        halt(session, list(body.joints))
+    _protect(session)
 
 
-def halt(link: NaoqiSession, joints: Sequence[str]) -> None:
+def halt(session: NaoqiSession, joints: Sequence[str]) -> None:
     """End what goes on, keeping balance: a walk by its last step, motions where they are, and words."""
-    link.post("ALMotion", "stopMove").wait(2.0)
-    link.post("ALMotion", "killTasksUsingResources", list(joints)).wait(1.0)
-    if link.has("ALTextToSpeech"):
-        link.post("ALTextToSpeech", "stopAll").wait(1.0)
+    session.post("ALMotion", "stopMove").wait(2.0)
+    session.post("ALMotion", "killTasksUsingResources", list(joints)).wait(1.0)
+    if session.has("ALTextToSpeech"):
+        session.post("ALTextToSpeech", "stopAll").wait(1.0)
 
 
-def _find(link: NaoqiSession) -> None:
-    if missing := link.find(REQUIRED_SERVICES):
-        raise RobotError(f"at {link.url} there is no {missing[0]}: is NAOqi up yet, and is it a NAO?")
-    for name in link.find(OPTIONAL_SERVICES):
+def _find(session: NaoqiSession) -> None:
+    if missing := session.find(REQUIRED_SERVICES):
+        raise RobotError(f"at {session.url} there is no {missing[0]}: is NAOqi up yet, and is it a NAO?")
+    for name in session.find(OPTIONAL_SERVICES):
         _log.warning("this robot has no %s: %s", name, OPTIONAL_SERVICES[name])
 
 
-def _check_version(link: NaoqiSession) -> None:
-    if not link.has("ALSystem"):
+def _check_version(session: NaoqiSession) -> None:
+    if not session.has("ALSystem"):
         return
-    text = str(link.ask("ALSystem", "systemVersion"))
+    text = str(session.ask("ALSystem", "systemVersion"))
     found = re.match(r"(\d+)\.(\d+)", text)
     if found is None:
         _log.warning("the robot says it has NAOqi `%s`, which nobody here knows", text[:40])
@@ -73,22 +73,22 @@ def _check_version(link: NaoqiSession) -> None:
         _log.warning("the robot has NAOqi %s: Lumen was written for 2.1 to 2.8", text)
 
 
-def _check_joints(link: NaoqiSession, body: Body) -> None:
+def _check_joints(session: NaoqiSession, body: Body) -> None:
     """Raises RobotError where the robot lacks a joint: a body without hands is another model."""
-    names = list(map(str, link.ask("ALMotion", "getBodyNames", "Body")))
+    names = list(map(str, session.ask("ALMotion", "getBodyNames", "Body")))
     for joint in body.joints:
         if joint not in names:
             raise RobotError(f"this robot has no {joint}, and models/{body.name} has: {did_you_mean(joint, names)}")
 
 
-def _protect(link: NaoqiSession) -> None:
+def _protect(session: NaoqiSession) -> None:
     """NAOqi's reflexes on: the fall manager, the distance kept from obstacles, and stiffness that adapts."""
     for method, *arguments in (
         ("setFallManagerEnabled", True),
         ("setExternalCollisionProtectionEnabled", "All", True),
         ("setSmartStiffnessEnabled", True),
     ):
-        call = link.post("ALMotion", str(method), *arguments)
+        call = session.post("ALMotion", str(method), *arguments)
         try:
             if call.wait(2.0):
                 call.result()

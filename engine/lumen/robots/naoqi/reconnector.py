@@ -1,4 +1,4 @@
-"""Keeps the connection: makes it again where it breaks, and tells of both."""
+"""Keeps the connection: makes it again where it breaks, and reports both."""
 
 import logging
 import threading
@@ -25,10 +25,12 @@ class ConnectionChange(NamedTuple):
 
 
 class Reconnector:
-    """Opens a link and keeps it open; `take_over` settles what has to be, told whether it was open before."""
+    """Opens a session and keeps it open; `take_over(again)` settles what has to be after each."""
 
-    def __init__(self, link: NaoqiSession, take_over: Callable[[bool], None], first: float = FIRST_RETRY_DELAY) -> None:
-        self._link, self._take_over, self._first = link, take_over, first
+    def __init__(
+        self, session: NaoqiSession, take_over: Callable[[bool], None], first: float = FIRST_RETRY_DELAY
+    ) -> None:
+        self._session, self._take_over, self._first = session, take_over, first
         self._changes: deque[ConnectionChange] = deque(maxlen=100)
         self._broken, self._ending = threading.Event(), threading.Event()
         self._lost_at = 0.0
@@ -37,11 +39,11 @@ class Reconnector:
     def open(self) -> None:
         """Connect for the first time. Raises RobotError where that is not possible."""
         try:
-            self._link.open()
+            self._session.open()
             self._take_over(False)
-            self._link.ready = self._link.up
+            self._session.ready = self._session.up
         except RobotError:
-            self._link.close()
+            self._session.close()
             raise
         self._thread.start()
 
@@ -54,7 +56,7 @@ class Reconnector:
         self._broken.set()
 
     def changes(self) -> list[ConnectionChange]:
-        """What has changed since this was last asked."""
+        """What has changed since the last call."""
         return [self._changes.popleft() for _ in range(len(self._changes))]
 
     def close(self) -> None:
@@ -68,18 +70,18 @@ class Reconnector:
             self._broken.wait()
             self._broken.clear()
             pause = self._first
-            while not self._link.up and not self._ending.wait(pause):
+            while not self._session.up and not self._ending.wait(pause):
                 pause = min(2 * pause, MAX_RETRY_DELAY)
                 self._try()
 
     def _try(self) -> None:
         lost_at = self._lost_at
         try:
-            self._link.open()
+            self._session.open()
             self._take_over(True)
-            self._link.ready = self._link.up
+            self._session.ready = self._session.up
         except RobotError as error:
-            self._link.close()
+            self._session.close()
             _log.info("the robot is still away: %s", error)
             return
         away = time.monotonic() - lost_at

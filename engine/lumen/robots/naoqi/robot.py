@@ -42,21 +42,21 @@ class NaoqiRobot:
     ) -> None:
         self.body = body
         self._clock = clock
-        self._link = NaoqiSession(url, lambda reason: self._keeper.lose(reason), patience)
-        self._noticing = NaoqiEvents(body.tactile)
-        self._instruments = NaoqiSensors(self._link, body, clock)
-        self._ground = WalkingArea(stage, self._noticing.pressed, self._echo)
-        self._condition = HealthAlerts()
+        self._session = NaoqiSession(url, lambda reason: self._reconnector.lose(reason), patience)
+        self._naoqi_events = NaoqiEvents(body.tactile)
+        self._sensors = NaoqiSensors(self._session, body, clock)
+        self._area = WalkingArea(stage, self._naoqi_events.pressed, self._echo)
+        self._alerts = HealthAlerts()
         self._events: list[Event] = []
-        self._repertoire = NaoqiSkills(self._link, body, self._ground, self._events.append, clock)
+        self._skills = NaoqiSkills(self._session, body, self._area, self._events.append, clock)
         self._executor = Executor(self._begin, lambda command: parts(command, body))
         self._part = part_of(body)
         self._aimed: NaoqiCall = NaoqiCall()
         self._aim: Aim | None = None
-        self._keeper = Reconnector(self._link, self._take_over)
-        self._keeper.open()
+        self._reconnector = Reconnector(self._session, self._take_over)
+        self._reconnector.open()
         self._senses = {
-            sense: SensePoller(sense, self._link, self._instruments.reader(sense), SENSE_PERIODS[sense])
+            sense: SensePoller(sense, self._session, self._sensors.reader(sense), SENSE_PERIODS[sense])
             for sense in Sense
         }
 
@@ -65,7 +65,7 @@ class NaoqiRobot:
             self._executor.start(id, command)
             return
         try:
-            self._repertoire.inside(command.angles)
+            self._skills.inside(command.angles)
         except RobotError as error:
             _log.warning("an aim was refused: %s", error)
         else:
@@ -92,36 +92,36 @@ class NaoqiRobot:
 
     def close(self) -> None:
         """End what the robot does, let go of its senses, and end the threads; it stays as it stands."""
-        self._keeper.close()
+        self._reconnector.close()
         for sense in self._senses.values():
             sense.close()
-        if self._link.up:
+        if self._session.up:
             if self._executor.busy:
-                halt(self._link, list(self.body.joints))
-            self._instruments.end()
-        self._link.close()
+                halt(self._session, list(self.body.joints))
+            self._sensors.end()
+        self._session.close()
 
     def _begin(self, command: RobotCommand, now: float) -> CallSequence:
-        if not self._link.ready:
+        if not self._session.ready:
             raise RobotError(CONNECTION_LOST)
-        return self._repertoire.begin(command, now)
+        return self._skills.begin(command, now)
 
     def _take_over(self, again: bool) -> None:
         """Settle with NAOqi what has to be; on whichever thread connects."""
-        prepare(self._link, self.body, again=again)
-        self._noticing.listen(self._link)
-        self._instruments.begin()
+        prepare(self._session, self.body, again=again)
+        self._naoqi_events.listen(self._session)
+        self._sensors.begin()
         if not again:
-            self._ground.meet(self._link.ask("ALMotion", "getRobotPosition", True))
+            self._area.meet(self._session.ask("ALMotion", "getRobotPosition", True))
 
     def _feel(self, now: float) -> None:
         """Take note of what has happened since the last tick."""
-        for name, seconds, reason in self._keeper.changes():
+        for name, seconds, reason in self._reconnector.changes():
             if name == "robot.lost":
                 self._executor.fail(f"the robot is lost: {reason}")
             self._events.append(Event(name, {"seconds": round(seconds, 3)}, now))
         felt = self._senses[Sense.TACTILE].newest
-        for name, value in self._noticing.take(now, felt if isinstance(felt, Tactile) else None):
+        for name, value in self._naoqi_events.take(now, felt if isinstance(felt, Tactile) else None):
             if name in self.body.tactile:
                 self._events.append(Event("touched" if value else "released", {"sensor": name}, now))
             elif value and name in (FALLEN, *FALLING):
@@ -130,12 +130,12 @@ class NaoqiRobot:
                 self._events.append(Event("battery.full", {"percentage": 100}, now))
         battery = self._senses[Sense.BATTERY].newest
         if isinstance(battery, Battery):
-            self._events += self._condition.battery(battery.percentage, now)
-        self._events += self._condition.motors(self._instruments.heat, now)
+            self._events += self._alerts.battery(battery.percentage, now)
+        self._events += self._alerts.motors(self._sensors.heat, now)
 
     def _fall(self, name: str, now: float) -> None:
-        """Its commands end as the fall begins; `fallen` is told once it is over."""
-        self._repertoire.fallen = True
+        """Its commands end as the fall begins; `fallen` is raised once it is over."""
+        self._skills.fallen = True
         self._executor.fail("the robot fell")
         if name == FALLEN:
             self._events.append(Event("fallen", {}, now))
@@ -143,14 +143,14 @@ class NaoqiRobot:
     def _turn(self) -> None:
         """Send the newest aim, for the joints that nobody owns, unless NAOqi is still busy with the last."""
         aim = self._aim
-        if aim is None or not self._aimed.done or self._repertoire.fallen:
+        if aim is None or not self._aimed.done or self._skills.fallen:
             return
         self._aim = None
         free = {n: a for n, a in aim.angles.items() if not self._executor.owner(self._part.get(n, ""))}
-        if free and self._link.ready:
-            inside = self._repertoire.inside(free)
+        if free and self._session.ready:
+            inside = self._skills.inside(free)
             speed = min(max(aim.speed, 0.01), 1.0)
-            self._aimed = self._link.post("ALMotion", "setAngles", list(inside), list(inside.values()), speed)
+            self._aimed = self._session.post("ALMotion", "setAngles", list(inside), list(inside.values()), speed)
 
     def _echo(self) -> Sonar | None:
         echo = self._senses[Sense.SONAR].newest

@@ -22,10 +22,10 @@ class SensePoller:
     Trouble costs that sense alone: it is logged once for each reason, and tried again every second.
     """
 
-    def __init__(self, name: str, link: NaoqiSession, acquire: Callable[[], Reading], period: float) -> None:
+    def __init__(self, name: str, session: NaoqiSession, acquire: Callable[[], Reading], period: float) -> None:
         self.name = name
         self.newest: Reading | None = None
-        self._link, self._acquire, self._period = link, acquire, period
+        self._session, self._acquire, self._period = session, acquire, period
         self._told = ""
         self._rounds = self._wanted = 0
         self._busy = False
@@ -62,14 +62,14 @@ class SensePoller:
 
     def _round(self) -> float:
         """Acquire once; how long to wait until the next time [s]."""
-        if not self._link.ready:
+        if not self._session.ready:
             self.newest = None
             return self._period
         try:
             self.newest = self._acquire()
         except RobotError as error:
             self.newest = None
-            if self._link.ready and str(error) != CONNECTION_LOST and not self._ending.is_set():
+            if self._session.ready and str(error) != CONNECTION_LOST and not self._ending.is_set():
                 self._tell(str(error))
             return SENSE_RETRY_DELAY
         if self._told:

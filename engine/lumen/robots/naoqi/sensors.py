@@ -1,4 +1,4 @@
-"""How each sense is asked for: ALMemory's keys, and the camera."""
+"""How each sense is read: ALMemory's keys, and the camera."""
 
 import logging
 from collections import deque
@@ -21,7 +21,7 @@ RESOLUTIONS = {size: number for number, size in enumerate(SIZES)}
 CAMERA_RATE = 30
 """Images a second: the route says how many of them are fetched."""
 CLOCK_OFFSET_FRAMES = 100
-"""Of how many images the fastest tells how the robot's clock stands to ours."""
+"""Of how many images the fastest decides the offset of the robot's clock to ours."""
 
 _log = logging.getLogger(__name__)
 
@@ -68,8 +68,8 @@ class NaoqiSensors:
     `heat` is how hot each motor was when the joints were read last [degrees Celsius].
     """
 
-    def __init__(self, link: NaoqiSession, body: Body, clock: Callable[[], float]) -> None:
-        self._link, self._body, self._clock = link, body, clock
+    def __init__(self, session: NaoqiSession, body: Body, clock: Callable[[], float]) -> None:
+        self._session, self._body, self._clock = session, body, clock
         self.heat: dict[str, float] = {}
         self._numb = False
         self._names = list(body.joints)
@@ -94,27 +94,27 @@ class NaoqiSensors:
         """Forget what another session was about; what was left over of our own cameras is let go."""
         self._handle, self._numb = "", False
         self._behind.clear()
-        if self._link.has("ALVideoDevice"):
-            for handle in self._link.ask("ALVideoDevice", "getSubscribers") or ():
+        if self._session.has("ALVideoDevice"):
+            for handle in self._session.ask("ALVideoDevice", "getSubscribers") or ():
                 if str(handle).startswith(SUBSCRIBER_NAME):
-                    self._link.post("ALVideoDevice", "unsubscribe", handle)
-        if self._link.has("ALSonar"):
-            self._link.post("ALSonar", "subscribe", SUBSCRIBER_NAME)
+                    self._session.post("ALVideoDevice", "unsubscribe", handle)
+        if self._session.has("ALSonar"):
+            self._session.post("ALSonar", "subscribe", SUBSCRIBER_NAME)
 
     def end(self) -> None:
         """Let go of camera and sonars."""
         self._let_go(0.5)
-        if self._link.has("ALSonar"):
-            self._link.post("ALSonar", "unsubscribe", SUBSCRIBER_NAME).wait(0.5)
+        if self._session.has("ALSonar"):
+            self._session.post("ALSonar", "unsubscribe", SUBSCRIBER_NAME).wait(0.5)
 
     def joints(self) -> Joints:
         now = self._clock()
-        angles = self._numbers(self._link.ask("ALMotion", "getAngles", self._names, True), "getAngles")
-        stiffness = self._numbers(self._link.ask("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
+        angles = self._numbers(self._session.ask("ALMotion", "getAngles", self._names, True), "getAngles")
+        stiffness = self._numbers(self._session.ask("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
         return Joints(now, tuple(self._names), angles, stiffness, *self._feelings())
 
     def sonar(self) -> Sonar:
-        if not self._link.has("ALSonar"):
+        if not self._session.has("ALSonar"):
             raise RobotError("this robot has no ALSonar")
         now = self._clock()
         left, right = self._memory([device("US/Left"), device("US/Right")])
@@ -143,12 +143,12 @@ class NaoqiSensors:
             self._size = self._wanted
         handle = self._handle or self._subscribe()
         try:
-            found = self._link.ask("ALVideoDevice", "getImageRemote", handle)
+            found = self._session.ask("ALVideoDevice", "getImageRemote", handle)
             pixels, stamp = self._pixels(found)
         except RobotError:
             self._handle = ""
             raise
-        self._link.post("ALVideoDevice", "releaseImage", handle)
+        self._session.post("ALVideoDevice", "releaseImage", handle)
         self._behind.append(self._clock() - stamp)
         width, height = self._size
 
@@ -165,7 +165,7 @@ class NaoqiSensors:
         try:
             found, motors = self._memory(self._felt), len(self._names)
         except RobotError as error:
-            if self._link.up and not self._numb:
+            if self._session.up and not self._numb:
                 self._numb = True
                 _log.warning("the robot does not feel its heat, balance and weight: %s", error)
             return (), {}, {}
@@ -178,14 +178,14 @@ class NaoqiSensors:
     def _let_go(self, patience: float = 0.0) -> None:
         """Unsubscribe from the camera, and wait so long [s] for that."""
         if self._handle:
-            self._link.post("ALVideoDevice", "unsubscribe", self._handle).wait(patience)
+            self._session.post("ALVideoDevice", "unsubscribe", self._handle).wait(patience)
         self._handle = ""
 
     def _subscribe(self) -> str:
         if self._size not in RESOLUTIONS:
             raise RobotError(f"NAO's camera has no images of {self._size}")
         arguments = (SUBSCRIBER_NAME, TOP_CAMERA, RESOLUTIONS[self._size], RGB_COLOUR_SPACE, CAMERA_RATE)
-        self._handle = str(self._link.ask("ALVideoDevice", "subscribeCamera", *arguments) or "")
+        self._handle = str(self._session.ask("ALVideoDevice", "subscribeCamera", *arguments) or "")
         if not self._handle:
             raise RobotError("the camera can't be subscribed to: too many others have it")
         return self._handle
@@ -202,7 +202,7 @@ class NaoqiSensors:
         return bytes(pixels), float(seconds) + float(microseconds) / 1e6
 
     def _memory(self, keys: list[str]) -> list[Any]:
-        found = self._link.ask("ALMemory", "getListData", keys)
+        found = self._session.ask("ALMemory", "getListData", keys)
         if not isinstance(found, Sequence) or len(found) != len(keys):
             raise RobotError("ALMemory did not answer for every key")
         return list(found)

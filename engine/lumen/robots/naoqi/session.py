@@ -173,7 +173,7 @@ class NaoqiSession:
         return call.result()
 
     def subscribe(self, event: str, heard: Callable[[Any], None]) -> Any:
-        """Have `heard` called, on a thread of qi's, for each time that ALMemory tells of that event.
+        """Have `heard` called, on a thread of qi's, for each time that ALMemory raises that event.
 
         It ends when what is returned is let go of. Raises RobotError.
         """

@@ -35,12 +35,12 @@ class NaoqiSkills:
     """Begins activities; `fallen` is whether the robot lies where it fell."""
 
     def __init__(
-        self, link: NaoqiSession, body: Body, ground: WalkingArea, notice: EventSink, clock: Callable[[], float]
+        self, session: NaoqiSession, body: Body, area: WalkingArea, notice: EventSink, clock: Callable[[], float]
     ) -> None:
-        post = self._post = link.post
+        post = self._post = session.post
         self._body, self._clock = body, clock
-        self._microphones = Microphones(link, notice, clock)
-        self._walks = NaoqiWalks(post, ground)
+        self._microphones = Microphones(session, notice, clock)
+        self._walks = NaoqiWalks(post, area)
         self._player = MotionPlayer(post, body, notice, clock)
         self._part = part_of(body)
         self._unspoken: set[str] = set()

@@ -1,4 +1,4 @@
-"""What ALTextToSpeech is told: the words, in a language that it has."""
+"""What ALTextToSpeech is given: the words, in a language that it has."""
 
 from collections.abc import Sequence
 

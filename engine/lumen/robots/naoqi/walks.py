@@ -30,16 +30,16 @@ def grounded(family: object) -> bool:
 class WalkMonitor:
     """Looks around while the robot walks, and stops it; `reason` says why."""
 
-    def __init__(self, post: PostCall, ground: WalkingArea, here: GroundPose) -> None:
+    def __init__(self, post: PostCall, area: WalkingArea, here: GroundPose) -> None:
         self.reason = ""
-        self._post, self._ground, self._here = post, ground, here
+        self._post, self._area, self._here = post, area, here
         self._where: NaoqiCall | None = None
         self._look = 0.0
 
     def __call__(self, now: float) -> None:
         if self.reason:
             return
-        self.reason = self._ground.danger() or self._astray(now)
+        self.reason = self._area.danger() or self._astray(now)
         if self.reason:
             self._post("ALMotion", "stopMove")
 
@@ -53,7 +53,7 @@ class WalkMonitor:
             return ""
         found, self._where = self._where, None
         try:
-            return self._ground.outside(found.result(), self._here, MAX_STAGE_DRIFT)
+            return self._area.outside(found.result(), self._here, MAX_STAGE_DRIFT)
         except RobotError as error:
             return f"nobody knows where the robot is ({error})"
 
@@ -61,8 +61,8 @@ class WalkMonitor:
 class NaoqiWalks:
     """Begins walks; `post` calls NAOqi."""
 
-    def __init__(self, post: PostCall, ground: WalkingArea) -> None:
-        self._post, self._ground = post, ground
+    def __init__(self, post: PostCall, area: WalkingArea) -> None:
+        self._post, self._area = post, area
 
     def begin(self, command: Walk | Move) -> CallSequence:
         """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""
@@ -72,7 +72,7 @@ class NaoqiWalks:
             raise RobotError(f"there is no way to {numbers}")
         if isinstance(command, Walk) and hypot(command.x, command.y) > MAX_WALK_DISTANCE:
             raise RobotError(f"({command.x:g}, {command.y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most")
-        if reason := self._ground.danger():
+        if reason := self._area.danger():
             raise RobotError(f"{reason}: the robot did not set out")
         doing = self._walk(numbers) if isinstance(command, Walk) else self._move(numbers)
         return CallSequence(doing, lambda: [self._post("ALMotion", "stopMove")])
@@ -85,13 +85,13 @@ class NaoqiWalks:
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
             raise RobotError("the motors are off: `wake` first")
         here = yield self._post("ALMotion", "getRobotPosition", True)
-        self._ground.meet(here)
+        self._area.meet(here)
         return here
 
     def _walk(self, way: tuple[float, float, float]) -> CallSteps:
         here = yield from self._standing()
-        self._ground.check_way(here, way)
-        watch = WalkMonitor(self._post, self._ground, here)
+        self._area.check_way(here, way)
+        watch = WalkMonitor(self._post, self._area, here)
         arrived = yield WhileWaiting(self._post("ALMotion", "moveTo", *map(float, way)), watch)
         if watch.reason:
             raise RobotError(f"{watch.reason}: the walk was ended")
@@ -108,7 +108,7 @@ class NaoqiWalks:
 
     def _move(self, velocity: tuple[float, float, float]) -> CallSteps:
         here = yield from self._standing()
-        watch = WalkMonitor(self._post, self._ground, here)
+        watch = WalkMonitor(self._post, self._area, here)
         yield self._post("ALMotion", "move", *map(float, velocity))
         while any(velocity):
             now: Any = yield None

@@ -1,6 +1,6 @@
 """A robot that is somewhere else: whoever has the body hosts it on the bus, whoever has the brain sees a `Robot`.
 
-`Host` is the body's side, `RemoteRobot` and `RemoteHall` are the brain's and the visitor's.
+`RobotHost` is the body's side, `RemoteRobot` and `RemoteHall` are the brain's and the visitor's.
 """
 
 from lumen.robots.remote.hall import RemoteHall

@@ -83,5 +83,5 @@ def _felt(body: Mapping[str, Any], count: int) -> tuple[tuple[float, ...], dict[
 
 
 def visitor_body(visitor: Any) -> dict[str, Any]:
-    """What the hall is told of who stands in it."""
+    """The body that puts this visitor into the hall."""
     return {"visitor": None if visitor is None else asdict(visitor)}

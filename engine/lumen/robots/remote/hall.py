@@ -20,7 +20,7 @@ _log = logging.getLogger(__name__)
 
 
 class RemoteHall:
-    """What a visitor does in a simulated hall, told to the process that simulates it, and how the robot sees them."""
+    """What a visitor does in a simulated hall, sent to the process that simulates it, and how the robot sees them."""
 
     def __init__(self, project: Project, bus: Bus) -> None:
         self._project, self._bus = project, bus

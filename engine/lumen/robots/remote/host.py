@@ -16,7 +16,7 @@ from lumen.robots.robot_routes import HALL, SEEN, key_of, tell
 from lumen.robots.server import RobotServer
 
 FACE_REPORT_PERIOD = 0.1
-"""How often it is told at most where the visitor's face is seen [s]."""
+"""How often at most it is published where the visitor's face is seen [s]."""
 MAX_VISITOR_DISTANCE, MAX_VISITOR_HEIGHT = 100.0, 3.0
 
 _log = logging.getLogger(__name__)
@@ -25,8 +25,8 @@ _log = logging.getLogger(__name__)
 class RobotHost:
     """Lumen Server for a robot, and for the hall around it where it is simulated.
 
-    Whoever owns the clock calls `tick`; what the robot answered and noticed since is told to everybody, and returned.
-    `told` hears of each command that the robot is given.
+    Whoever owns the clock calls `tick`; what the robot answered and noticed since is published, and returned.
+    `started` is called with each command that the robot is given.
     """
 
     def __init__(
@@ -35,33 +35,33 @@ class RobotHost:
         robot: Robot,
         bus: Bus,
         hall: Hall | None = None,
-        told: Callable[[RobotCommand], None] = lambda _: None,
+        started: Callable[[RobotCommand], None] = lambda _: None,
     ) -> None:
-        self.server = RobotServer(project, robot, bus, told=told)
+        self.server = RobotServer(project, robot, bus, started=started)
         self._robot, self._bus, self._hall, self._project = robot, bus, hall, project
-        self._deeds: deque[Message] = deque(maxlen=1_000)
+        self._visitor_messages: deque[Message] = deque(maxlen=1_000)
         self._seen: object = ()
         self._looked = -FACE_REPORT_PERIOD
         self._happened: list[Event] = []
         self._key = key_of(project, HALL)
         self._undo: Callable[[], None] = lambda: None
         if hall:
-            self._undo = bus.subscribe(self._key, self._deeds.append)
+            self._undo = bus.subscribe(self._key, self._visitor_messages.append)
 
     def use(self, project: Project) -> None:
         """Go by another bundle from now on."""
         self._project, key = project, key_of(project, HALL)
         if self._hall and key != self._key:
             undo, self._key = self._undo, key
-            self._undo = self._bus.subscribe(key, self._deeds.append)
+            self._undo = self._bus.subscribe(key, self._visitor_messages.append)
             undo()
         self.server.use(project)
 
     def tick(self, now: float) -> list[Event]:
-        """Do what the visitor does, publish the senses that are due, begin commands, and tell what came of them."""
-        while self._deeds and self._hall:
+        """Do what the visitor does, publish the senses that are due, begin commands, and publish what came of them."""
+        while self._visitor_messages and self._hall:
             try:
-                self._live(self._hall, self._deeds.popleft().body, now)
+                self._apply(self._hall, self._visitor_messages.popleft().body, now)
             except LumenError as error:
                 _log.warning("what a visitor does was refused: %s", error)
         self.server.sample(now)
@@ -81,8 +81,8 @@ class RobotHost:
         self._undo()
         self.server.close()
 
-    def _live(self, hall: Hall, deed: Any, now: float) -> None:
-        match deed:
+    def _apply(self, hall: Hall, body: Any, now: float) -> None:
+        match body:
             case {"visitor": None}:
                 hall.place(None)
             case {"visitor": dict(place)} if (visitor := _visitor(place)) is not None:
@@ -92,9 +92,9 @@ class RobotHost:
             case {"plugged": bool(plugged)}:
                 hall.plug(plugged)
             case {"event": str(name)} if name in ROBOT_EVENTS:
-                self.notice(Event(name, deed.get("data"), now))
+                self.notice(Event(name, body.get("data"), now))
             case _:
-                _log.warning("what a visitor does was refused: nobody understands %s", str(deed)[:80])
+                _log.warning("what a visitor does was refused: nobody understands %s", str(body)[:80])
 
     def _look(self, hall: Hall, now: float) -> None:
         face = hall.face()

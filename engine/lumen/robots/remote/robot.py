@@ -23,7 +23,7 @@ RESEND_PERIOD = 1.0
 ANSWER_TIMEOUT = 5.0
 """How long one may stay without any answer [s]: it failed then, and is not wanted any more."""
 OUTCOME_QUERY_PERIOD = 5.0
-"""How long after its last news the robot is asked what became of a command [s]."""
+"""How long after its last report the robot is queried for the outcome of a command [s]."""
 AIM_TTL = 0.2
 COMMAND_TTL = 2.0
 MAX_PENDING_REPORTS = 10_000
@@ -41,7 +41,7 @@ class _Pending:
     id: str
     command: RobotCommand | None
     since: float
-    told: float
+    queried: float
     heard: bool = False
     cancelled: bool = False
     held: bool = False
@@ -117,7 +117,7 @@ class RemoteRobot:
             if pending.id == id and pending.held:
                 self._end(whole, "cancelled")
             elif pending.id == id:
-                pending.cancelled, pending.told = True, self._patience()
+                pending.cancelled, pending.queried = True, self._patience()
                 self._ask("cancel", whole)
 
     def recover(self, session: str, ids: Iterable[str]) -> None:
@@ -155,7 +155,7 @@ class RemoteRobot:
         return None if newest is None else newest[0].time + self._clock() - newest[1]
 
     def close(self) -> None:
-        """Listen no more; the robot goes on with what it was told."""
+        """Listen no more; the robot goes on with what was sent."""
         for undo in self._undo.values():
             undo()
         self._undo.clear()
@@ -180,13 +180,13 @@ class RemoteRobot:
                 self._ask("cancel", whole)
 
     def _release(self) -> None:
-        """The robot has what stops it, or never will: now to what was asked for since."""
+        """The robot has what stops it, or never will: now send what was held back."""
         if self._stopping():
             return
         now = self._patience()
         for whole, pending in list(self._pending.items()):
             if pending.held and pending.command is not None:
-                pending.held, pending.since, pending.told = False, now, now
+                pending.held, pending.since, pending.queried = False, now, now
                 self._order(whole, pending.command)
 
     def _ask(self, method: str, whole: str) -> None:
@@ -196,7 +196,7 @@ class RemoteRobot:
         try:
             tell(self._bus, self._project, way, body, ttl=ttl)
         except BusError as error:
-            _log.warning("the robot was not told: %s", error)
+            _log.warning("a command was not sent to the robot: %s", error)
 
     def _sense(self, sense: Sense, message: Message) -> None:
         """On whichever thread the bus has."""
@@ -216,7 +216,7 @@ class RemoteRobot:
             if whole in self._forsaken and state in (ACCEPTED, STARTED):
                 self._ask("cancel", whole)
             return
-        pending.told = self._patience()
+        pending.queried = self._patience()
         if state == STARTED:
             self._begun.append(pending.id)
         pending.heard = True
@@ -232,14 +232,14 @@ class RemoteRobot:
         """Send again what was not heard of, ask after what was not heard of for long, and give up in the end."""
         now = self._patience()
         for whole, pending in list(self._pending.items()):
-            quiet = now - pending.told
+            quiet = now - pending.queried
             if pending.held:
                 continue
             if not pending.heard and now - pending.since > ANSWER_TIMEOUT:
                 self._forsaken.append(whole)
                 self._end(whole, "error", "the robot does not answer")
             elif quiet > (OUTCOME_QUERY_PERIOD if pending.heard and not pending.cancelled else RESEND_PERIOD):
-                pending.told = now
+                pending.queried = now
                 if pending.cancelled:
                     self._ask("cancel", whole)
                 elif pending.heard or pending.command is None:

@@ -23,10 +23,10 @@ STALL_POWER = 6.0
 """What a motor takes [W] to give its greatest torque without moving."""
 
 BATTERY_LOW, BATTERY_RECOVERED, BATTERY_USED = 20, 25, 95
-"""Charge [%] at which the robot speaks up, may do so again, and may say again that the battery is full."""
+"""Charge [%] at which the robot raises `battery.low`, may do so again, and may raise `battery.full` again."""
 
 MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
-"""Temperatures [degrees Celsius] at which the robot speaks up, and may do so again."""
+"""Temperatures [degrees Celsius] at which the robot raises `motors.hot`, and may do so again."""
 
 MOTOR_AMBIENT, MOTOR_RISE, MOTOR_TIME_CONSTANT = 38.0, 300.0, 600.0
 """Where motors begin, how far they heat up at their greatest torque, in what time [s]. Chosen, not measured."""
@@ -63,7 +63,7 @@ class BatteryAndHeat:
 
     @property
     def hot(self) -> bool:
-        """Whether a motor has spoken up and not cooled down since."""
+        """Whether a motor was hot and has not cooled down since."""
         return bool(self._hot)
 
     def live(self, torques: NDArray[np.float64], speeds: NDArray[np.float64], dt: float, now: float) -> list[Event]:

@@ -12,17 +12,17 @@ TOP_CAMERA = f"{ROBOT}/CameraTop"
 
 
 class TopCamera:
-    """Takes images, to be drawn later by another thread, and tells where a point appears in them."""
+    """Takes images, to be drawn later by another thread, and computes where a point appears in them."""
 
     def __init__(self, world: World, camera: Camera) -> None:
         self._world, self._camera = world, camera
-        self._studio = None if available() else SceneRenderer(world.model, CAMERA_QUALITY)
+        self._renderer = None if available() else SceneRenderer(world.model, CAMERA_QUALITY)
 
     def image(self, now: float) -> Image | None:
         """The image of this moment; None where nothing can be drawn."""
-        if self._studio is None:
+        if self._renderer is None:
             return None
-        studio, camera, scene = self._studio, self._camera, RenderState.of(self._world.model, self._world.data)
+        studio, camera, scene = self._renderer, self._camera, RenderState.of(self._world.model, self._world.data)
 
         def pixels(size: Size | None = None) -> PixelArray:
             return studio.draw(scene, TOP_CAMERA, *(size or (camera.width, camera.height)))
@@ -37,5 +37,5 @@ class TopCamera:
 
     def close(self) -> None:
         """Let go of this thread's OpenGL context."""
-        if self._studio:
-            self._studio.close()
+        if self._renderer:
+            self._renderer.close()

@@ -25,7 +25,7 @@ class Film:
         if mujoco.mj_name2id(robot.world.model, mujoco.mjtObj.mjOBJ_CAMERA, camera) < 0:
             raise RobotError(f"the hall has no camera `{camera}` to film with")
         self._robot, self._camera = robot, camera
-        self._studio = SceneRenderer(robot.world.model, FILM_QUALITY)
+        self._renderer = SceneRenderer(robot.world.model, FILM_QUALITY)
         self._writer = _writer(path)
         self.frames = 0
 
@@ -38,7 +38,7 @@ class Film:
         if not self.frame_due(now):
             return
         world = self._robot.world
-        pixels = self._studio.draw(RenderState.of(world.model, world.data), self._camera, FILM_WIDTH, FILM_HEIGHT)
+        pixels = self._renderer.draw(RenderState.of(world.model, world.data), self._camera, FILM_WIDTH, FILM_HEIGHT)
         while self.frame_due(now):
             self._writer.send(pixels.tobytes())
             self.frames += 1
@@ -46,7 +46,7 @@ class Film:
     def close(self) -> None:
         """Finish the file; harmless when repeated."""
         self._writer.close()
-        self._studio.close()
+        self._renderer.close()
 
 
 def _writer(path: Path) -> Generator[None, bytes, None]:

@@ -16,7 +16,7 @@ LIMP_STIFFNESS = 0.5
 class Motors:
     """Takes goals, and drives every joint there inside the body's limits and speeds.
 
-    `goal` is where the joints are wanted, `command` what their servos are told: Shape (joints,), [rad; hands 0..1].
+    `goal` is where the joints are wanted, `command` what is sent to their servos: Shape (joints,), [rad; hands 0..1].
     `effort` is the greatest torque of each motor [N m], 0 at a joint that shares another's.
     """
 

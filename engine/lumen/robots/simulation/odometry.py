@@ -19,7 +19,7 @@ its belly or falling. Six robots of any weight on any floor were off by 0.05, 0.
 class Odometry:
     """Both soles in the frame of the robot's start. `stage`, in the same frame, bounds where they may go.
 
-    `doubt` is how far from there the robot may really be [m]: nothing tells it how it slid while it was down.
+    `doubt` is how far from there the robot may really be [m]: nothing measures how it slid while it was down.
     """
 
     def __init__(self, stage: Stage | None) -> None:

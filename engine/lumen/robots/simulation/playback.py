@@ -21,7 +21,7 @@ _START_POSTURE_TOLERANCE = 0.05
 class MotionPlayback:
     """A motion: to the posture it begins in where the robot is not there, then along its keys, cues beside them.
 
-    `home` holds that posture's angles [rad] of the joints that the motion owns; `notice` is told of words and sounds.
+    `home` holds that posture's angles [rad] of the joints that the motion owns; `notice` gets words and sounds.
     Raises RobotError for a motion that names other joints than the robot's, or angles that are no numbers.
     """
 

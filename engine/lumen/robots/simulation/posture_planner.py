@@ -24,7 +24,7 @@ SETTLING_TIME, REST_TIME = 1.5, 0.4
 
 
 class UprightSensor(Protocol):
-    """What the accelerometer tells of the torso: where up is, in its own axes (forward, left, up)."""
+    """What the accelerometer measures of the torso: where up is, in its own axes (forward, left, up)."""
 
     @property
     def up(self) -> tuple[float, float, float]: ...
@@ -65,7 +65,7 @@ class PosturePlanner:
         motors: Motors,
         body: Body,
         feeling: UprightSensor,
-        stance: PostureState,
+        state: PostureState,
         goals: tuple[str, ...],
         now: float,
         *,
@@ -73,7 +73,7 @@ class PosturePlanner:
         settle: bool = False,
         after: Callable[[], None] | None = None,
     ) -> None:
-        self._motors, self._body, self._feeling, self._stance = motors, body, feeling, stance
+        self._motors, self._body, self._feeling, self._posture_state = motors, body, feeling, state
         self._goals, self._speed, self._after = goals, speed, after
         self._left = MAX_ATTEMPTS
         self._cancelled = False
@@ -98,7 +98,7 @@ class PosturePlanner:
 
     def cancel(self) -> None:
         if isinstance(self._step, _Passing):
-            self._stance.passage, self._stance.reached = self._step.motion, self._step.reached
+            self._posture_state.passage, self._posture_state.reached = self._step.motion, self._step.reached
             self._step = None
         elif self._step is not None:
             self._step.cancel()
@@ -106,33 +106,33 @@ class PosturePlanner:
 
     def _arrived(self) -> bool:
         """Take note of where the robot has come to, and whether that is where it was to come."""
-        step, stance = self._step, self._stance
-        stance.posture, stance.passage = step.end if step else stance.posture, None
+        step, state = self._step, self._posture_state
+        state.posture, state.passage = step.end if step else state.posture, None
         down = lying(self._feeling)
-        if down == (stance.posture if lies(stance.posture) else ""):
+        if down == (state.posture if lies(state.posture) else ""):
             return True
         self._left -= 1
         if not self._left or not down:
-            raise RobotError(f"the robot did not come to {stance.posture}" + (": it lies" if down else ""))
-        stance.posture = down
+            raise RobotError(f"the robot did not come to {state.posture}" + (": it lies" if down else ""))
+        state.posture = down
         return False
 
     def _next(self, now: float) -> "_Passing | _Straight | None":
-        stance = self._stance
-        if stance.passage:
-            return _Passing(self._motors, stance.passage, now, stance.reached)
-        path = route(self._body, stance.posture, *self._goals)
+        state = self._posture_state
+        if state.passage:
+            return _Passing(self._motors, state.passage, now, state.reached)
+        path = route(self._body, state.posture, *self._goals)
         if path is None:
-            raise RobotError(f"no way leads from {stance.posture} to {' or '.join(self._goals)}")
+            raise RobotError(f"no way leads from {state.posture} to {' or '.join(self._goals)}")
         if not path:
             return None
-        motion = passage(self._body, stance.posture, path[0])
+        motion = passage(self._body, state.posture, path[0])
         if motion:
             return _Passing(self._motors, motion, now)
         return _Straight(self._motors, self._body, path[0], now, duration(self._speed))
 
     def _settled(self, now: float) -> "_Straight":
-        return _Straight(self._motors, self._body, self._stance.posture, now, SETTLING_TIME)
+        return _Straight(self._motors, self._body, self._posture_state.posture, now, SETTLING_TIME)
 
 
 class _Straight:

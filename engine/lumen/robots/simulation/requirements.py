@@ -7,7 +7,7 @@ from dm_control import mjcf
 from lumen.language.robots import Body
 
 MAX_TIMESTEP = 0.01
-"""The longest timestep [s]: the joints are told where to go as often."""
+"""The longest timestep [s]: the joints get their goals as often."""
 
 _HEAD = ("HeadYaw", "HeadPitch")
 _LEG = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")

@@ -72,28 +72,28 @@ class SimulatedRobot:
         self.condition = BatteryAndHeat(tuple(body.joints), [joint.effort for joint in body.joints.values()])
         self.greatest_tilt = 0.0
         self._balance = BalanceController(self.motors)
-        self._steering = AimController(self.motors)
-        self._instruments = BodySensors(self.world, variation.noise if variation else 0.0, seed)
+        self._aiming = AimController(self.motors)
+        self._sensors = BodySensors(self.world, variation.noise if variation else 0.0, seed)
         self._pressed = dict.fromkeys(body.tactile, False)
         self._held: set[str] = set()
-        self._touch = TactileSensors(self.world.model, self.world.data, body.tactile)
-        self._scales = ForceSensors(self.world.model, self.world.data)
+        self._tactile = TactileSensors(self.world.model, self.world.data, body.tactile)
+        self._force_sensors = ForceSensors(self.world.model, self.world.data)
         self._sonars = Sonars(self.world.model, self.world.data, body.sonar, seed) if body.sonar else None
-        self._whereabouts = Odometry(stage)
+        self._odometry = Odometry(stage)
         walker = WalkController(
             self.motors,
             self._balance,
-            self._instruments,
-            self._whereabouts,
+            self._sensors,
+            self._odometry,
             MassModel(body, Path(models)),
             Hazards(self._sonars, self._pressed),
             self._free,
             lambda: self.condition.hot,
         )
-        self._repertoire = SimulatedSkills(
-            self.world, self.motors, self.lights, walker, self._instruments, posture, self._notice
+        self._skills = SimulatedSkills(
+            self.world, self.motors, self.lights, walker, self._sensors, posture, self._notice
         )
-        self._executor = Executor(self._begin, self._repertoire.parts)
+        self._executor = Executor(self._begin, self._skills.parts)
         self._figure = VisitorFigure(self.world.model, self.world.data)
         self._camera = TopCamera(self.world, body.camera)
         self._events: list[Event] = []
@@ -108,16 +108,16 @@ class SimulatedRobot:
 
     @property
     def fallen(self) -> bool:
-        return self._repertoire.fallen
+        return self._skills.fallen
 
     @property
     def awake(self) -> bool:
         """Whether the motors are on."""
-        return self._repertoire.awake
+        return self._skills.awake
 
     def speak_with(self, voice: SpeechPlayback) -> None:
         """Say texts with this voice from now on, as long as it takes."""
-        self._repertoire.voice = voice
+        self._skills.voice = voice
 
     def advance(self, dt: float) -> None:
         """Live `dt` [s] of physics, in whole control periods: what is left over is lived next time.
@@ -134,7 +134,7 @@ class SimulatedRobot:
             return
         try:
             if self.awake and not self.fallen:
-                self._steering.aim(command)
+                self._aiming.aim(command)
         except RobotError as error:
             _log.warning("an aim was refused: %s", error)
 
@@ -156,7 +156,7 @@ class SimulatedRobot:
             case Sense.JOINT:
                 angles, stiffness = self.world.angles.tolist(), self.motors.stiffness.tolist()
                 heat = tuple(self.condition.temperatures.round(1).tolist())
-                felt = heat, self._instruments.inertial, self._scales.weigh()
+                felt = heat, self._sensors.inertial, self._force_sensors.weigh()
                 return Joints(now, self.motors.names, tuple(angles), tuple(stiffness), *felt)
             case Sense.SONAR:
                 return Sonar(now, *self._sonars.measure()) if self._sonars else None
@@ -184,7 +184,7 @@ class SimulatedRobot:
 
     def _feel_touch(self) -> None:
         """Notice which tactile sensors are pressed: by a hand, or by what stands in the hall."""
-        now = self._held | self._touch.pressed()
+        now = self._held | self._tactile.pressed()
         for sensor, before in self._pressed.items():
             if before != (sensor in now):
                 self._pressed[sensor] = not before
@@ -199,15 +199,15 @@ class SimulatedRobot:
     def _begin(self, command: RobotCommand, now: float) -> Activity:
         if self.condition.empty and not isinstance(command, Rest):
             raise RobotError("the battery is empty: plug the robot in")
-        return self._repertoire.begin(command, now)
+        return self._skills.begin(command, now)
 
     def _tick(self) -> None:
         now = self.time
         self._events += [e for e in self._executor.advance(now) if not e.name.endswith(f".command.{_EMPTY}")]
-        self._steering.advance(CONTROL_PERIOD, self._free)
-        self._instruments.feel()
+        self._aiming.advance(CONTROL_PERIOD, self._free)
+        self._sensors.feel()
         if self.awake:
-            gyro = self._instruments.gyro if self._repertoire.upright else (0.0, 0.0)
+            gyro = self._sensors.gyro if self._skills.upright else (0.0, 0.0)
             self.motors.drive(self._balance.trim(gyro), CONTROL_PERIOD)
         self.world.step()
         self._ticks += 1
@@ -215,20 +215,20 @@ class SimulatedRobot:
 
     def _free(self, joint: str) -> bool:
         """Whether no command owns that joint and it has power."""
-        return self.awake and not self._executor.owner(self._repertoire.part(joint))
+        return self.awake and not self._executor.owner(self._skills.part(joint))
 
     def _watch(self, now: float) -> None:
         """Notice a fall; every now and then, battery and heat."""
         tilt = self.world.tilt
         self._feel_touch()
-        upright = self._repertoire.upright
+        upright = self._skills.upright
         if not upright or self.fallen:
-            self._whereabouts.lose("" if self.fallen else self._repertoire.posture)
+            self._odometry.lose("" if self.fallen else self._skills.posture)
         elif tilt < STANDING_TILT:
-            self._whereabouts.keep(self._instruments.heading)
+            self._odometry.keep(self._sensors.heading)
         self.greatest_tilt = max(self.greatest_tilt, degrees(tilt)) if upright else self.greatest_tilt
         if tilt > FALLEN_TILT and upright and not self.fallen:
-            self._repertoire.fall()
+            self._skills.fall()
             self._executor.fail("the robot fell")
             self._events.append(Event("fallen", {}, now))
         if self._ticks % _CONDITION_EVERY == 0:

@@ -34,7 +34,7 @@ _UPRIGHT = pi / 9
 class SimulatedSkills:
     """Begins activities; knows whether the motors are on, in which posture the robot is and whether it has fallen.
 
-    `notice` is told of what a motion says and sounds; `playing` is the motion begun last.
+    `notice` gets events for what a motion says and sounds; `playing` is the motion begun last.
     """
 
     def __init__(
@@ -43,15 +43,15 @@ class SimulatedSkills:
         motors: Motors,
         lights: Lights,
         walker: WalkController,
-        instruments: BodySensors,
+        sensors: BodySensors,
         posture: str,
         notice: EventSink,
     ) -> None:
         self._world, self._motors, self._lights, self._walker = world, motors, lights, walker
-        self._instruments, self._notice = instruments, notice
+        self._sensors, self._notice = sensors, notice
         self._postures = world.body.postures
         self._part = part_of(world.body)
-        self._stance = PostureState(posture)
+        self._posture_state = PostureState(posture)
         self._way: PosturePlanner | None = None
         self.playing: MotionPlayback | None = None
         self.awake, self.fallen = True, False
@@ -60,12 +60,12 @@ class SimulatedSkills:
     @property
     def upright(self) -> bool:
         """Whether the robot is on both feet, and means to stay there."""
-        return self._stance.upright and not (self._way and self._way.passing)
+        return self._posture_state.upright and not (self._way and self._way.passing)
 
     @property
     def posture(self) -> str:
         """The posture that the robot is in, or on its way from."""
-        return self._stance.posture
+        return self._posture_state.posture
 
     def parts(self, command: RobotCommand) -> frozenset[str]:
         """Which parts of the body a command owns."""
@@ -96,7 +96,7 @@ class SimulatedSkills:
                 return self._wake(now)
             case Walk() | Move():
                 if not self.upright:
-                    raise RobotError(f"the robot is in {self._stance.posture}: send it to Stand first")
+                    raise RobotError(f"the robot is in {self._posture_state.posture}: send it to Stand first")
                 return (
                     self._walker.begin(command, now) if isinstance(command, Walk) else self._walker.move(command, now)
                 )
@@ -121,7 +121,7 @@ class SimulatedSkills:
         motion, owned = command.motion, self.parts(command)
         start = self._postures.get(motion.start, {})
         home = {name: angle for name, angle in start.items() if self._part[name] in owned}
-        here = self._stance.posture
+        here = self._posture_state.posture
         if motion.start and motion.start != here and not (self.upright and motion.start in UPRIGHT):
             raise RobotError(f"`{motion.name}` begins in {motion.start}; the robot is in {here}: send it there first")
         self.playing = MotionPlayback(self._motors, self._lights, motion, home, now, self._notice)
@@ -140,25 +140,25 @@ class SimulatedSkills:
         self, goals: tuple[str, ...], now: float, speed: float, after: Callable[[], None] | None = None
     ) -> PosturePlanner:
         """The way to one of these postures; a robot that has fallen, or was limp, begins with where it lies or sits."""
-        limp, down = self.fallen or not self.awake, lying(self._instruments)
+        limp, down = self.fallen or not self.awake, lying(self._sensors)
         if limp and down:
-            self._stance = PostureState(down)
+            self._posture_state = PostureState(down)
         elif self.fallen:
             if self._world.tilt > _UPRIGHT:
                 raise RobotError("the robot has fallen, but does not lie: put it on its feet first")
-            self._stance = PostureState(UPRIGHT[0])
+            self._posture_state = PostureState(UPRIGHT[0])
         if limp:
             self._motors.stiffen(1.0)
             self.awake, self.fallen = True, False
         self._way = PosturePlanner(
             self._motors,
             self._world.body,
-            self._instruments,
-            self._stance,
+            self._sensors,
+            self._posture_state,
             goals,
             now,
             speed=speed,
-            settle=limp and not self._stance.upright,
+            settle=limp and not self._posture_state.upright,
             after=after,
         )
         return self._way

@@ -25,10 +25,10 @@ MASS_RANGE, FRICTION_RANGE, USUAL_FRICTION = (0.9, 1.1), (0.5, 1.0), 0.8
 
 
 class ExaminedRobot(SimulatedRobot):
-    """A simulated robot that tells how it fares."""
+    """A simulated robot that measures how it fares."""
 
     def strain(self) -> Strain:
-        motors, playing = self.motors, self._repertoire.playing
+        motors, playing = self.motors, self._skills.playing
         late = np.abs(motors.goal - self.world.angles)
         full = (np.abs(self.world.torques) >= EXHAUSTED_TORQUE * motors.effort) & (motors.effort > 0.0)
         turning = [i for i, name in enumerate(motors.names) if name not in self.body.hands]

@@ -39,23 +39,23 @@ ARM_SWING_GAIN, MAX_ARM_SWING, HANGING_ARM_PITCH = 2.5, 0.35, 1.0
 class WalkController:
     """What walking takes; `begin` makes the activity of a command.
 
-    `free` tells whether nothing else moves a joint, `hot` whether the motors should be spared.
+    `free` says whether nothing else moves a joint, `hot` whether the motors should be spared.
     """
 
     def __init__(
         self,
         motors: Motors,
         balance: BalanceController,
-        instruments: BodySensors,
-        whereabouts: Odometry,
-        anatomy: MassModel,
+        sensors: BodySensors,
+        odometry: Odometry,
+        mass_model: MassModel,
         hazards: Hazards,
         free: Callable[[str], bool],
         hot: Callable[[], bool],
     ) -> None:
-        self.motors, self.balance, self.instruments = motors, balance, instruments
-        self.whereabouts, self.hazards = whereabouts, hazards
-        self._anatomy, self._free, self._hot = anatomy, free, hot
+        self.motors, self.balance, self.sensors = motors, balance, sensors
+        self.odometry, self.hazards = odometry, hazards
+        self._mass_model, self._free, self._hot = mass_model, free, hot
         legs = {side + name for side in SIDES for name in JOINTS}
         self._legs = [(name, i) for name, i in motors.index.items() if name in legs]
         self._others = [name for name in motors.names if name not in legs]
@@ -85,16 +85,16 @@ class WalkController:
     def _set_out(self, way: Pose | Velocity, now: float) -> "WalkActivity":
         if reason := self.hazards.danger():
             raise RobotError(f"{reason}: the robot did not set out")
-        feet = self.whereabouts.feel(self.measured())
+        feet = self.odometry.feel(self.measured())
         goal = way if isinstance(way, Velocity) else middle(feet).then(way)
         gait = Gait(feet, goal, self._centre_of_mass, GENTLE_GAIT if self._hot() else None)
-        self.whereabouts.check(gait.coming)
+        self.odometry.check(gait.coming)
         self._walking = WalkActivity(self, gait, now)
         return self._walking
 
     def measured(self) -> dict[str, float]:
         """Where the encoders say the legs' joints are [rad]."""
-        angles = self.instruments.angles
+        angles = self.sensors.angles
         return {name: float(angles[i]) for name, i in self._legs}
 
     def swing(self, stride: float) -> None:
@@ -105,7 +105,7 @@ class WalkController:
         self.motors.sway({n: a for n, a in arms.items() if hanging[n] > HANGING_ARM_PITCH and self._free(n)})
 
     def _centre_of_mass(self, legs: Mapping[str, float]) -> NDArray[np.float64]:
-        return self._anatomy.centre_of_mass({**self.motors.wanted(self._others), **legs})
+        return self._mass_model.centre_of_mass({**self.motors.wanted(self._others), **legs})
 
 
 class WalkActivity:
@@ -155,10 +155,10 @@ class WalkActivity:
 
     def _go(self) -> bool:
         walker = self._walker
-        tick = self._gait.tick(walker.measured(), walker.instruments.heading)
+        tick = self._gait.tick(walker.measured(), walker.sensors.heading)
         if tick is None:
             return self._end()
-        walker.whereabouts.pass_by(self._gait.feet)
+        walker.odometry.pass_by(self._gait.feet)
         walker.motors.aim(tick.angles)
         walker.swing(tick.stride)
         walker.balance.lifted = tick.lifted
@@ -175,7 +175,7 @@ class WalkActivity:
             self._landed = self._gait.steps
             try:
                 drift = 0.0 if isinstance(self._gait.goal, Velocity) else MAX_STAGE_DRIFT
-                self._walker.whereabouts.check(self._gait.coming, drift)
+                self._walker.odometry.check(self._gait.coming, drift)
             except RobotError as error:
                 self._reason = str(error)
         if self._reason:
@@ -183,7 +183,7 @@ class WalkActivity:
 
     def _end(self) -> bool:
         self._over = True
-        self._walker.whereabouts.land(self._gait.feet)
+        self._walker.odometry.land(self._gait.feet)
         if self._reason:
             raise RobotError(f"{self._reason}: the walk was ended")
         far, turned = self._gait.left
