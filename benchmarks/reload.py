@@ -27,13 +27,13 @@ from editing import Colleague, project
 from tests.guarded import PIPE, Guarded
 
 import lumen
+from lumen.app.garbage import GcScheduler
+from lumen.app.node import Node
+from lumen.app.reload.records import RunRecords
+from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.report import ReloadReport
+from lumen.app.setup import Setup
 from lumen.bus import connect
-from lumen.cli.cast import Cast
-from lumen.cli.reloading.bulletin import Bulletin
-from lumen.cli.reloading.records import Records
-from lumen.cli.reloading.reloading import Reloading
-from lumen.cli.show import Show
-from lumen.cli.sweeping import Sweeper
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.stories import Visitor
@@ -93,10 +93,10 @@ class Told(NamedTuple):
     reason: str
 
 
-def told_of(bulletin: Bulletin, at: float) -> Told:
-    own = bulletin.judged.took if bulletin.judged else 0.0
-    reason = next(bulletin.lines(), "")
-    return Told(at, bulletin.verdict, bulletin.after, own, bulletin.took.get("applying", 0.0), reason)
+def told_of(report: ReloadReport, at: float) -> Told:
+    own = report.validation.took if report.validation else 0.0
+    reason = next(report.lines(), "")
+    return Told(at, report.verdict, report.after, own, report.took.get("applying", 0.0), reason)
 
 
 METRONOME = f"""
@@ -124,7 +124,7 @@ def metronome() -> Iterator[list[int]]:
 class Load(threading.Thread):
     """Sends events on a bus of its own, numbered by their count, at `RATE` a second."""
 
-    def __init__(self, show: Show, url: str) -> None:
+    def __init__(self, show: Node, url: str) -> None:
         super().__init__(daemon=True)
         self.sent, self.ended = 0, threading.Event()
         self._bus = show.exhibition.bus if url.startswith("memory") else connect(url)
@@ -146,12 +146,12 @@ class Soak:
     def __init__(self, root: Path, url: str, quiet: float, seed: int, edits: int) -> None:
         bundle = lumen.load(root)
         robot = RecordingRobot(bundle.body)
-        self.show = Show(bundle, Cast(robot, SimulatedClock(robot.advance, 1.0), robot), url)
+        self.show = Node(bundle, Setup(robot, SimulatedClock(robot.advance, 1.0), robot), url)
         transcript = Transcript(self.show.exhibition.clock.now, lambda: bundle.machine, StringIO())
         home = Home(root / ".lumen")
         home.hold()
-        records = Records(home)
-        self.reloading = Reloading(self.show, transcript, records=records, quiet=quiet, apart=True)
+        records = RunRecords(home)
+        self.reloading = Reloader(self.show, transcript, records=records, quiet=quiet, apart=True)
         self.show.exhibition.parts += [self.reloading.tick, self.look]
         self.show.closing.insert(0, self.reloading.close)
         self.show.closing += [records.close, home.release]
@@ -160,7 +160,7 @@ class Soak:
         self.show.closing.append(self.writer.close)
         self.load = Load(self.show, url)
         self._told: list[Told] = []
-        self._last: Bulletin | None = None
+        self._last: ReloadReport | None = None
         self._before = time.monotonic()
         self._running = bundle.hash
         self._verdict = threading.Event()
@@ -253,9 +253,9 @@ class Soak:
             assert show.walker
             show.walker.arrive(Visitor())
             self.load.start()
-            sweeper = Sweeper()
-            show.after.append(sweeper)
-            show.closing.append(sweeper.close)
+            gc_scheduler = GcScheduler()
+            show.after.append(gc_scheduler)
+            show.closing.append(gc_scheduler.close)
             self.until(time.monotonic() + 2.0)
             outcome.missed, outcome.gap, outcome.ticks = 0, 0.0, 0
             with metronome() as beside:

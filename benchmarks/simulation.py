@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import lumen
-from lumen.cli.cast import Cast
-from lumen.cli.rehearsal import rehearse
+from lumen.app.rehearsal import rehearse
+from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.commands import Walk
 from lumen.language.projects import Project
@@ -102,7 +102,7 @@ def touring(project: Project, robot: SimulatedRobot) -> None:
     """The story of a whole visit, with everything on the bus but images."""
     blind = replace(project, routes={name: route for name, route in project.routes.items() if name != Sense.IMAGE})
     clock = SimulatedClock(robot.advance)
-    rehearsal = rehearse(blind, project.stories[project.story], Cast(robot, clock, robot))
+    rehearsal = rehearse(blind, project.stories[project.story], Setup(robot, clock, robot))
     assert rehearsal.failed is None, rehearsal.failed
 
 

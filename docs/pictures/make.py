@@ -23,8 +23,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 import lumen
-from lumen.cli.cast import Cast
-from lumen.cli.show import Show
+from lumen.app.node import Node
+from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
 from lumen.fuzzy import Controller
@@ -58,10 +58,10 @@ def picture(robot: SimulatedRobot, camera: str | mujoco.MjvCamera, width: int, h
     return Image.fromarray(pixels)
 
 
-def play(project: Project, robot: SimulatedRobot, look: Callable[[Show, float], bool]) -> None:
+def play(project: Project, robot: SimulatedRobot, look: Callable[[Node, float], bool]) -> None:
     """The shipped story, until `look` has seen enough."""
-    chosen = Cast(robot, SimulatedClock(robot.advance), robot)
-    show = Show(project, chosen, story=project.stories[project.story])
+    chosen = Setup(robot, SimulatedClock(robot.advance), robot)
+    show = Node(project, chosen, story=project.stories[project.story])
     show.start()
     while not look(show, show.tick()):
         if show.player and show.player.finished:
@@ -73,7 +73,7 @@ def tour(project: Project) -> None:
     robot = robot_of(project)
     since: list[float] = []
 
-    def look(show: Show, now: float) -> bool:
+    def look(show: Node, now: float) -> bool:
         if "dance" in show.exhibition.runtime.snapshot.configuration:
             since.append(now)
         return bool(since) and now > since[0] + 3.0 + MID_DANCE
@@ -91,7 +91,7 @@ def head(project: Project) -> None:
     centre = (camera.width / 2, camera.height / 2)
     taken: list[str] = []
 
-    def look(show: Show, now: float) -> bool:
+    def look(show: Node, now: float) -> bool:
         face = robot.face()
         if face and not taken and "idle" in show.exhibition.runtime.snapshot.configuration:
             mark(robot, face, centre).save(HERE / "head_before.png", optimize=True)

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.cli.cast import Cast
-from lumen.cli.show import Show
+from lumen.app.node import Node
+from lumen.app.setup import Setup
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.migration import MigrationPlan
@@ -20,9 +20,9 @@ from lumen.robots.recording import RecordingRobot
 HEAD = ["HeadYaw", "HeadPitch"]
 
 
-def show_of(project: Project) -> Show:
+def show_of(project: Project) -> Node:
     robot = RecordingRobot(project.body)
-    show = Show(project, Cast(robot, SimulatedClock(robot.advance), robot))
+    show = Node(project, Setup(robot, SimulatedClock(robot.advance), robot))
     transcript = Transcript(show.exhibition.clock.now, lambda: show.exhibition.project.machine)
     show.exhibition.observers.append(transcript)
     show.start()
@@ -30,28 +30,28 @@ def show_of(project: Project) -> Show:
 
 
 @pytest.fixture
-def show(copy: Path) -> Iterator[Show]:
+def show(copy: Path) -> Iterator[Node]:
     one = show_of(lumen.load(copy))
     yield one
     one.close()
 
 
-def states(show: Show) -> frozenset[str]:
+def states(show: Node) -> frozenset[str]:
     return show.exhibition.runtime.snapshot.configuration
 
 
-def live(show: Show, seconds: float) -> None:
+def live(show: Node, seconds: float) -> None:
     for _ in range(round(seconds / 0.02)):
         show.tick()
 
 
-def reload(show: Show, project: Project) -> None:
+def reload(show: Node, project: Project) -> None:
     plan = show.plan(project)
     assert isinstance(plan, MigrationPlan)
     show.apply(project, plan)
 
 
-def greeted(show: Show) -> None:
+def greeted(show: Node) -> None:
     assert show.walker
     show.walker.arrive(Visitor())
     live(show, 2.0)
@@ -71,7 +71,7 @@ def greeted(show: Show) -> None:
         ("avatar.NAO.command", {"type": 7}),
     ],
 )  # fmt: skip
-def test_no_message_ends_it_or_switches_the_head_off(show: Show, key: str, body: Any) -> None:
+def test_no_message_ends_it_or_switches_the_head_off(show: Node, key: str, body: Any) -> None:
     greeted(show)
     with suppress(lumen.BusError):
         show.bus.publish(key, body)
@@ -89,7 +89,7 @@ def edit(folder: Path, old: str, new: str, file: str = "behaviors/tour.yaml") ->
     return lumen.load(folder)
 
 
-def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Path, show: Show) -> None:
+def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Path, show: Node) -> None:
     greeted(show)
     live(show, 6.0)
     assert "ask_name" in states(show)
@@ -101,7 +101,7 @@ def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Pat
     assert show.exhibition.clock.now() < asked + 10.5
 
 
-def test_routes_that_moved_are_spoken_and_heard_on_their_new_keys(copy: Path, show: Show) -> None:
+def test_routes_that_moved_are_spoken_and_heard_on_their_new_keys(copy: Path, show: Node) -> None:
     edit(copy, "lumen.audio.speech.recognition", "lumen.audio.ears", "lumen.yaml")
     project = edit(copy, "lumen.visual.face.detection", "lumen.visual.eyes", "lumen.yaml")
     reload(show, project)

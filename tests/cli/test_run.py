@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from lumen.cli.cast import Cast
+from lumen.app.node import Node
+from lumen.app.setup import Setup
 from lumen.cli.main import main
-from lumen.cli.show import Show
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.ports import Perform
@@ -102,7 +102,7 @@ def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> N
     """At ten times real time, for a broker does not hurry when simulated time does."""
     story = project.stories["visitor"]
     robot = RecordingRobot(project.body)
-    show = Show(project, Cast(robot, SimulatedClock(robot.advance, 10.0), robot), broker.url, story)
+    show = Node(project, Setup(robot, SimulatedClock(robot.advance, 10.0), robot), broker.url, story)
     show.start()
     assert show.player
     while not show.player.finished:

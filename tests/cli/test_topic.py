@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
+from lumen.app.recovery.run_directory import RunDirectory
 from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
 from lumen.cli.main import main
-from lumen.cli.reloading.premises import Premises
 from lumen.language.projects import Project
 from tests.exhibits import project
 from tests.rabbitmq import RabbitMQ
@@ -59,7 +59,7 @@ def exhibition(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pyte
     else:
         assert main(["new", str(tmp_path / "hall")]) == 0
         monkeypatch.chdir(tmp_path / "hall")
-        premises, bus = Premises(tmp_path / "hall"), validated(connect("memory://"), shown)
+        premises, bus = RunDirectory(tmp_path / "hall"), validated(connect("memory://"), shown)
         premises.open(bus, "memory://", shown)
         one = Exhibition(bus, [])
         yield one

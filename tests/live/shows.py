@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import lumen
-from lumen.cli.cast import Cast
-from lumen.cli.reloading.orders import COMMAND, STATUS
-from lumen.cli.reloading.records import Records
-from lumen.cli.reloading.reloading import Reloading
-from lumen.cli.show import Show
+from lumen.app.node import Node
+from lumen.app.reload.records import RunRecords
+from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.requests import COMMAND, STATUS
+from lumen.app.setup import Setup
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.projects import Project
@@ -41,14 +41,14 @@ class Live:
         self.folder = folder
         project = project or lumen.load(folder)
         self.robot = RecordingRobot(project.body, behaves)
-        self.show = Show(project, Cast(self.robot, SimulatedClock(self.robot.advance, 20.0), self.robot), url)
+        self.show = Node(project, Setup(self.robot, SimulatedClock(self.robot.advance, 20.0), self.robot), url)
         self.told = StringIO()
         transcript = Transcript(self.show.exhibition.clock.now, lambda: self.show.exhibition.project.machine, self.told)
         self.show.exhibition.observers.append(transcript)
         self.home = Home(folder / ".lumen")
         assert self.home.hold()
-        self.records = Records(self.home)
-        self.reloading = Reloading(
+        self.records = RunRecords(self.home)
+        self.reloading = Reloader(
             self.show, transcript, mode=mode, records=self.records, quiet=QUIET, budget=0.5, seen=seen, apart=apart
         )
         self.show.exhibition.parts.append(self.reloading.tick)

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 import lumen
+from lumen.app.node import Node
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.recovery.startup import startup_project
 from lumen.cli.main import main
-from lumen.cli.reloading.booting import boot
-from lumen.cli.reloading.premises import Premises
-from lumen.cli.show import Show
 from lumen.errors import BusError
 from lumen.loading.files import read_files
 from lumen.runtime.crash_counter import DEATHS, MOST, CrashCounter
@@ -41,14 +41,14 @@ def run(copy: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def fail_with(monkeypatch: pytest.MonkeyPatch, hash: str, error: Exception) -> None:
     """From now on these files end whatever runs on them."""
-    usual = Show.tick
+    usual = Node.tick
 
-    def tick(show: Show) -> float:
+    def tick(show: Node) -> float:
         if show.exhibition.project.hash == hash:
             raise error
         return usual(show)
 
-    monkeypatch.setattr(Show, "tick", tick)
+    monkeypatch.setattr(Node, "tick", tick)
 
 
 def test_files_that_end_every_start_give_way_to_the_last_good_ones(
@@ -142,13 +142,13 @@ def test_how_often_files_did_not_last_is_remembered_of_the_latest(tmp_path: Path
 
 
 def test_where_nothing_else_is_known_to_be_good_the_files_are_tried_again(copy: Path) -> None:
-    premises = Premises(copy)
-    first = boot(copy, premises, last_good=False)
+    run_directory = RunDirectory(copy)
+    first = startup_project(copy, run_directory, last_good=False)
     for _ in range(DEATHS):
-        premises.records.begin(first.hash)
-    assert boot(copy, premises, last_good=False).hash == first.hash
-    assert premises.news == []
-    premises.close(forget=False)
+        run_directory.records.begin(first.hash)
+    assert startup_project(copy, run_directory, last_good=False).hash == first.hash
+    assert run_directory.news == []
+    run_directory.close(forget=False)
 
 
 def test_what_was_replaced_has_ended_nothing_and_what_failed_has(live: Live) -> None:

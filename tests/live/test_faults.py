@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from lumen.cli.reloading.jury import Here
+from lumen.app.reload.validation_worker import InlineValidation
 from lumen.errors import BusError, LumenError
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan
 from lumen.language.events import Event
@@ -21,7 +21,7 @@ def fail(*_: Any, **__: Any) -> Any:
 def test_a_fault_leaves_the_old_bundle_running(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     before = live.show.exhibition.project
     with monkeypatch.context() as patched:
-        patched.setattr(Here, "load", fail)
+        patched.setattr(InlineValidation, "load", fail)
         live.edit(SORRY, PARDON)
         live.until_told("refused: Lumen failed on these files: ZeroDivisionError('a fault of ours')")
     assert live.show.exhibition.project is before

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.cli.reloading.jury import Jury, failure
-from lumen.cli.reloading.parcels import LATE, Receiver, Sender
+from lumen.app.reload.delta import LATE, DeltaDecoder, DeltaEncoder
+from lumen.app.reload.validation_worker import ValidationWorker, failure
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 
@@ -16,7 +16,7 @@ SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, p
 
 def test_a_project_arrives_as_it_was(copy: Path) -> None:
     sent = lumen.load(copy)
-    came = Receiver().unpack(Sender().pack(sent))
+    came = DeltaDecoder().unpack(DeltaEncoder().pack(sent))
     assert came == sent
     assert list(came.documents) == list(sent.documents)
     where = came.machine.states["guide"].where
@@ -24,7 +24,7 @@ def test_a_project_arrives_as_it_was(copy: Path) -> None:
 
 
 def test_only_what_differs_travels_and_is_new(copy: Path) -> None:
-    sender, receiver = Sender(), Receiver()
+    sender, receiver = DeltaEncoder(), DeltaDecoder()
     before = receiver.unpack(sender.pack(lumen.load(copy)))
     (copy / TOUR).write_text((copy / TOUR).read_text("utf-8").replace(SORRY, PARDON), "utf-8")
     parcel = sender.pack(lumen.load(copy))
@@ -40,11 +40,11 @@ def test_only_what_differs_travels_and_is_new(copy: Path) -> None:
 def test_a_project_travels_after_its_stories_were_played(copy: Path) -> None:
     project = lumen.load(copy)
     assert failure(project, "refuses", 20.0) is None
-    assert Receiver().unpack(Sender().pack(project)) == project
+    assert DeltaDecoder().unpack(DeltaEncoder().pack(project)) == project
 
 
 def test_the_same_process_judges_again_and_again(copy: Path, caplog: pytest.LogCaptureFixture) -> None:
-    jury = Jury(copy)
+    jury = ValidationWorker(copy)
     jury.begin()
     for text in (SORRY, PARDON, "en: [", SORRY):
         files = {**read_files(copy), TOUR: read_files(copy)[TOUR].replace(SORRY.encode(), text.encode())}

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 import lumen
+from lumen.app.recovery.previous_run import LATELY
+from lumen.app.recovery.run_directory import RunDirectory
 from lumen.cli.main import main
-from lumen.cli.reloading.comeback import LATELY
-from lumen.cli.reloading.premises import Premises
 from lumen.interpreters.statechart import serialize
 from lumen.language.commands import Track
 from lumen.loading.files import read_files
@@ -43,9 +43,9 @@ def crashed(live: Live) -> None:
 
 
 def resumed(folder: Path) -> Resumption | str:
-    premises = Premises(folder)
-    found = premises.resumption(lumen.load(folder))
-    premises.close(forget=False)
+    run_directory = RunDirectory(folder)
+    found = run_directory.resumption(lumen.load(folder))
+    run_directory.close(forget=False)
     return found
 
 

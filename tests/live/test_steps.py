@@ -12,9 +12,9 @@ from types import CodeType
 
 import pytest
 
-from lumen.cli.reloading.judging import Judge, Judged
-from lumen.cli.reloading.jury import Here
-from lumen.cli.reloading.reloading import Reloading
+from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.validation_worker import InlineValidation
+from lumen.app.reload.validator import BundleValidator, Validation
 from lumen.loading.files import read_files
 from lumen.runtime.watcher import SavedFiles
 from tests.live.faults import failing, name, steps
@@ -39,7 +39,7 @@ class Bench:
     def __init__(self, folder: Path) -> None:
         self.live = Live(folder)
         self.reloading = self.live.reloading
-        self._judge = Judge(Here(folder), lambda: self.live.show.exhibition.project)
+        self._judge = BundleValidator(InlineValidation(folder), lambda: self.live.show.exhibition.project)
         self._first = read_files(folder)
         self._number = 0
 
@@ -54,12 +54,12 @@ class Bench:
             files["behaviors/tour.yaml"] += REGION.encode()
         return SavedFiles(files, (), 0.0, 0.0)
 
-    def judged(self, saved: SavedFiles) -> Judged:
+    def validation(self, saved: SavedFiles) -> Validation:
         return self.reloading._judge(self._judge, saved)
 
-    def take(self, judged: Judged) -> None:
+    def take(self, validation: Validation) -> None:
         """Live through what comes of it."""
-        self.reloading._watcher.results.put(judged)
+        self.reloading._watcher.results.put(validation)
         self.live.show.tick()
 
     @property
@@ -84,7 +84,7 @@ def bench(copy: Path, caplog: pytest.LogCaptureFixture) -> Iterator[Bench]:
     caplog.set_level("CRITICAL")
     one = Bench(copy)
     for _ in range(2):  # what is worked out once and for all is no step of a reload
-        assert one.judged(one.saved()).good
+        assert one.validation(one.saved()).good
     yield one
     one.live.show.close()
 
@@ -99,39 +99,39 @@ def some(found: list[CodeType], every: bool) -> list[CodeType]:
 @every
 def test_a_fault_in_loading_or_linting(bench: Bench, every: bool) -> None:
     saved, running = bench.saved(), bench.live.show.exhibition.project
-    found = steps(lambda: bench.judged(saved), Reloading._judge)
+    found = steps(lambda: bench.validation(saved), Reloader._judge)
     assert len(found) > 500
     for step in some(found, every):
         saved = bench.saved()
-        judged = failing(step, lambda: bench.judged(saved), Reloading._judge)  # noqa: B023 called at once
-        assert name(step) in judged.fault
-        bench.take(judged)
+        validation = failing(step, lambda: bench.validation(saved), Reloader._judge)  # noqa: B023 called at once
+        assert name(step) in validation.fault
+        bench.take(validation)
         assert bench.live.show.exhibition.project is running
         assert f"refused: Lumen failed on these files: FaultError('{name(step)}')" in bench.live.transcript
-    bench.take(bench.judged(bench.saved()))
+    bench.take(bench.validation(bench.saved()))
     assert bench.live.verdicts[-1] == "applied"
 
 
-def fresh(judged: Judged) -> Callable[[], Judged]:
+def fresh(validation: Validation) -> Callable[[], Validation]:
     """Makes it anew each time: nothing in it has ever been compiled or worked out."""
-    packed = pickle.dumps(replace(judged.project, documents={}) if judged.project else None)
-    return lambda: replace(judged, project=pickle.loads(packed), running=None)
+    packed = pickle.dumps(replace(validation.project, documents={}) if validation.project else None)
+    return lambda: replace(validation, project=pickle.loads(packed), running=None)
 
 
 @every
 @pytest.mark.parametrize("forth", [True, False])
 def test_a_fault_in_planning_or_applying(bench: Bench, forth: bool, every: bool) -> None:
     """What is told is true, nothing is mixed, and the next files are taken: where things come, and where they go."""
-    new, old = [fresh(bench.judged(bench.saved(more))) for more in (forth, not forth)]
-    for judged in (old(), new(), old()):  # once and for all, too
-        bench.take(judged)
-    found = steps(lambda: bench.take(new()), Reloading.tick)
+    new, old = [fresh(bench.validation(bench.saved(more))) for more in (forth, not forth)]
+    for validation in (old(), new(), old()):  # once and for all, too
+        bench.take(validation)
+    found = steps(lambda: bench.take(new()), Reloader.tick)
     assert len(found) > 100
     for step in some(found, every):
         bench.take(old())
         assert bench.hash == old().hash
         told = len(bench.live.verdicts)
-        failing(step, lambda: bench.take(new()), Reloading.tick)
+        failing(step, lambda: bench.take(new()), Reloader.tick)
         assert bench.is_whole(), name(step)
         last = bench.live.verdicts[told:][-1:]
         true = [["applied"]] if bench.hash == new().hash else [["refused"], ["rolled back"]]

@@ -14,9 +14,9 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from lumen.cli.cast import Cast
-from lumen.cli.modules.inside import join
-from lumen.cli.show import Show
+from lumen.app.modules.in_process import join
+from lumen.app.node import Node
+from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import ModuleError
 from lumen.language.projects import Project
@@ -232,7 +232,7 @@ def test_a_video_file(stand: Make, project: Project, photographed: Pixels, tmp_p
 def test_the_head_turns_to_a_face_that_was_seen_in_the_image(project: Project) -> None:
     """Rendered camera, JPEG, bus, detector, fuzzy controller, head: the whole way through pixels."""
     robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
-    show = Show(with_options(project, "eyes"), Cast(robot, SimulatedClock(robot.advance, None), robot))
+    show = Node(with_options(project, "eyes"), Setup(robot, SimulatedClock(robot.advance, None), robot))
     told: list[str] = []
     join(show, None, lambda who, text: told.append(f"{who}: {text}"), paced=False)
     seen = []

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from lumen.cli.cast import Cast
+from lumen.app.setup import Setup
+from lumen.app.voice import Speaker, voiced
 from lumen.cli.main import main
-from lumen.cli.voice import Speaker, voiced
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import ModuleError, UsageError
 from lumen.language.commands import Say
@@ -84,7 +84,7 @@ def robot(project: Project) -> SimulatedRobot:
 
 def test_the_simulated_robot_takes_as_long_as_its_voice(robot: SimulatedRobot, tmp_path: Path) -> None:
     file = tmp_path / "said.wav"
-    silence = voiced(Cast(robot, SimulatedClock(robot.advance, None), robot), "espeak", file, "en")
+    silence = voiced(Setup(robot, SimulatedClock(robot.advance, None), robot), "espeak", file, "en")
     robot.advance(1.0)
     robot.start("c1", Say("Good morning!", "en"))
     robot.advance(4.0)
@@ -125,7 +125,7 @@ def test_flags_that_do_not_go_together(flags: list[str], said: str, capsys: pyte
 
 
 def test_a_robot_without_a_voice_to_give(tmp_path: Path) -> None:
-    chosen = Cast(NoRobot(), SimulatedClock(lambda _: None, None), None)
+    chosen = Setup(NoRobot(), SimulatedClock(lambda _: None, None), None)
     with pytest.raises(UsageError, match="gives the simulated robot a voice"):
         voiced(chosen, "espeak", tmp_path / "a.wav", "en")
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.cli.cast import Cast
-from lumen.cli.show import Show
+from lumen.app.node import Node
+from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.commands import Command, Say, Start
 from lumen.language.events import CUE, Event
@@ -94,9 +94,9 @@ def project(tmp_path: Path) -> Project:
     return lumen.load(tmp_path)
 
 
-def run(project: Project, seconds: float, touch: float = 99.0, language: str = "") -> tuple[Ear, RecordingRobot, Show]:
+def run(project: Project, seconds: float, touch: float = 99.0, language: str = "") -> tuple[Ear, RecordingRobot, Node]:
     robot, ear = RecordingRobot(project.body), Ear()
-    show = Show(project, Cast(robot, SimulatedClock(robot.advance), robot), "memory://", sensing=False)
+    show = Node(project, Setup(robot, SimulatedClock(robot.advance), robot), "memory://", sensing=False)
     show.exhibition.observers.append(ear)
     show.start(language)
     for i in range(round(seconds / 0.02)):

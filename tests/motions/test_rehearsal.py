@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 import lumen
+from lumen.app.physics.outcome_cache import OutcomeCache
 from lumen.cli.main import main
-from lumen.cli.rehearsed import Rehearsed
 from lumen.rules.physics import DONE, Case, Outcome
 from lumen.rules.physics.cases import cases
 from tests.motions.making import ROOT, SHIPPED
@@ -26,12 +26,12 @@ def test_what_is_known_is_kept_and_damage_is_as_good_as_nothing(tmp_path: Path) 
     project = lumen.load(tmp_path)
     case: Case = cases(project)[0]
     outcome = Outcome(DONE, 1.0, 2.0, 0.5, slid={"L": (0.1, 0.002)})
-    Rehearsed(project, {}).keep(case, {0: outcome})
-    assert Rehearsed(project, {}).recall(case) == {0: outcome}
+    OutcomeCache(project, {}).keep(case, {0: outcome})
+    assert OutcomeCache(project, {}).recall(case) == {0: outcome}
     (file,) = (tmp_path / ".lumen" / "physics").iterdir()
     for text in ("", "[]", '{"0": 5}', '{"x": {}}', '{"0": {"answer": "done"}}'):
         file.write_text(text)
-        assert Rehearsed(project, {}).recall(case) == {}
+        assert OutcomeCache(project, {}).recall(case) == {}
 
 
 @pytest.mark.parametrize("options", [["--robots", "3"], ["--physics", "--robots", "-1"], ["--physics", "--watch"]])

@@ -9,7 +9,7 @@ from random import Random
 from types import FrameType
 from typing import NamedTuple
 
-from lumen.cli.rehearsal import rehearse
+from lumen.app.rehearsal import rehearse
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Play, Start
 from lumen.language.diagnostics import Diagnostic

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
+from lumen.app.processes.guard import Guard
 from lumen.bus import Bus, BusError, connect
-from lumen.cli.apart.guard import Guard
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Track
 from lumen.language.events import Event
 from lumen.ports import Aim, Message, Perform

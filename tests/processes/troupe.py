@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import lumen
+from lumen.app.node import Node
+from lumen.app.processes.brain import BrainPart
+from lumen.app.processes.starting import assembled
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.setup import Setup, set_up
 from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
-from lumen.cli.apart.brain import BrainPart
-from lumen.cli.apart.starting import assembled
-from lumen.cli.cast import Cast, cast
-from lumen.cli.reloading.premises import Premises
-from lumen.cli.show import Show
 from lumen.clocks.real import RealClock
 from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
@@ -68,13 +68,13 @@ class Member:
     def __init__(self, folder: Path, url: str, names: tuple[str, ...], story: str, name: str, speed: str) -> None:
         project = replace(lumen.load(folder), robot=name)
         options = argparse.Namespace(speed=speed, reload="manual", fresh=False, robot="recording")
-        self.premises = Premises(folder, guest=BRAIN not in names)
-        self.cast: Cast | None = cast("recording", project, speed) if ROBOT in names else None
+        self.run_directory = RunDirectory(folder, guest=BRAIN not in names)
+        self.cast: Setup | None = set_up("recording", project, speed) if ROBOT in names else None
         clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(speed))
         played = project.stories[story] if story else None
         bus = validated(connect(url), project)
         self.process, self.brain = assembled(
-            options, project, played, names, (bus, url), self.premises, "", clock, self.cast
+            options, project, played, names, (bus, url), self.run_directory, "", clock, self.cast
         )
 
     @property
@@ -92,7 +92,7 @@ class Member:
 
     def close(self) -> None:
         self.process.close()
-        self.premises.close(forget=True)
+        self.run_directory.close(forget=True)
 
 
 class Troupe:
@@ -122,7 +122,7 @@ class Troupe:
         """It lives no more, and tells nobody; its connections end, as the system sees to."""
         self.members.remove(member)
         member.process._bus.close()
-        member.premises.close(forget=False)
+        member.run_directory.close(forget=False)
 
     def until(self, condition: Callable[[], object], timeout: float = DEADLINE) -> None:
         deadline = time.monotonic() + timeout
@@ -146,7 +146,7 @@ def alone(folder: Path, name: str) -> list[object]:
     """What the behaviour does in one process."""
     project = lumen.load(folder)
     story = project.stories[name]
-    show = Show(project, cast("recording", project, "max", story), story=story)
+    show = Node(project, set_up("recording", project, "max", story), story=story)
     trace = Collector()
     show.bus.subscribe("lumen.state", trace)
     show.start()

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from lumen.app.versions import version
 from lumen.cli.main import main
-from lumen.cli.reloading.versions import version
 from lumen.errors import UsageError
 from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
 from lumen.interpreters.statechart import initial, step

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
+from lumen.app.node import Node
+from lumen.app.setup import Setup
 from lumen.buses.memory import MemoryBus
-from lumen.cli.cast import Cast
-from lumen.cli.show import Show
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan
 from lumen.interpreters.statechart import Step
@@ -62,7 +62,7 @@ def swap(exhibition: BehaviorLoop, project: Project, **how: bool) -> MigrationPl
 def test_the_head_goes_on_smoothly_under_another_controller() -> None:
     project = load(ROOT)
     robot = SimulatedRobot(project.body, ROOT / "models", project.hall)
-    show = Show(project, Cast(robot, SimulatedClock(robot.advance), robot), sensing=True)
+    show = Node(project, Setup(robot, SimulatedClock(robot.advance), robot), sensing=True)
     show.start()
     assert show.walker
     show.walker.arrive(Visitor(1.2, 0.8))

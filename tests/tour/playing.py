@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from lumen.cli.cast import Cast
-from lumen.cli.rehearsal import rehearse
+from lumen.app.rehearsal import rehearse
+from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Play, Say, Start
@@ -69,7 +69,7 @@ class Log(Observer):
 def play(project: Project, story: Story, performer: Performer | None = None, *, part: TickHook | None = None) -> Run:
     """The story played to its end, or to its failure; `part` lives with it."""
     run = Run()
-    chosen = Cast(performer, SimulatedClock(performer.advance), performer) if performer else None
+    chosen = Setup(performer, SimulatedClock(performer.advance), performer) if performer else None
     rehearsal = rehearse(project, story, chosen, observers=[Log(run)], parts=[part] if part else [])
     run.time, run.failure = rehearsal.time, str(rehearsal.failed or "")
     return run

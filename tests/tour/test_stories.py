@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import pytest
 
-from lumen.cli.exploring import explored
-from lumen.cli.rehearsal import rehearse
+from lumen.app.exploring import explored
+from lumen.app.rehearsal import rehearse
 from lumen.language.projects import Project
 from lumen.runtime.coverage import Coverage
 from tests.tour.names import GUIDE, ROOT, SAFETY

@@ -4,7 +4,7 @@ import argparse
 import sys
 from typing import Any
 
-from lumen.cli.asking import ask
+from lumen.app.asking import ask
 from lumen.cli.reach import reach
 
 ANSWERS = "lumen.operator.answer"

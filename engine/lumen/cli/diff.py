@@ -5,8 +5,8 @@ import json
 import sys
 from typing import Any
 
-from lumen.cli.reloading.fates import Fate, Fates, fate_of, fates
-from lumen.cli.reloading.versions import LIVE, Version, version
+from lumen.app.reload.migration_preview import MigrationOutcome, MigrationPreview, outcome_of, preview
+from lumen.app.versions import LIVE, Version, version
 from lumen.cli.terminal import coloured, paint
 from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
 
@@ -29,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
     """1 where a reload would be refused somewhere, else 0, whatever differs."""
     old, new = version(options.old), version(options.new)
     found = changes(old.project, new.project)
-    running = fate_of(old.project, live(old.project, new.project), old.snapshot) if old.snapshot else None
+    running = outcome_of(old.project, live(old.project, new.project), old.snapshot) if old.snapshot else None
     everywhere = _fates(old, new, options.bound) if options.configurations else None
     if options.format == "json":
         print(json.dumps(_json(old, new, found, running, everywhere), indent=2, ensure_ascii=False))
@@ -39,20 +39,22 @@ def run(options: argparse.Namespace) -> int:
     return int(any(fate.outcome == "refused" for fate in said))
 
 
-def _fates(old: Version, new: Version, bound: int) -> Fates:
+def _fates(old: Version, new: Version, bound: int) -> MigrationPreview:
     terminal = sys.stderr.isatty()
 
     def tell(walked: int, waiting: int) -> None:
         if terminal and walked % 50 == 0:
             print(f"\r{walked:,} configurations, {waiting:,} in sight ", end="", file=sys.stderr, flush=True)
 
-    found = fates(old.project, live(old.project, new.project), bound, tell)
+    found = preview(old.project, live(old.project, new.project), bound, tell)
     if terminal:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
     return found
 
 
-def _text(found: tuple[Change, ...], running: Fate | None, everywhere: Fates | None, colour: bool) -> list[str]:
+def _text(
+    found: tuple[Change, ...], running: MigrationOutcome | None, everywhere: MigrationPreview | None, colour: bool
+) -> list[str]:
     lines = []
     file = ""
     for change in found:
@@ -70,7 +72,7 @@ def _text(found: tuple[Change, ...], running: Fate | None, everywhere: Fates | N
     return lines
 
 
-def _table(everywhere: Fates, colour: bool) -> list[str]:
+def _table(everywhere: MigrationPreview, colour: bool) -> list[str]:
     lines = [_row(fate, colour) for fate in everywhere.rows]
     counts = {outcome: sum(fate.count for fate in everywhere.rows if fate.outcome == outcome) for outcome in COLOURS}
     told = ", ".join(f"{number:,} {outcome}" for outcome, number in counts.items() if number)
@@ -78,13 +80,17 @@ def _table(everywhere: Fates, colour: bool) -> list[str]:
     return [*lines, paint(f"{everywhere.configurations:,} configurations: {told}{more}", "bold", on=colour)]
 
 
-def _row(fate: Fate, colour: bool) -> str:
+def _row(fate: MigrationOutcome, colour: bool) -> str:
     told = f": {fate.told}" if fate.told else f": to {', '.join(fate.after)}" if fate.outcome == "moved" else ""
     return f"{paint(f'{fate.outcome:<8}', COLOURS[fate.outcome], on=colour)}{', '.join(fate.states)}{told}"
 
 
 def _json(
-    old: Version, new: Version, found: tuple[Change, ...], running: Fate | None, everywhere: Fates | None
+    old: Version,
+    new: Version,
+    found: tuple[Change, ...],
+    running: MigrationOutcome | None,
+    everywhere: MigrationPreview | None,
 ) -> dict[str, Any]:
     body: dict[str, Any] = {
         "old": {"name": old.name, "hash": old.project.hash},
@@ -104,6 +110,6 @@ def _json(
     return body
 
 
-def _fate(fate: Fate) -> dict[str, Any]:
+def _fate(fate: MigrationOutcome) -> dict[str, Any]:
     row = {"states": fate.states, "outcome": fate.outcome, "after": fate.after, "told": fate.told, "count": fate.count}
     return {key: list(value) if isinstance(value, tuple) else value for key, value in row.items()}

@@ -10,10 +10,10 @@ from contextlib import closing, suppress
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
+from lumen.app.attendance import RobotAttendance
 from lumen.bus import connect
 from lumen.buses.probe import BrokerProbe
 from lumen.buses.validated import by_key
-from lumen.cli.attendance import Attendance
 from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
@@ -76,7 +76,7 @@ def _broker(url: str, project: Project | None) -> Iterator[Finding]:
             return
         yield from _permissions(probe, project)
         with closing(connect(url)) as bus:
-            attendance = Attendance(bus, project)
+            attendance = RobotAttendance(bus, project)
             yield from _life(bus, project)
             yield from _obeying(probe, attendance, project)
         yield from _served(probe, project)
@@ -135,7 +135,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
     yield Finding("clocks", "warning" if abs(skew) > SKEW else "ok", text)
 
 
-def _obeying(probe: BrokerProbe, attendance: Attendance, project: Project) -> Iterator[Finding]:
+def _obeying(probe: BrokerProbe, attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
     """Whether who takes the robot's commands is alive."""
     route = project.routes.get(COMMAND)
     if route is None or not probe.served(key_of(project, COMMAND), route).readers:

@@ -6,10 +6,10 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from lumen.app.garbage import gc_paused
 from lumen.cli.findings import Findings
 from lumen.cli.linting import Asked, Judge, Wanted, asked, lint
 from lumen.cli.render import FORMATS, render
-from lumen.cli.sweeping import unswept
 from lumen.cli.terminal import coloured
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic, Severity
@@ -90,11 +90,11 @@ def _judge(against: str | None, wanted: Wanted) -> Judge:
     """What finds what is wanted in a project, what a reload from `against` would refuse, move or forget included."""
 
     def judge(what: Asked, files: Mapping[str, bytes] | None = None) -> Findings:
-        with unswept():
+        with gc_paused():
             found = lint(what, wanted, files)
         if against is None:
             return found
-        from lumen.cli.reloading.against import compared
+        from lumen.app.reload.against import compared
 
         return compared(found, against, wanted)
 

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from io import TextIOWrapper
 
 import lumen
+from lumen.app.garbage import gc_paused
 from lumen.cli.intermixed import Help, Intermixed
-from lumen.cli.sweeping import unswept
 from lumen.errors import LumenError, ProjectError
 
 STARTED = time.monotonic()
@@ -61,7 +61,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             verb, help=summary, description=summary[0].upper() + summary[1:] + ".", formatter_class=Help
         )
         if verb in arguments[:1]:
-            with unswept():
+            with gc_paused():
                 module = importlib.import_module(f"lumen.cli.{MODULES.get(verb, verb)}")
             module.configure(command)
             command.set_defaults(run=module.run)

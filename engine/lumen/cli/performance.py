@@ -4,17 +4,17 @@ import math
 import time
 from pathlib import Path
 
-from lumen.cli.apart.claiming import claim, presence_of
-from lumen.cli.cast import Cast
+from lumen.app.causes import innermost
+from lumen.app.garbage import GcScheduler
+from lumen.app.modules.in_process import join
+from lumen.app.node import Node, film
+from lumen.app.processes.claiming import claim, presence_of
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.reload.reloader import Reloader
+from lumen.app.setup import Setup
 from lumen.cli.main import STARTED
-from lumen.cli.modules.inside import join
-from lumen.cli.reloading.premises import Premises
-from lumen.cli.reloading.reloading import Reloading
-from lumen.cli.show import Show, film
-from lumen.cli.sweeping import Sweeper
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedSpeech
-from lumen.cli.why import innermost
 from lumen.clocks.real import RealClock
 from lumen.language.commands import Rest
 from lumen.language.events import Event
@@ -34,17 +34,19 @@ FAREWELL = 5.0
 class Performance:
     """Runs once; `run` returns the exit code."""
 
-    def __init__(self, project: Project, chosen: Cast, bus_url: str, story: Story | None, premises: Premises) -> None:
-        self._show = Show(project, chosen, bus_url, story, self._visitor_action)
-        self._premises, self._url = premises, bus_url
+    def __init__(
+        self, project: Project, chosen: Setup, bus_url: str, story: Story | None, run_directory: RunDirectory
+    ) -> None:
+        self._node = Node(project, chosen, bus_url, story, self._visitor_action)
+        self._run_directory, self._url = run_directory, bus_url
         self._leaving = False
-        self._transcript = Transcript(chosen.clock.now, lambda: self._show.exhibition.project.machine)
-        self._show.exhibition.observers.append(self._transcript)
+        self._transcript = Transcript(chosen.clock.now, lambda: self._node.exhibition.project.machine)
+        self._node.exhibition.observers.append(self._transcript)
         self._story, self._blind = story, chosen.blind
         self._real = isinstance(chosen.clock, RealClock)
         self._typed: TypedSpeech | None = None
         self._interrupts, self._resting = 0, False
-        self._show.exhibition.parts.append(self._rest)
+        self._node.exhibition.parts.append(self._rest)
         self._face: float | None = None
         self._presence: Presence | None = None
 
@@ -57,15 +59,15 @@ class Performance:
         """What the first Ctrl-C asks for, at the tick after it."""
         if self._interrupts and not self._resting:
             self._resting = True
-            self._show.robot.start("operator", Rest())
-            self._show.exhibition.happen(Event("stop", {}))
+            self._node.robot.start("operator", Rest())
+            self._node.exhibition.happen(Event("stop", {}))
             self._transcript.line("operator", "Ctrl-C: the robot rests; again to end")
 
     def run(
         self, speed: str, period: float | None, language: str, video: Path | None, *, mode: str, fresh: bool
     ) -> int:
         """Perform until the story ends, the period [s] is over, the visitor has left or the operator ends it."""
-        show, now = self._show, 0.0
+        show, now = self._node, 0.0
         try:
             if not self._url.startswith("memory:"):
                 self._claim()
@@ -73,61 +75,61 @@ class Performance:
                 film(show, video)
             reloading = self._settle(mode)
             self._introduce(speed)
-            folder = None if self._story else home_of(self._premises.root)
+            folder = None if self._story else home_of(self._run_directory.root)
             begun = {module.name for module in join(show, folder, self._transcript.line, paced=speed != "max")}
             if self._presence:
                 self._presence.parts = tuple(p for p in self._presence.parts if p not in MODULES or p in begun)
             self._start(reloading, language, fresh=fresh)
-            sweeper = Sweeper()
-            show.after.append(sweeper)
-            show.closing.append(sweeper.close)
+            gc_scheduler = GcScheduler()
+            show.after.append(gc_scheduler)
+            show.closing.append(gc_scheduler.close)
             began = time.monotonic()
             while not self._over(now, period):
                 now = show.tick()
             took = time.monotonic() - began
         finally:
             show.close()
-        self._premises.ended(show.exhibition.project)
-        self._premises.close(forget=not self._leaving)
+        self._run_directory.ended(show.exhibition.project)
+        self._run_directory.close(forget=not self._leaving)
         return self._summary(now, took, video)
 
     def _claim(self) -> None:
         """Be the robot and its brain on that broker. Raises UsageError where somebody else is."""
-        show = self._show
+        show = self._node
         here = tuple(name for name, said in show.exhibition.project.modules.items() if said.here)
         presence = presence_of(show.exhibition.project, show.bus, (ROBOT, BRAIN, MOTION, *here), self._said)
         show.closing.insert(0, presence.close)
         claim(presence)
         if show.server:
-            show.server.recall(DeduplicationLog(home_of(self._premises.root) / DEDUPLICATION_FILE))
+            show.server.recall(DeduplicationLog(home_of(self._run_directory.root) / DEDUPLICATION_FILE))
         self._presence = presence
         show.exhibition.parts.append(lambda now: self._meet(presence))
 
     def _said(self) -> dict[str, str]:
         """What it says of itself to the others on the broker."""
-        return {"bundle": self._show.exhibition.project.hash}
+        return {"bundle": self._node.exhibition.project.hash}
 
     def _meet(self, presence: Presence) -> None:
         """Say that we are here; who has just come is told where the behaviour stands, and the behaviour who is lost."""
         for change in presence.tick():
-            self._show.exhibition.happen(change)
+            self._node.exhibition.happen(change)
             self._transcript.line("others", f"{change.name}, after {change.data['seconds']:.1f} s")
-        if self._show.faces and EYES not in presence.parts:
-            self._show.faces.quiet = presence.find(EYES) is not None
+        if self._node.faces and EYES not in presence.parts:
+            self._node.faces.quiet = presence.find(EYES) is not None
         if presence.came:
-            self._show.trace.standing(self._show.exhibition.runtime.snapshot)
+            self._node.trace.standing(self._node.exhibition.runtime.snapshot)
 
-    def _settle(self, mode: str) -> Reloading:
+    def _settle(self, mode: str) -> Reloader:
         """Be found by other terminals, and take saved files."""
-        show, records = self._show, self._premises.records
-        self._premises.open(show.bus, self._url, show.exhibition.project)
-        reloading = Reloading(
+        show, records = self._node, self._run_directory.records
+        self._run_directory.open(show.bus, self._url, show.exhibition.project)
+        reloading = Reloader(
             show,
             self._transcript,
             mode=mode,
             records=records,
-            applied=self._premises.announce,
-            seen=self._premises.refused,
+            applied=self._run_directory.announce,
+            seen=self._run_directory.refused,
             apart=True,
         )
         show.exhibition.parts.append(reloading.tick)
@@ -136,11 +138,11 @@ class Performance:
             show.after.append(lambda now: records.keep(show.exhibition))
         return reloading
 
-    def _start(self, reloading: Reloading, language: str, *, fresh: bool) -> None:
+    def _start(self, reloading: Reloader, language: str, *, fresh: bool) -> None:
         """Enter the initial states, or go on where a run ended that nobody meant to end."""
-        show = self._show
-        found = "" if fresh or self._story else self._premises.resumption(show.exhibition.project)
-        reloading.begin(self._premises.news)
+        show = self._node
+        found = "" if fresh or self._story else self._run_directory.resumption(show.exhibition.project)
+        reloading.begin(self._run_directory.news)
         if isinstance(found, str):
             print(found, end="\n" * bool(found))
             show.start(language)
@@ -151,40 +153,40 @@ class Performance:
         show.exhibition.resume(found)
 
     def _introduce(self, speed: str) -> None:
-        project = self._show.exhibition.project
+        project = self._node.exhibition.project
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")
         ready = time.monotonic() - STARTED
         print(f"{project.name}: {project.robot} performs `{project.behavior}` {pace}, ready after {ready:.1f} s.")
         if Path(project.root) == shipped_root() != Path.cwd():
             print(f"There is no lumen.yaml here: this is the shipped project, {project.root}.")
-        if self._premises.taken:
+        if self._run_directory.taken:
             print("Another run of this project is going on: `lumen reload` and its like reach that one.")
         if self._blind:
             print(f"It runs without camera images: {self._blind}.")
         if self._story:
             print(f"The story is “{self._story.title}”.\n")
-        elif self._show.walker:
+        elif self._node.walker:
             print("You are the visitor: type what you say. Ctrl-D walks away; Ctrl-C rests the robot, twice ends.\n")
-            self._show.walker.arrive(Visitor())
+            self._node.walker.arrive(Visitor())
             self._visitor_action(Arrive(Visitor()))
-            self._typed = TypedSpeech(self._show.walker, self._visitor_action)
-            self._show.exhibition.parts.append(self._typed.tick)
+            self._typed = TypedSpeech(self._node.walker, self._visitor_action)
+            self._node.exhibition.parts.append(self._typed.tick)
 
     def _visitor_action(self, action: VisitorAction) -> None:
         self._transcript.visitor_action(action)
-        faces = self._show.faces
+        faces = self._node.faces
         if isinstance(action, Leave) and faces and faces.last and faces.camera:
             self._face = math.dist(faces.last, (faces.camera.width / 2, faces.camera.height / 2))
 
     def _over(self, now: float, period: float | None) -> bool:
         if self._interrupts > 1 or (period is not None and now >= period):
             return True
-        if self._show.player:
-            return self._show.player.finished
+        if self._node.player:
+            return self._node.player.finished
         return self._typed is not None and self._typed.gone_for(now) > FAREWELL
 
     def _summary(self, now: float, took: float, video: Path | None) -> int:
-        player, log = self._show.player, self._transcript
+        player, log = self._node.player, self._transcript
         failure = player.failure if player else ""
         early = player is not None and not player.finished
         ended = "The story failed" if failure else "Ended before the story did" if early else "All well"
@@ -195,11 +197,11 @@ class Performance:
         print(f"  {len(log.states)} states, {log.said} texts, motions: {', '.join(log.played) or 'none'}")
         if self._face is not None:
             print(f"  the visitor's face ended {self._face:.0f} px from the centre of the camera's image")
-        if self._show.server:
-            print("  published: " + ", ".join(map(told_count, self._show.server.counts.items())))
+        if self._node.server:
+            print("  published: " + ", ".join(map(told_count, self._node.server.counts.items())))
         if video:
             print(f"  the film is {video}")
-        print(f"Next: change a sentence in behaviors/{self._show.exhibition.project.behavior}.yaml while it runs,")
+        print(f"Next: change a sentence in behaviors/{self._node.exhibition.project.behavior}.yaml while it runs,")
         print("      `lumen run` to be the visitor yourself, `lumen lint` after every change, `lumen graph` to see it.")
         return 1 if failure or (early and not self._interrupts) else 0
 

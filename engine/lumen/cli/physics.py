@@ -7,8 +7,8 @@ from dataclasses import replace
 from math import inf
 from pathlib import Path
 
+from lumen.app.physics.outcome_cache import OutcomeCache
 from lumen.cli.findings import Findings
-from lumen.cli.rehearsed import Rehearsed
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
@@ -36,7 +36,7 @@ def played(
     if project is None:
         return found, []
     chosen = [case for case in cases(project) if not found.asked or case.file in found.asked]
-    memory = Rehearsed(project, found.files) if keep else None
+    memory = OutcomeCache(project, found.files) if keep else None
     with _progress() as tell:
         rehearsals = rehearse(chosen, _maker(project), robots, memory, tell)
     more = [d for r in rehearsals for d in findings(r, project.documents[r.case.file]) if wanted(d)]
@@ -45,7 +45,7 @@ def played(
 
 
 def rehearse(
-    chosen: Sequence[Case], make: SubjectFactory, robots: int, memory: Rehearsed | None, tell: Tell
+    chosen: Sequence[Case], make: SubjectFactory, robots: int, memory: OutcomeCache | None, tell: Tell
 ) -> list[CaseResult]:
     """What comes of each case with the robot of the model and `robots` others; what is remembered is not played."""
     done, whole, rehearsals = 0, len(chosen) * (robots + 1), []

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 import lumen
-from lumen.cli.cast import SPEEDS, cast
+from lumen.app.setup import SPEEDS, set_up
 from lumen.cli.importing import foreign_content, one_line
 from lumen.cli.run import film_path
 from lumen.errors import ProjectError, UsageError
@@ -59,7 +59,7 @@ class _Player:
         from lumen.robots.simulation import SimulatedRobot
         from lumen.robots.simulation.film import Film
 
-        chosen = cast("simulation", project, speed)
+        chosen = set_up("simulation", project, speed)
         assert isinstance(chosen.robot, SimulatedRobot)
         self.robot, self._clock = chosen.robot, chosen.clock
         self._film = Film(video, self.robot, "close") if video else None

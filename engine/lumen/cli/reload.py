@@ -4,9 +4,9 @@ import argparse
 import json
 from typing import Any
 
-from lumen.cli.asking import ask
+from lumen.app.asking import ask
+from lumen.app.reload.requests import COMMAND, STATUS
 from lumen.cli.reach import configure_reach, reach
-from lumen.cli.reloading.orders import COMMAND, STATUS
 
 VERBS = {
     "status": "say which files run, what is staged, and what came of the last ones",
@@ -31,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
     reached = reach(options)
     try:
         for answer in ask(reached.bus, COMMAND, body, STATUS):
-            _show(answer, options.format)
+            _node(answer, options.format)
             if not isinstance(answer, dict) or answer.get("final", True):
                 return int(not isinstance(answer, dict) or answer.get("verdict") == "refused")
     finally:
@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
     return 1
 
 
-def _show(answer: Any, format: str) -> None:
+def _node(answer: Any, format: str) -> None:
     """One object for each verdict; a person reads its lines."""
     if format == "json" or not isinstance(answer, dict):
         shown = {key: value for key, value in answer.items() if key != "lines"} if isinstance(answer, dict) else answer

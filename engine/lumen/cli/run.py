@@ -6,13 +6,13 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
-from lumen.cli.apart.choosing import parts_of
-from lumen.cli.cast import ROBOTS, SPEEDS, VOICES, Cast, cast
-from lumen.cli.choosing import home_of, stories_of
+from lumen.app.processes.choosing import parts_of
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.recovery.startup import startup_project
+from lumen.app.reload.reloader import MODES
+from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup, set_up
+from lumen.app.stories import home_of, stories_of
 from lumen.cli.performance import Performance
-from lumen.cli.reloading.booting import boot
-from lumen.cli.reloading.premises import Premises
-from lumen.cli.reloading.reloading import MODES
 from lumen.errors import BusError, ModuleError, RobotError, UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
@@ -48,18 +48,18 @@ def run(options: argparse.Namespace) -> int:
     named = () if options.story is None else (options.story,)
     root = find_project(options.project or home_of(named))
     parts = parts_of(options.only, options.robot)
-    premises = Premises(root, guest=bool(parts) and "brain" not in parts)
+    run_directory = RunDirectory(root, guest=bool(parts) and "brain" not in parts)
     try:
-        return _run(options, root, premises, parts)
+        return _run(options, root, run_directory, parts)
     except (BusError, RobotError, ModuleError):
-        premises.records.annul()
+        run_directory.records.annul()
         raise
     finally:
-        premises.close(forget=False)
+        run_directory.close(forget=False)
 
 
-def _run(options: argparse.Namespace, root: Path, premises: Premises, parts: tuple[str, ...]) -> int:
-    project = boot(root, premises, last_good=options.last_good)
+def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, parts: tuple[str, ...]) -> int:
+    project = startup_project(root, run_directory, last_good=options.last_good)
     story = _story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
         raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
@@ -68,13 +68,13 @@ def _run(options: argparse.Namespace, root: Path, premises: Premises, parts: tup
     period, language = _period(options.period), _language(project, options.language)
     url = options.bus or os.environ.get("LUMEN_BUS") or project.bus
     if parts:
-        from lumen.cli.apart.starting import start  # not needed for an exhibition in one process
+        from lumen.app.processes.starting import start  # not needed for an exhibition in one process
 
-        return start(options, project, story, parts, url, premises, period, language)
+        return start(options, project, story, parts, url, run_directory, period, language)
     video = film_path(options.video, options.robot)
-    chosen = cast(options.robot, project, options.speed, story, options.robot_url)
+    chosen = set_up(options.robot, project, options.speed, story, options.robot_url)
     silence = _voice(options, chosen, language or project.languages[0])
-    performance = Performance(project, chosen, url, story, premises)
+    performance = Performance(project, chosen, url, story, run_directory)
     signal.signal(signal.SIGINT, lambda *_: performance.interrupt())
     signal.signal(signal.SIGTERM, lambda *_: performance.interrupt(2, leave=True))
     try:
@@ -83,11 +83,11 @@ def _run(options: argparse.Namespace, root: Path, premises: Premises, parts: tup
         silence()
 
 
-def _voice(options: argparse.Namespace, chosen: Cast, language: str) -> Callable[[], None]:
+def _voice(options: argparse.Namespace, chosen: Setup, language: str) -> Callable[[], None]:
     """Give the robot the voice that the flags ask for; what ends it. Raises UsageError or ModuleError."""
     if options.voice == "none" and not options.sound:
         return lambda: None
-    from lumen.cli.voice import voiced  # nobody else needs espeak-ng
+    from lumen.app.voice import voiced  # nobody else needs espeak-ng
 
     return voiced(chosen, options.voice, options.sound, language)
 

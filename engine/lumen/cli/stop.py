@@ -2,9 +2,9 @@
 
 import argparse
 
+from lumen.app.reload.requests import COMMAND
 from lumen.cli.commanding import command
 from lumen.cli.reach import configure_reach
-from lumen.cli.reloading.orders import COMMAND
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -6,9 +6,9 @@ import time
 from pathlib import Path
 
 import lumen
-from lumen.cli.choosing import home_of, stories_of
-from lumen.cli.exploring import Explored, explored
-from lumen.cli.rehearsal import Rehearsal, rehearse
+from lumen.app.exploring import Explored, explored
+from lumen.app.rehearsal import Rehearsal, rehearse
+from lumen.app.stories import home_of, stories_of
 from lumen.cli.terminal import coloured
 from lumen.cli.verdict import Verdict
 from lumen.cli.verdicts import FORMATS, text

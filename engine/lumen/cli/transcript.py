@@ -6,8 +6,8 @@ import textwrap
 from collections.abc import Callable
 from typing import TextIO
 
+from lumen.app.causes import innermost, reason_of, why
 from lumen.cli.terminal import coloured, paint
-from lumen.cli.why import innermost, reason_of, why
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.inside import unfolded
 from lumen.language.commands import (

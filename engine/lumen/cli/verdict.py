@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from lumen.cli.exploring import Explored
-from lumen.cli.rehearsal import Rehearsal
+from lumen.app.exploring import Explored
+from lumen.app.rehearsal import Rehearsal
 from lumen.runtime.coverage import Coverage
 
 

@@ -6,11 +6,11 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
+from lumen.app.garbage import GcScheduler, gc_paused
 from lumen.cli.findings import Findings
 from lumen.cli.lint import show, verdict
 from lumen.cli.linting import Asked, Judge
 from lumen.cli.render import render
-from lumen.cli.sweeping import Sweeper, unswept
 from lumen.cli.terminal import coloured, paint
 from lumen.runtime.watcher import FileWatcher, SavedFiles
 
@@ -31,17 +31,17 @@ def watch(projects: Sequence[Asked], judge: Judge, format: str, ended: Callable[
             watcher.start()
         try:
             _draw(found, format)
-            sweeper = Sweeper()
-            stack.callback(sweeper.close)
+            gc_scheduler = GcScheduler()
+            stack.callback(gc_scheduler.close)
             while not ended():
                 latest = dict([changes.get()])
                 while not changes.empty():
                     latest.update([changes.get()])
-                with unswept():
+                with gc_paused():
                     for i, saved in latest.items():
                         found[i] = judge(projects[i], saved.files)
                     _draw(found, format, time.monotonic() - min(saved.seen for saved in latest.values()))
-                sweeper()
+                gc_scheduler()
         except KeyboardInterrupt:
             if sys.stdout.isatty():
                 print()

@@ -3,8 +3,8 @@
 import json
 from typing import Any
 
-from lumen.cli.exploring import Explored
-from lumen.cli.rehearsal import Rehearsal
+from lumen.app.exploring import Explored
+from lumen.app.rehearsal import Rehearsal
 from lumen.cli.verdict import Verdict
 from lumen.language.diagnostics import Place
 from lumen.runtime.coverage import Coverage

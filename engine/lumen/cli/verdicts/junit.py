@@ -3,8 +3,8 @@
 import re
 import xml.etree.ElementTree as ET
 
-from lumen.cli.exploring import Explored
-from lumen.cli.rehearsal import Rehearsal
+from lumen.app.exploring import Explored
+from lumen.app.rehearsal import Rehearsal
 from lumen.cli.verdict import Verdict
 from lumen.cli.verdicts import text
 

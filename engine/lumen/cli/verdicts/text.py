@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from lumen.cli.exploring import Explored
+from lumen.app.exploring import Explored
+from lumen.app.rehearsal import Rehearsal
 from lumen.cli.performance import clock_time
-from lumen.cli.rehearsal import Rehearsal
 from lumen.cli.terminal import paint
 from lumen.cli.verdict import Verdict
 from lumen.runtime.coverage import Coverage

@@ -1,0 +1,1 @@
+"""An exhibition as a whole: where its parts meet, are hosted, reloaded, recovered, rehearsed and explored."""

@@ -1,0 +1,30 @@
+"""Whether a robot says that it is there, while somebody looks at its bus."""
+
+import threading
+from contextlib import suppress
+
+from lumen.errors import BusError
+from lumen.language.projects import Project
+from lumen.ports import Bus, Message
+from lumen.runtime.presence import HERE, KEY, PERIOD, ROBOT, ROUTE
+
+PATIENCE = 4 * PERIOD
+
+
+class RobotAttendance:
+    """Listens for the presence of a project's robot from now on."""
+
+    def __init__(self, bus: Bus, project: Project) -> None:
+        self._robot, self._here = project.robot, threading.Event()
+        row = project.routes.get(ROUTE)
+        with suppress(BusError):  # who may not read it is told so elsewhere
+            bus.subscribe(row.key_for(project.robot) if row else KEY, self._hear)
+
+    def robot(self) -> bool:
+        """Whether it is there; waits for as long as it may take to say so."""
+        return self._here.wait(PATIENCE)
+
+    def _hear(self, message: Message) -> None:
+        match message.body:
+            case {"robot": self._robot, "parts": list(parts), "state": str(state)} if ROBOT in parts and state == HERE:
+                self._here.set()

@@ -1,0 +1,149 @@
+"""A behaviour explored in its project: what was found, where that stands, and the story that leads there."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import yaml
+
+from lumen.app.node import MORNING, time_of_day
+from lumen.interpreters.exploration import Exploration, ExplorationFinding, PathStep, StimulusKind, explore
+from lumen.language.diagnostics import Place
+from lumen.language.events import ROBOT_EVENTS
+from lumen.language.machines import MachineDefinition
+from lumen.language.projects import Project
+from lumen.runtime.coverage import Gap, described
+from lumen.runtime.visitor import SPEECH
+
+HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
+PATIENCE = "2min"
+"""How long the story waits until the robot has done something."""
+
+
+@dataclass(frozen=True)
+class ExploredFinding:
+    """A finding with its place, and the YAML of a story that leads there."""
+
+    kind: str
+    place: Place
+    message: str
+    story: str
+
+
+@dataclass(frozen=True)
+class Explored:
+    """An exploration of a behaviour; `unseen` is what it did not come upon, `took` how long it took [s]."""
+
+    behavior: str
+    exploration: Exploration
+    findings: tuple[ExploredFinding, ...]
+    unseen: tuple[Gap, ...]
+    took: float
+
+
+def explored(
+    project: Project, behavior: str, *, bound: int, home: str = "", tell: Callable[[int, int], None] | None = None
+) -> Explored:
+    """Explore a behaviour of the project under every event that its routes, its robot and its file declare.
+
+    `tell` hears how far it is: how many configurations were walked, and how many are in sight.
+    """
+    began = time.perf_counter()
+    machine = project.behaviors[behavior]
+    options: dict[str, Any] = {
+        "bound": bound,
+        "home": home,
+        "language": project.languages[0],
+        "epoch": time_of_day(MORNING),
+    }
+    found = explore(machine, outside(project, machine), tell=tell or (lambda *_: None), **options)
+    findings = tuple(
+        ExploredFinding(f.kind, _place(project, behavior, f.state), f.message, story(project, behavior, f))
+        for f in found.findings
+    )
+    return Explored(behavior, found, findings, tuple(_unseen(project, behavior, found)), time.perf_counter() - began)
+
+
+def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
+    """The events that come to a behaviour from outside, each with the JSON Schema of its data, None for any."""
+    routes = {r.event: project.messages.get(r.schema) for r in project.routes.values() if r.event}
+    return {**ROBOT_EVENTS, **routes, **machine.events}
+
+
+def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:
+    """A story file that leads to what was found."""
+    robot = dict(_broken(finding.way))
+    lines = [HEAD, f"title: {_flow(finding.message)}"]
+    lines += [f"behavior: {_flow(behavior)}"] if behavior != project.behavior else []
+    lines += [f"robot: {_flow(robot)}"] if robot else []
+    worked = {_verb(s.move.command) for s in finding.way if s.move and s.move.kind is StimulusKind.DONE} & robot.keys()
+    lines += [
+        f"# On this way `{verb}` works at first; a story can only let it fail from the beginning."
+        for verb in sorted(worked)
+    ]
+    return "\n".join([*lines, "steps:", *(f"  - {step}" for step in _steps(project, finding.way))]) + "\n"
+
+
+def _steps(project: Project, way: tuple[PathStep, ...]) -> Iterator[str]:
+    yield _expect(way[0].states, (), {})
+    for before, stay in pairwise(way):
+        move = stay.move
+        assert move is not None  # only the first stay has none
+        changed = stay.states != before.states
+        if move.kind is StimulusKind.EVENT:
+            yield _happens(project, move.event.name, move.event.data)
+        if move.kind is StimulusKind.TIME and not changed:
+            yield f"wait: {move.waited:g}s"
+        elif changed:
+            within = {StimulusKind.TIME: f"{move.waited + 1:g}s", StimulusKind.DONE: PATIENCE}.get(move.kind)
+            yield _expect(stay.states, before.states, {"within": within} if within else {})
+
+
+def _happens(project: Project, name: str, data: Any) -> str:
+    """The step that lets an event happen: as words, as a message, or from nowhere."""
+    route = next((r.name for r in project.routes.values() if r.event == name), None)
+    if route == SPEECH and isinstance(data, Mapping) and isinstance(data.get("result"), str) and data["result"]:
+        return f"says: {_flow(data['result'])}"
+    if route is not None:
+        return f"message: {_flow({'route': route, 'body': data})}"
+    return f"event: {_flow({'name': name, 'data': data} if data else name)}"
+
+
+def _expect(states: tuple[str, ...], before: tuple[str, ...], more: Mapping[str, Any]) -> str:
+    """The step that expects the states that are active now and were not before."""
+    fresh = [state for state in states if state not in before] or list(states)
+    return f"expect: {_flow({'state': fresh[0] if len(fresh) == 1 else fresh, **more})}"
+
+
+def _broken(way: tuple[PathStep, ...]) -> Iterator[tuple[str, str]]:
+    """What the robot has to do badly on the way: verbs that fail, and verbs that hang while a timer ends."""
+    for stay in way:
+        if stay.move and stay.move.kind is StimulusKind.FAILED:
+            yield _verb(stay.move.command), "fails"
+        elif stay.move:
+            yield from ((_verb(command), "hangs") for command in stay.move.pending)
+
+
+def _verb(command: object) -> str:
+    return type(command).__name__.lower()
+
+
+def _flow(value: Any) -> str:
+    """The value as YAML in one line."""
+    text: str = yaml.safe_dump([value], default_flow_style=True, allow_unicode=True, sort_keys=False, width=10_000)
+    return text.strip()[1:-1]
+
+
+def _unseen(project: Project, behavior: str, found: Exploration) -> Iterator[Gap]:
+    machine = project.behaviors[behavior]
+    for path in found.never_entered:
+        yield Gap(_place(project, behavior, path), f"state `{machine.states[path].name}` is never entered")
+    for transition in found.never_taken:
+        place = project.place(f"behaviors/{behavior}.yaml", transition.where)
+        yield Gap(place, f"{described(machine, transition)} is never taken")
+
+
+def _place(project: Project, behavior: str, path: str) -> Place:
+    return project.place(f"behaviors/{behavior}.yaml", project.behaviors[behavior].states[path].where)

@@ -1,0 +1,89 @@
+"""What came of motions in simulation, kept under `.lumen/physics/` so that it is simulated once."""
+
+import hashlib
+import json
+import os
+import re
+from collections.abc import Iterable, Mapping
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import lumen
+from lumen.language.projects import Project
+from lumen.ports import Perform
+from lumen.robots.motion_codec import encode_motion
+from lumen.rules.physics import Case, Outcome
+
+_ENGINE = ("robots/simulation", "robots/executor.py", "interpreters", "rules/physics")
+
+
+class OutcomeCache:
+    """Remembers outcomes by everything that they depend on: motion, models, the engine's own code.
+
+    A folder that can't be written, or a file in it that can't be read, is as good as none.
+    """
+
+    def __init__(self, project: Project, files: Mapping[str, bytes]) -> None:
+        self._folder = Path(project.root) / ".lumen" / "physics"
+        root = Path(project.root)
+        models = {path: path.read_bytes() for path in sorted(root.glob("models/**/*")) if path.is_file()}
+        passages = {file: content for file, content in files.items() if file.startswith("models/passages/")}
+        shapes = [content for path, content in models.items() if path.parent.name != "passages"]
+        self._models = _digest([*shapes, project.hall.encode(), engine().encode()])
+        self._passages = _digest(passages.values())
+
+    def recall(self, case: Case) -> dict[int, Outcome]:
+        """What is known of a case, by number of the robot."""
+        try:
+            data = json.loads(self._file(case).read_text(encoding="utf-8"))
+            return {int(number): Outcome.from_json(outcome) for number, outcome in data.items()}
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            return {}
+
+    def keep(self, case: Case, outcomes: Mapping[int, Outcome]) -> None:
+        """Remember it in place of what was known of this case when it was another."""
+        file = self._file(case)
+        draft = file.with_suffix(f".{os.getpid()}")
+        try:
+            if not file.exists():
+                self._folder.mkdir(parents=True, exist_ok=True)
+                for old in self._folder.glob(f"{_name(case)}-*.json"):
+                    old.unlink()
+            text = json.dumps({number: outcome.to_json() for number, outcome in outcomes.items()})
+            draft.write_text(text, encoding="utf-8")
+            os.replace(draft, file)
+        except OSError:
+            draft.unlink(missing_ok=True)
+
+    def _file(self, case: Case) -> Path:
+        passages = self._passages if case.passage or case.before else ""
+        parts = [encode_motion(case.motion), [_said(command) for command in case.before], _said(case.command)]
+        digest = _digest([json.dumps(parts, sort_keys=True).encode(), self._models.encode(), passages.encode()])
+        return self._folder / f"{_name(case)}-{digest[:20]}.json"
+
+
+@cache
+def engine() -> str:
+    """A hash of the engine's code that moves the robot, and of the physics below it."""
+    root = Path(lumen.__file__).parent
+    files = [
+        path for name in _ENGINE for path in ([root / name] if name.endswith(".py") else (root / name).glob("*.py"))
+    ]
+    return _digest([*(path.read_bytes() for path in sorted(files)), version("mujoco").encode()])
+
+
+def _said(command: object) -> Any:
+    return encode_motion(command.motion) if isinstance(command, Perform) else repr(command)
+
+
+def _name(case: Case) -> str:
+    return re.sub(r"[^\w-]", "_", f"{case.motion.name}-{case.way}".replace(" ", "-"))
+
+
+def _digest(contents: Iterable[bytes]) -> str:
+    total = hashlib.sha256()
+    for content in contents:
+        total.update(hashlib.sha256(content).digest())
+    return total.hexdigest()

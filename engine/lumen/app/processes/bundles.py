@@ -1,0 +1,73 @@
+"""The files of the other processes follow the brain's: what it has put in force is loaded here too."""
+
+import queue
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+from lumen.app.reload.requests import STATUS
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.ports import Bus, Message
+from lumen.rules import check_files
+from lumen.runtime.watcher import SLICE
+
+MOVED = ("applied", "rolled back")
+
+
+class Bundles:
+    """Hears what becomes of saved files, and loads them on a thread of its own; `tick` hands on what was loaded.
+
+    `tell` hears where the files here are not those that the brain runs on: another machine may have others.
+    """
+
+    def __init__(self, root: Path, bus: Bus, use: Callable[[Project], None], tell: Callable[[str], None]) -> None:
+        self._root, self._use, self._tell = root, use, tell
+        self._wanted: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._loaded: queue.SimpleQueue[Project | str] = queue.SimpleQueue()
+        self._undo = bus.subscribe(STATUS, self._hear)
+        self._thread = threading.Thread(target=self._run, name="lumen-bundles", daemon=True)
+        self._thread.start()
+
+    def tick(self) -> None:
+        while not self._loaded.empty():
+            found = self._loaded.get()
+            if isinstance(found, str):
+                self._tell(found)
+            else:
+                self._tell("the files that the brain has put in force are in force here, too")
+                self._use(found)
+
+    def close(self) -> None:
+        self._undo()
+        self._wanted.put(None)
+        self._thread.join()
+
+    def _hear(self, message: Message) -> None:
+        body = message.body
+        if isinstance(body, dict) and body.get("verdict") in MOVED and isinstance(body.get("after"), str):
+            self._wanted.put(body["after"])
+
+    def _run(self) -> None:
+        missed = ""
+        while (wanted := self._latest()) is not None:
+            usual = sys.getswitchinterval()
+            sys.setswitchinterval(SLICE)
+            try:
+                project, _ = check_files(self._root, read_files(self._root))
+            finally:
+                sys.setswitchinterval(usual)
+            if project is not None and project.hash == wanted:
+                missed = ""
+                self._loaded.put(project)
+            elif not missed:
+                missed = "the files here are not those that the brain runs on now: it goes on alone"
+                self._loaded.put(missed)
+
+    def _latest(self) -> str | None:
+        """The newest hash that is wanted, None at the end; waits for one."""
+        wanted = self._wanted.get()
+        while wanted is not None and not self._wanted.empty():
+            wanted = self._wanted.get()
+        return wanted

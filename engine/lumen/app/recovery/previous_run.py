@@ -1,0 +1,81 @@
+"""How a start goes on with the run before, which nobody meant to end; on newer files that is a reload."""
+
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from lumen.app.reload.records import RunRecords
+from lumen.app.reload.report import START, ReloadReport
+from lumen.errors import LumenError
+from lumen.interpreters.changes import changes
+from lumen.interpreters.migration import Refusal
+from lumen.interpreters.statechart import deserialize
+from lumen.language.projects import Project
+from lumen.rules import check_files
+from lumen.runtime.crash_counter import DEATHS
+from lumen.runtime.resuming import Resumption, resume
+from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
+
+LATELY = 600.0
+"""How old a snapshot may be to be gone on with [s]: after that, whoever spoke with the robot has left."""
+
+_UNKNOWN = Refusal("its files were not kept")
+
+
+class Recovery(NamedTuple):
+    """How it is gone on with, else why not, empty where there is nothing to say; and what is news of it."""
+
+    how: Resumption | str
+    news: tuple[ReloadReport, ...] = ()
+
+
+def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
+    """How the run that these records of the project in `root` tell of is gone on with under `project`."""
+    keeper = records.keeper
+    kept = keeper.kept() if keeper else None
+    if keeper is None or kept is None:
+        return Recovery("")
+    away, began = time.time() - kept.time, time.perf_counter()
+    if not 0.0 <= away <= LATELY:
+        return Recovery(f"The last run ended without notice, but {_ago(away)}: this one begins anew.")
+    if records.died(project.hash) >= DEATHS:
+        return Recovery("The last runs ended without notice soon after their start: this one begins anew.")
+    try:
+        old = _before(root, keeper, kept, project)
+        how = resume(old, project, deserialize(old.machine, kept.frozen), away, kept.tracking) if old else _UNKNOWN
+    except LumenError as error:
+        return Recovery(f"The last run ended without notice and can't be gone on with: {error}")
+    news = () if old is None or old.hash == project.hash else (_news(old, project, how, time.perf_counter() - began),)
+    if isinstance(how, Refusal):
+        return Recovery(
+            f"The last run ended without notice, and these files can't go on from there: {how.reason}", news
+        )
+    return Recovery(how, news)
+
+
+def _before(root: Path, keeper: SnapshotStore, kept: StoredSnapshot, project: Project) -> Project | None:
+    """The bundle that ran, None where it was not kept."""
+    old: Project | None = project
+    if kept.bundle != project.hash:
+        files = keeper.files(kept.bundle)
+        old = check_files(root, files)[0] if files else None
+    if old is None or kept.behavior not in old.behaviors:
+        return None
+    return old if kept.behavior == old.behavior else replace(old, behavior=kept.behavior)
+
+
+def _news(old: Project, new: Project, how: Resumption | Refusal, took: float) -> ReloadReport:
+    notes = (f"the behaviour begins anew: {how.reason}",) if isinstance(how, Refusal) else how.notes
+    found = changes(old, new)
+    return ReloadReport("applied", START, old.hash, new.hash, changes=found, notes=notes, took={"loading": took})
+
+
+def _ago(seconds: float) -> str:
+    """`12 s ago`, `5 min ago`, `3 h ago`."""
+    if seconds < 0:
+        return "in the future, by this machine's clock"
+    for unit, name in ((3600.0, "h"), (60.0, "min")):
+        if seconds >= 2 * unit:
+            return f"{seconds / unit:.0f} {name} ago"
+    return f"{seconds:.0f} s ago"

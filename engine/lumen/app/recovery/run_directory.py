@@ -1,0 +1,119 @@
+"""What a run has in the home of its project: the door to its bus, its records, and what the run before left there."""
+
+import json
+import logging
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from lumen.app.recovery.previous_run import recover
+from lumen.app.reload.records import RunRecords
+from lumen.app.reload.report import ReloadReport
+from lumen.buses.local import LocalBusServer
+from lumen.errors import UsageError
+from lumen.language.projects import Project
+from lumen.ports import Bus
+from lumen.robots.command_receiver import command_key
+from lumen.rules import check_files
+from lumen.runtime.home import DOOR, Home, home_of
+from lumen.runtime.resuming import Resumption
+
+_log = logging.getLogger(__name__)
+
+
+class RunDirectory:
+    """Takes the home of the project in `root` for this run; `home` is None where another run has it, or none can be.
+
+    A process without a brain is a guest: it leaves the home to the one that has it. `news` are the reloads that this
+    start was, to be told as soon as somebody can hear it.
+    """
+
+    def __init__(self, root: Path, *, guest: bool = False) -> None:
+        self.root, self.taken = root, False
+        self.home: Home | None = None
+        home = Home(home_of(root))
+        try:
+            if guest:
+                pass
+            elif home.hold():
+                self.home = home
+            else:
+                self.taken = True
+        except UsageError as error:
+            _log.warning("the exhibition can't be resumed nor reached from other terminals: %s", error)
+        self.records = RunRecords(self.home)
+        self.news: list[ReloadReport] = []
+        self._door: LocalBusServer | None = None
+        self._bus = ""
+
+    def begin(self, project: Project, files: Mapping[str, bytes]) -> None:
+        """The exhibition starts on these files; where none have proved themselves yet, they are the last good ones."""
+        if keeper := self.records.keeper:
+            kept, good = keeper.kept(), keeper.good()
+            keeper.store(files)
+            if not good:
+                keeper.approve(project.hash)
+            keeper.prune(project.hash, good, kept.bundle if kept else "")
+
+    def ended(self, project: Project) -> None:
+        """The exhibition has ended as it should, on these files."""
+        self.records.annul()
+        if not self.records.died(project.hash):
+            self.records.approve(project.hash)
+
+    @property
+    def refused(self) -> str:
+        """The hash of the files that are there, where this start has taken others."""
+        return next((report.after for report in self.news if report.verdict == "refused"), "")
+
+    def open(self, bus: Bus, url: str, project: Project) -> None:
+        """Let others find this run: by its broker, or through a door to the embedded bus."""
+        self._bus = url
+        if self.home and url.startswith("memory:"):
+            try:
+                self._door = LocalBusServer(bus, self.home.folder)
+            except OSError as error:
+                _log.warning("the exhibition can't be reached from other terminals: %s", error)
+                return
+        self.announce(project)
+
+    def announce(self, project: Project) -> None:
+        """Say where this run is found, and under which key its robot takes commands."""
+        if self.home is None:
+            return
+        address = self._door.address if self._door else None
+        data = {
+            "root": str(self.root.absolute()),
+            "process": os.getpid(),
+            "bus": self._bus,
+            "command": command_key(project),
+            "path": address.path if address else "",
+            "port": address.port if address else 0,
+            "key": address.key if address else "",
+        }
+        self.home.write(DOOR, json.dumps(data).encode())
+
+    def close(self, *, forget: bool) -> None:
+        """Give it back; `forget` where the run has ended as it should, and there is nothing to go on with."""
+        if self.home is None:
+            return
+        self.records.close()
+        home, self.home = self.home, None
+        if self._door:
+            self._door.close()
+        home.remove(DOOR)
+        if forget and self.records.keeper:
+            self.records.keeper.forget()
+        home.release()
+
+    def last_good(self) -> Project | None:
+        """The bundle that ran last and was good, None where none was kept."""
+        keeper = self.records.keeper
+        files = keeper.files(keeper.good()) if keeper else None
+        return check_files(self.root, files)[0] if files else None
+
+    def resumption(self, project: Project) -> Resumption | str:
+        """How the run before is gone on with under this project; else why not, empty where there is nothing to say."""
+        found = recover(self.root, self.records, project)
+        self.news += found.news
+        return found.how

@@ -1,0 +1,55 @@
+"""Which files a start begins with: those that are there, or the last good ones where those can't be."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.reload.report import START, ReloadReport
+from lumen.app.reload.rollback_guard import PERIOD
+from lumen.app.reload.validator import Validation
+from lumen.errors import ProjectError
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.projects import Project
+from lumen.loading.files import fingerprint, read_files
+from lumen.rules import check_files
+from lumen.runtime.crash_counter import DEATHS
+from lumen.runtime.watcher import SavedFiles
+
+
+def startup_project(root: Path, run_directory: RunDirectory, *, last_good: bool) -> Project:
+    """The project in that folder; the last good one where it has errors and that is wanted, or ends every start.
+
+    Raises ProjectError where there is none to begin with.
+    """
+    files = read_files(root)
+    project, diagnostics = check_files(root, files)
+    if project is None:
+        good = run_directory.last_good()
+        if good and last_good:
+            _say("THE FILES HAVE ERRORS", "")
+            return _instead(run_directory, good, fingerprint(files), "", diagnostics)
+        if good:
+            print("`lumen run --last-good` starts with the last files that had no errors.", file=sys.stderr)
+        raise ProjectError(diagnostics)
+    if (died := run_directory.records.died(project.hash)) >= DEATHS:
+        good = run_directory.last_good()
+        if good and good.hash != project.hash:
+            why = f"these files ended the exhibition {died} times within {PERIOD:.0f} s of their start"
+            _say(why.upper(), "Save them again, or `lumen reload`, to have them tried again.\n")
+            return _instead(run_directory, good, project.hash, why)
+    run_directory.begin(project, files)
+    return project
+
+
+def _instead(
+    run_directory: RunDirectory, good: Project, hash: str, why: str, diagnostics: Sequence[Diagnostic] = ()
+) -> Project:
+    """The last good project; that it is another is news."""
+    validation = Validation(SavedFiles({}, (), 0.0, 0.0), hash, None, tuple(diagnostics))
+    run_directory.news.append(ReloadReport("refused", START, good.hash, hash, validation=validation, reason=why))
+    return good
+
+
+def _say(what: str, more: str) -> None:
+    print(f"\n{what}: IT STARTS WITH THE LAST GOOD ONES, AND NOT WITH YOURS.\n{more}", file=sys.stderr)

@@ -1,0 +1,102 @@
+"""What a reload from another version of a project would refuse, move or forget, as findings in the new files."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from lumen.app.reload.migration_preview import MigrationPreview, preview
+from lumen.app.versions import version
+from lumen.cli.findings import Findings
+from lumen.interpreters.changes import live
+from lumen.interpreters.migration import Refusal
+from lumen.interpreters.migration.identity import Identity
+from lumen.interpreters.statechart.types import type_checks, type_name
+from lumen.language.diagnostics import Diagnostic, NodePath, Place
+from lumen.language.machines import MachineDefinition
+from lumen.language.projects import Project
+from lumen.rules import check_files
+from lumen.rules.codes import CODES
+
+BOUND = 10_000
+
+
+def against(old: Project, new: Project, tell: Callable[[int, int], None] = lambda *_: None) -> list[Diagnostic]:
+    """The findings, each once, by place; every configuration of the old behaviour that can be reached is looked at."""
+    if old.machine == new.machine:
+        return []
+    everywhere = preview(old, live(old, new), BOUND, tell)
+    found = [*_refused(new, everywhere), *_moved(old, new, everywhere), *_forgotten(old, new)]
+    return sorted(dict.fromkeys(found), key=lambda d: (d.place, d.code, d.message))
+
+
+def compared(found: Findings, name: str, wanted: Callable[[Diagnostic], bool]) -> Findings:
+    """The findings of a project with those of a reload from another version of it, where it has no errors."""
+    root = Path(found.root)
+    old, new = version(name, root).project, check_files(root, found.files)[0]
+    more = [d for d in against(old, new) if wanted(d)] if new else []
+    shown = [d for d in more if not found.asked or d.place.file in found.asked]
+    elsewhere = found.elsewhere + len(more) - len(shown)
+    return replace(found, diagnostics=[*found.diagnostics, *shown], elsewhere=elsewhere)
+
+
+def _refused(new: Project, everywhere: MigrationPreview) -> Iterator[Diagnostic]:
+    for verdict in (fate.verdict for fate in everywhere.rows):
+        if isinstance(verdict, Refusal):
+            place = _place(new, verdict.behavior, (*verdict.where, "states"))
+            message = f"a reload would be refused: {verdict.reason}"
+            yield _finding("reload-refused", message, place, verdict.hint)
+
+
+def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator[Diagnostic]:
+    """What is gone and led elsewhere, at the `onReload` that says so."""
+    identity = Identity(old.machine, new.machine)
+    for fate in everywhere.rows:
+        if fate.outcome != "moved":
+            continue
+        names = {state.name: path for path, state in old.machine.states.items()}
+        for name in fate.states:
+            if (where := _says(old.machine, new.machine, identity, names[name])) is not None:
+                place = _place(new, new.behavior, where)
+                goals = ", ".join(f"`{state}`" for state in fate.after if state not in fate.states)
+                message = f"a reload would lead from `{name}`, which is gone, to {goals}"
+                hint = "where it has another name, say so under `renamed`"
+                yield _finding("reload-moves", message, place, hint)
+
+
+def _says(old: MachineDefinition, new: MachineDefinition, identity: Identity, path: str) -> NodePath | None:
+    """Where stands what is to be done about a state that is gone; None for one that is not, or goes without."""
+    if identity.state(path) is not None:
+        return None
+    around: str | None = path
+    while around and identity.state(around) is None:
+        around = old.states[around].parent
+    here: str | None = identity.state(around) if around else ""
+    while here is not None and not new.states[here].on_reload:
+        here = new.states[here].parent
+    return None if here is None else (*new.states[here].where, "onReload")
+
+
+def _forgotten(old: Project, new: Project) -> Iterator[Diagnostic]:
+    """Keys whose values a reload would lose."""
+    before, after = old.machine, new.machine
+    was, checks, hint = Identity(before, after).keys(), type_checks(after), "say under `renamed` what it is called now"
+    for key in before.context:
+        if key not in was.values():
+            message = f"a reload would forget what `{key}` holds"
+            yield _finding("reload-forgets", message, _place(new, new.behavior, ("context",)), hint)
+    for key, name in was.items():
+        check = checks[key]
+        if name in before.context and check and not check.accepts(before.context[name]):
+            place = _place(new, new.behavior, ("context", key))
+            message = f"a reload would forget what `{key}` holds: a {type_name(before.context[name])}, and {check} now"
+            yield _finding("reload-forgets", message, place, "let `types` allow both")
+
+
+def _place(project: Project, behavior: str, where: NodePath) -> Place:
+    file = f"behaviors/{behavior}.yaml"
+    document = project.documents.get(file)
+    return document.place(where, key=True) if document else Place(file)
+
+
+def _finding(code: str, message: str, place: Place, hint: str) -> Diagnostic:
+    return Diagnostic(code, message, place, hint, CODES[code].severity)

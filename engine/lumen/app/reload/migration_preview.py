@@ -1,0 +1,70 @@
+"""Where a reload would lead from every configuration that a behaviour can be in."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from lumen.app.exploring import outside
+from lumen.app.node import MORNING, time_of_day
+from lumen.interpreters.exploration.search import StateSpaceSearch, leaves
+from lumen.interpreters.migration import MigrationDelay, MigrationPlan, MigrationVerdict, plan
+from lumen.interpreters.statechart import Snapshot
+from lumen.language.projects import Project
+
+
+@dataclass(frozen=True)
+class MigrationOutcome:
+    """What happens to those who are in these innermost states: `kept`, `moved`, `waits` or `refused`, and how.
+
+    `after` are the innermost states that it leads to, `count` how many configurations it is said of.
+    """
+
+    states: tuple[str, ...]
+    outcome: str
+    told: str
+    after: tuple[str, ...]
+    verdict: MigrationVerdict
+    count: int = 1
+
+
+@dataclass(frozen=True)
+class MigrationPreview:
+    """The fates of all configurations walked; `waiting` are those that the bound left out."""
+
+    rows: tuple[MigrationOutcome, ...]
+    configurations: int
+    waiting: int
+
+
+def preview(old: Project, new: Project, bound: int, tell: Callable[[int, int], None]) -> MigrationPreview:
+    """The fate of every configuration of the old behaviour, those of the same states and fate counted together."""
+    machine = old.machine
+    language, epoch = old.languages[0], time_of_day(MORNING)
+    walk = StateSpaceSearch(machine, outside(old, machine), language=language, epoch=epoch)
+    for walked in walk.go(bound):
+        tell(walked, walk.waiting)
+    found: dict[tuple[object, ...], MigrationOutcome] = {}
+    for spot in walk.spots.values():
+        fate = outcome_of(old, new, spot.snapshot)
+        key = (fate.states, fate.outcome, fate.told, fate.after)
+        found[key] = replace(fate, count=found[key].count + 1 if key in found else 1)
+    order = ("refused", "waits", "moved", "kept")
+    rows = sorted(found.values(), key=lambda fate: order.index(fate.outcome))
+    return MigrationPreview(tuple(rows), len(walk.spots), walk.waiting)
+
+
+def outcome_of(old: Project, new: Project, snapshot: Snapshot) -> MigrationOutcome:
+    """What a reload at that moment would do."""
+    verdict = plan(old, new, snapshot, at=snapshot.at)
+    before = _inner(old, snapshot)
+    if isinstance(verdict, MigrationPlan):
+        after = _inner(new, verdict.snapshot)
+        outcome = "moved" if verdict.exited or verdict.entered else "kept"
+        return MigrationOutcome(before, outcome, "; ".join(verdict.notes), after, verdict)
+    if isinstance(verdict, MigrationDelay):
+        return MigrationOutcome(before, "waits", verdict.reason, (), verdict)
+    return MigrationOutcome(before, "refused", verdict.reason, (), verdict)
+
+
+def _inner(project: Project, snapshot: Snapshot) -> tuple[str, ...]:
+    machine = project.machine
+    return tuple(machine.states[path].name for path in leaves(machine, snapshot.configuration))

@@ -1,0 +1,182 @@
+"""Good files on their way: in force at the first tick at which the running state allows it."""
+
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from lumen.app.node import Node
+from lumen.app.reload.notifier import ReloadNotifier
+from lumen.app.reload.records import RunRecords
+from lumen.app.reload.report import ReloadReport, reason_of, what_for
+from lumen.app.reload.requests import ReloadRequest
+from lumen.app.reload.rollback_guard import RollbackGuard
+from lumen.app.reload.validator import Validation, fault_of
+from lumen.errors import BusError
+from lumen.interpreters.changes import Change, changes
+from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal
+from lumen.language.projects import Project
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass
+class StagedBundle:
+    """A good bundle on its way: `going` is whether it is to be put in force, `since` when that was asked [s].
+
+    `asked` is the snapshot from which it could not go on; `told` what it was said to wait for.
+    """
+
+    project: Project
+    changes: tuple[Change, ...]
+    validation: Validation | None = None
+    who: str = "files"
+    going: bool = False
+    now: bool = False
+    back: bool = False
+    since: float = field(default_factory=time.monotonic)
+    asked: object = None
+    told: str = ""
+    orders: list[ReloadRequest] = field(default_factory=list)
+
+
+class MigrationQueue:
+    """Holds at most one bundle, `staged`; `tick` puts it in force, waits for what it has to wait for, or refuses it.
+
+    `revision` counts how often another bundle came in force, `applied` is told of it. What has just come is on
+    `probation`.
+    """
+
+    def __init__(
+        self, show: Node, notifier: ReloadNotifier, records: RunRecords, applied: Callable[[Project], None]
+    ) -> None:
+        self._node, self._notifier, self._records, self._applied = show, notifier, records, applied
+        self.revision = 0
+        self.staged: StagedBundle | None = None
+        self.rollback_guard = RollbackGuard(show, self._rolled_back)
+
+    @property
+    def running(self) -> Project:
+        return self._node.exhibition.project
+
+    def stage(self, staged: StagedBundle, order: ReloadRequest | None = None) -> None:
+        """Have a bundle put in force as soon as may be."""
+        if self.staged and self.staged is not staged:
+            staged.orders += self.staged.orders
+        if order:
+            staged.orders.append(order)
+            staged.now |= order.now
+        staged.going, staged.since, staged.asked, staged.told = True, time.monotonic(), None, ""
+        self.staged = staged
+
+    def hold(self, staged: StagedBundle) -> None:
+        """Keep a bundle until somebody has it put in force."""
+        self.staged = staged
+        self._notifier.tell(self._about(staged, "staged"))
+
+    def drop(self) -> None:
+        """Newer files have come, and they are bad, or those that run."""
+        self.staged = None
+
+    def dry_run(self, staged: StagedBundle, order: ReloadRequest) -> None:
+        """Answer what would become of a bundle."""
+        verdict = self._node.plan(staged.project, now=order.now)
+        report = self._about(staged, "dry run")
+        match verdict:
+            case MigrationPlan(notes=notes):
+                report.reason, report.notes = "it would be in force at once", notes
+            case MigrationDelay(reason, what):
+                report.reason = f"it would wait for `{what}`: {reason}"
+            case Refusal(hint=hint):
+                report.verdict, report.reason = "refused", reason_of(verdict, staged.project)
+                report.hint = hint
+        order.answer({**report.to_json(), "lines": list(report.lines())})
+
+    def tick(self, now: float) -> None:
+        if self.rollback_guard.over(now):
+            self._records.approve(self.running.hash)
+        if self.staged and self.staged.going:
+            self._go(self.staged, now)
+
+    def _go(self, staged: StagedBundle, now: float) -> None:
+        """Apply it, wait for what it has to wait for, or refuse it."""
+        expired = time.monotonic() - staged.since > self.running.patience
+        before, snapshot = self.running, self._node.exhibition.runtime.snapshot
+        if staged.asked is snapshot and not expired:
+            return
+        staged.asked = snapshot
+        try:
+            verdict = self._node.plan(staged.project, now=staged.now, back=staged.back)
+            if isinstance(verdict, MigrationPlan):
+                self._apply(staged, verdict, now)
+                return
+        except Exception as error:  # a fault of ours costs the reload, and nothing else
+            why = f"the bus refuses its routes: {error}" if isinstance(error, BusError) else fault_of(error)
+            if self.running is before:
+                self._refuse(staged, why)
+            self.staged = None
+            return
+        if expired or not what_for(verdict):
+            self._give_up(staged, verdict)
+        elif verdict.reason != staged.told:
+            staged.told = verdict.reason
+            waiting = self._about(staged, "waiting")
+            waiting.waiting_for, waiting.reason = what_for(verdict), verdict.reason
+            self._notifier.tell(waiting, staged.orders)
+
+    def _apply(self, staged: StagedBundle, plan: MigrationPlan, now: float) -> None:
+        before, began = self.running, time.perf_counter()
+
+        def begun() -> None:
+            self.rollback_guard.begin(before, now)
+            self.staged = None
+            self.revision += 1
+            report = self._about(staged, "applied")
+            report.before, report.notes, report.back = before.hash, plan.notes, staged.back
+            report.took = {"applying": time.perf_counter() - began, "waiting": time.monotonic() - staged.since}
+            self._tell_all(report, staged.orders)
+
+        self._node.apply(staged.project, plan, begun)
+
+    def _tell_all(self, report: ReloadReport, orders: list[ReloadRequest]) -> None:
+        """Let everybody know of another bundle that is in force; a fault of ours in that changes nothing about it."""
+        try:
+            self._notifier.tell(report, orders)
+            if report.verdict == "applied":
+                self._records.begin(self.running.hash)
+            else:
+                self._records.condemn()
+            self._applied(self.running)
+            self._records.prune(self.running, self.rollback_guard.before, self.rollback_guard.good)
+        except Exception:
+            _log.exception("other files are in force, and not everybody was told")
+
+    def _give_up(self, staged: StagedBundle, verdict: MigrationDelay | Refusal) -> None:
+        """It has waited long enough, or can't go on from here at all."""
+        staged.going = False
+        if isinstance(verdict, MigrationDelay):
+            waited = f"`{verdict.what}` is still under way after {self.running.patience:g} s ({verdict.reason})"
+            self._refuse(staged, waited, "`lumen reload --now` does not wait", keep=True)
+        else:
+            self._refuse(staged, reason_of(verdict, staged.project), verdict.hint)
+
+    def _refuse(self, staged: StagedBundle, reason: str, hint: str = "", *, keep: bool = False) -> None:
+        self.staged = staged if keep else None
+        report = self._about(staged, "refused")
+        report.reason, report.hint = reason, hint
+        report.took = {"waiting": time.monotonic() - staged.since}
+        self._notifier.tell(report, staged.orders)
+        staged.orders = []
+
+    def _rolled_back(self, reason: str, bad: Project, took: float) -> None:
+        """The probation has brought back the bundle before, in so much time [s]."""
+        self.staged = None
+        self.revision += 1
+        found = changes(bad, self.running)
+        report = ReloadReport("rolled back", "probation", bad.hash, self.running.hash, self.revision, found)
+        report.reason, report.took = f"the new files failed: {reason}", {"applying": took}
+        self._tell_all(report, [])
+
+    def _about(self, staged: StagedBundle, verdict: str) -> ReloadReport:
+        hashes = self.running.hash, staged.project.hash
+        return ReloadReport(verdict, staged.who, *hashes, self.revision, staged.changes, staged.validation)

@@ -1,0 +1,96 @@
+"""What a running exhibition writes into its home: journal, bundles, and where its behaviour stands."""
+
+import logging
+from collections.abc import Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any
+
+from lumen.language.projects import Project
+from lumen.runtime.crash_counter import CrashCounter
+from lumen.runtime.home import Home
+from lumen.runtime.journal import Journal
+from lumen.runtime.loop import BehaviorLoop
+from lumen.runtime.snapshot_store import SnapshotStore
+
+_log = logging.getLogger(__name__)
+
+
+class RunRecords:
+    """The records in a home; without one (another run of the same project has it) nothing is written.
+
+    Where the behaviour stands is written many times a second, and a disk may take half a second to take it: that has a
+    thread of its own, until `close`.
+    """
+
+    def __init__(self, home: Home | None) -> None:
+        self._told, self._trial = False, ""
+        self._desk = ThreadPoolExecutor(1, "records")
+        self._keeping: Future[None] | None = None
+        self.keeper = SnapshotStore(home) if home else None
+        self.trials = CrashCounter(home) if home else None
+        self.journal = Journal(home.folder if home else None)
+
+    def write(self, entry: Mapping[str, Any]) -> None:
+        self.journal.write(entry)
+
+    def store(self, files: Mapping[str, bytes]) -> None:
+        """Keep the files of a good bundle."""
+        if self.keeper:
+            self.keeper.store(files)
+
+    def begin(self, hash: str) -> None:
+        """This bundle is in force now, and on trial; the one before has ended nothing."""
+        self.annul()
+        self._trial = hash
+        if self.trials:
+            self.trials.begin(hash)
+
+    def approve(self, hash: str) -> None:
+        """A bundle has stood its probation."""
+        if self.keeper and self.trials:
+            self.keeper.approve(hash)
+            self.trials.acquit(hash)
+            self._trial = ""
+
+    def condemn(self) -> None:
+        """The bundle on trial has failed, and the exhibition lives."""
+        self._trial = ""
+
+    def died(self, hash: str) -> int:
+        """How often the exhibition ended before this bundle had stood its probation."""
+        return self.trials.count(hash) if self.trials else 0
+
+    def annul(self) -> None:
+        """The exhibition ends, for nothing that its files could help."""
+        if self.trials and self._trial:
+            self.trials.annul(self._trial)
+        self._trial = ""
+
+    def prune(self, *projects: Project | None) -> None:
+        """Forget all bundles but these."""
+        if self.keeper:
+            self.keeper.prune(*(project.hash for project in projects if project))
+
+    def keep(self, exhibition: BehaviorLoop) -> None:
+        """Have it written where the behaviour stands, where that is news and what was to be written before is."""
+        snapshot = exhibition.runtime.snapshot
+        if self.keeper is None or not self._settled() or not self.keeper.due(snapshot):
+            return
+        on = tuple(exhibition.tracking.on)
+        self._keeping = self._desk.submit(self.keeper.keep, exhibition.project, snapshot, on)
+
+    def close(self) -> None:
+        """Wait for what is being written; nothing is written any more."""
+        self._desk.shutdown()
+        self._settled()
+
+    def _settled(self) -> bool:
+        """Whether nothing is being written; says once that it could not be."""
+        if self._keeping and not self._keeping.done():
+            return False
+        if self._keeping:
+            self._keeping.result()
+        if self.keeper and self.keeper.trouble and not self._told:
+            self._told = True
+            _log.warning("where the behaviour stands can't be kept: %s", self.keeper.trouble)
+        return True

@@ -1,0 +1,212 @@
+"""Saved files on a running exhibition: taken where they are good, reported where they are not."""
+
+import logging
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+
+from lumen.app.node import Node
+from lumen.app.rehearsal import Rehearsal
+from lumen.app.reload.migration_queue import MigrationQueue, StagedBundle
+from lumen.app.reload.notifier import ReloadNotifier
+from lumen.app.reload.records import RunRecords
+from lumen.app.reload.report import ReloadReport
+from lumen.app.reload.requests import COMMAND, WAITING, ReloadRequest, answering, request_from
+from lumen.app.reload.validation_worker import InlineValidation, ValidationWorker
+from lumen.app.reload.validator import BUDGET, BundleValidator, Validation, fault_of, told
+from lumen.buses.validated import by_key
+from lumen.cli.transcript import Transcript
+from lumen.errors import BusError, UsageError
+from lumen.interpreters.changes import changes, live
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.ports import Message
+from lumen.runtime.watcher import QUIET, FileWatcher, SavedFiles
+
+_log = logging.getLogger(__name__)
+
+MODES = ("auto", "manual", "off")
+"""Take saved files at once; only judge them, and wait for `lumen reload --apply`; leave them alone."""
+
+
+class Reloader:
+    """Has saved files judged, and stages every good bundle; hears what operators ask for.
+
+    `apart` is whether files are judged in another process. `quiet` [s] and `budget` [s] are those of the watcher and of
+    stories; `applied` is told of each bundle that comes in force. `seen` is the hash of files that are there and not to
+    be taken until they change, where those are not the ones that run.
+    """
+
+    def __init__(
+        self,
+        show: Node,
+        transcript: Transcript,
+        *,
+        mode: str = "auto",
+        records: RunRecords | None = None,
+        applied: Callable[[Project], None] = lambda _: None,
+        seen: str = "",
+        apart: bool = False,
+        quiet: float = QUIET,
+        budget: float = BUDGET,
+    ) -> None:
+        self._node, self._mode = show, mode
+        self._records = records or RunRecords(None)
+        self._notifier = ReloadNotifier(show, transcript, self._records)
+        self._queue = MigrationQueue(show, self._notifier, self._records, applied)
+        self._bus = show.exhibition.bus
+        self._came: deque[Message] = deque(maxlen=WAITING)
+        project = show.exhibition.project
+        self._worker = (ValidationWorker if apart else InlineValidation)(Path(project.root))
+        judge = BundleValidator(self._worker, lambda: self._running, budget)
+        self._watcher: FileWatcher[Validation | list[Rehearsal]] = FileWatcher(
+            Path(project.root),
+            read_files(Path(project.root)),
+            lambda saved: self._judge(judge, saved),
+            hash=seen or project.hash,
+            quiet=quiet,
+            hints=mode != "off",
+            leisure=lambda validation, urgent: self._advise(judge, validation, urgent),
+            noticed=self._worker.begin,
+        )
+        self._undo = self._bus.subscribe(COMMAND, self._came.append)
+        self._watcher.start()
+
+    @property
+    def last(self) -> ReloadReport | None:
+        """What was told last."""
+        return self._notifier.last
+
+    @property
+    def _running(self) -> Project:
+        return self._node.exhibition.project
+
+    def begin(self, news: Iterable[ReloadReport]) -> None:
+        """The exhibition starts; `news` are the reloads that this is."""
+        self._records.begin(self._running.hash)
+        for report in news:
+            self._notifier.tell(report)
+
+    def close(self) -> None:
+        self._undo()
+        self._watcher.close()
+        self._worker.close()
+
+    def tick(self, now: float) -> None:
+        """Take what was asked, see what the watcher found, and apply what is staged.
+
+        A fault of ours in any of that costs the reload, and nothing else.
+        """
+        try:
+            self._tick(now)
+        except Exception:
+            _log.exception("the saved files could not be taken")
+            self._queue.drop()
+
+    def _tick(self, now: float) -> None:
+        while self._came:
+            self._hear(self._came.popleft())
+        while not self._watcher.results.empty():
+            found = self._watcher.results.get()
+            if isinstance(found, Validation):
+                self._take(found)
+            else:
+                self._warn(found)
+        self._queue.tick(now)
+
+    def _judge(self, judge: BundleValidator, saved: SavedFiles) -> Validation:
+        """On the watcher's thread: routes that come with the files are made ready here, where nobody has to wait."""
+        validation = Validation(saved, "")
+        try:
+            validation = judge(saved)
+            if validation.good and validation.project:
+                self._bus.prepare(by_key(validation.project))
+                self._records.store(saved.files)
+        except BusError as error:
+            return replace(validation, fault=f"the bus refuses its routes: {error}")
+        except Exception as error:
+            return replace(validation, fault=fault_of(error))
+        return validation
+
+    def _advise(
+        self, judge: BundleValidator, validation: Validation | list[Rehearsal], urgent: Callable[[], bool]
+    ) -> None:
+        """On the watcher's thread, when there is nothing more urgent."""
+        if isinstance(validation, Validation) and (failed := judge.advise(validation, urgent)):
+            self._watcher.results.put(failed)
+
+    def _warn(self, failed: list[Rehearsal]) -> None:
+        for rehearsal in failed:
+            self._notifier.line(f"the story `{rehearsal.story.name}` does not hold with these files: {told(rehearsal)}")
+
+    def _hear(self, message: Message) -> None:
+        try:
+            order = request_from(message, self._bus)
+        except UsageError as error:
+            answering(message, self._bus)(self._answer("refused", str(error)).to_json())
+            return
+        queue = self._queue
+        if order.verb == "stop":
+            self._node.exhibition.happen(Event("stop", {}))
+            order.answer(self._answer("stopped", "the behaviour is told to stop").to_json())
+        elif order.verb == "status":
+            order.answer(self._status().to_json())
+        elif self._mode == "off":
+            self._notifier.tell(self._answer("refused", "it was started with --reload off"), [order])
+        elif order.verb in ("reload", "dry-run"):
+            self._watcher.ask(order)
+        elif order.verb == "rollback" and (before := queue.rollback_guard.before):
+            back = live(self._running, before)
+            queue.stage(StagedBundle(back, changes(self._running, back), who="command", back=True), order)
+        elif order.verb == "apply" and queue.staged:
+            queue.stage(queue.staged, order)
+        else:
+            nothing = "to go back to" if order.verb == "rollback" else "staged"
+            self._notifier.tell(self._answer("refused", f"there is nothing {nothing}"), [order])
+
+    def _take(self, validation: Validation) -> None:
+        """Decide on what was judged."""
+        order = validation.saved.asked if isinstance(validation.saved.asked, ReloadRequest) else None
+        who, orders, queue = "command" if order else "files", [order] if order else [], self._queue
+        if not validation.good or validation.project is None:
+            queue.drop()
+            self._notifier.tell(self._verdict("refused", who, validation, validation.fault), orders)
+            return
+        project = live(self._running, validation.project)
+        same = validation.running is self._running
+        staged = StagedBundle(project, validation.changes if same else changes(self._running, project), validation, who)
+        if order and order.verb == "dry-run" and validation.hash != self._running.hash:
+            queue.dry_run(staged, order)
+        elif validation.hash == self._running.hash:
+            queue.drop()
+            self._notifier.tell(self._verdict("unchanged", who, validation), orders)
+        elif order or self._mode == "auto":
+            queue.stage(staged, order)
+        else:
+            queue.hold(staged)
+
+    def _verdict(self, verdict: str, who: str, validation: Validation, reason: str = "") -> ReloadReport:
+        revision = self._queue.revision
+        return ReloadReport(
+            verdict, who, self._running.hash, validation.hash, revision, validation=validation, reason=reason
+        )
+
+    def _answer(self, verdict: str, reason: str) -> ReloadReport:
+        hash = self._running.hash
+        return ReloadReport(verdict, "command", hash, hash, self._queue.revision, reason=reason)
+
+    def _status(self) -> ReloadReport:
+        staged, last = self._queue.staged, self.last
+        waiting = f", waiting: {staged.told}" if staged and staged.told else ", staged" if staged else ""
+        report = self._answer("status", f"revision {self._queue.revision} runs ({self._mode}){waiting}")
+        report.more = {
+            "mode": self._mode,
+            "staged": [str(change) for change in staged.changes] if staged else None,
+            "waiting": staged.told if staged else "",
+            "probation": self._queue.rollback_guard.left(self._node.exhibition.clock.now()),
+            "last": last.to_json() if last else None,
+            "lines": [report.reason, *(last.lines() if last else [])],
+        }
+        return report

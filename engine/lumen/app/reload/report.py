@@ -1,0 +1,136 @@
+"""What is told of a reload: as JSON on the bus and in the journal, and as lines for people."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from lumen.app.reload.validator import Validation, told
+from lumen.interpreters.changes import Change, Risk, risk, summary
+from lumen.interpreters.migration import MigrationDelay, Refusal
+from lumen.language.diagnostics import Severity
+from lumen.language.projects import Project
+
+MOST = 100
+"""Changes and diagnostics that a bulletin lists."""
+OPEN = ("waiting", "judging")
+"""Verdicts after which another one follows."""
+START = "start"
+
+
+@dataclass
+class ReloadReport:
+    """One verdict on files: `unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run`, `status`.
+
+    `who` asked for it: `files`, `command`, `probation`, or the `start` of a run on other files than those before.
+    `before` and `after` are hashes of bundles, `restart` sentences about what comes into force only then, `took` times
+    [s] by what took them. `back`: the files ran before.
+    """
+
+    verdict: str
+    who: str
+    before: str = ""
+    after: str = ""
+    revision: int = 0
+    changes: tuple[Change, ...] = ()
+    validation: Validation | None = None
+    waiting_for: str = ""
+    reason: str = ""
+    hint: str = ""
+    notes: tuple[str, ...] = ()
+    back: bool = False
+    took: dict[str, float] = field(default_factory=dict)
+    more: dict[str, Any] = field(default_factory=dict)
+
+    def kept(self) -> "ReloadReport":
+        """The same without the files and the project that it is about."""
+        validation = self.validation and self.validation.kept()
+        return replace(self, validation=validation)
+
+    @property
+    def restart(self) -> list[str]:
+        """What comes into force only when the exhibition is started anew."""
+        return [str(change) for change in self.changes if change.risk is Risk.RESTART and self.who != START]
+
+    def lines(self) -> Iterator[str]:
+        """What a person is told, the reasons before the verdict."""
+        if self.validation:
+            errors = (d for d in self.validation.diagnostics if d.severity is Severity.ERROR)
+            yield from map(str, list(errors)[:MOST])
+            yield from (f"{told(rehearsal)}" for rehearsal in self.validation.failed)
+        yield from (said := list(self._verdict()))
+        yield from self.notes
+        if self.verdict in ("applied", "dry run"):
+            yield from (later for later in self.restart if later not in said[0])
+
+    def _verdict(self) -> Iterator[str]:
+        match self.verdict:
+            case "applied":
+                yield f"{self._taken()}: {self._what()}"
+            case "rolled back":
+                yield f"{self.reason}: back to the files before, revision {self.revision}"
+            case "refused":
+                goes_on = "the last good files run" if self.who == START else "the exhibition goes on as it was"
+                yield f"refused: {self._why()}{goes_on}"
+            case "waiting":
+                yield f"waiting for `{self.waiting_for}`: {self.reason} (`lumen reload --now` does not wait)"
+            case "staged":
+                yield f"staged: {self._what()}; `lumen reload --apply` puts it in force"
+            case "unchanged":
+                yield self.reason or "the saved files are those that run"
+            case "dry run":
+                yield f"{self._what()}; {self.reason}"
+            case _:
+                yield self.reason
+
+    def _taken(self) -> str:
+        if self.back:
+            return "the files before are in force again"
+        all_later = 0 < len(self.changes) == len(self.restart)
+        return "the saved files are good" if all_later else "the saved files are in force"
+
+    def _what(self) -> str:
+        return f"{summary(self.changes)} (risk: {risk(self.changes)})"
+
+    def _why(self) -> str:
+        if self.validation and self.validation.failed:
+            names = ", ".join(f"`{rehearsal.story.name}`" for rehearsal in self.validation.failed)
+            return f"the saved story {names} fails with these files; "
+        hint = f" ({self.hint})" if self.hint else ""
+        return f"{self.reason}{hint}; " if self.reason else ""
+
+    def _took(self) -> dict[str, float]:
+        validation = {"loading": self.validation.loading, "stories": self.validation.playing} if self.validation else {}
+        return {**validation, **self.took}
+
+    def to_json(self) -> dict[str, Any]:
+        """The body on `lumen.config.status`, and the entry in the journal."""
+        found: dict[str, Any] = {
+            "verdict": self.verdict,
+            "final": self.verdict not in OPEN,
+            "who": self.who,
+            "before": self.before,
+            "after": self.after,
+            "revision": self.revision,
+        }
+        if self.changes or self.verdict in ("applied", "staged", "dry run"):
+            found["risk"] = str(risk(self.changes))
+            found["changes"] = [str(change) for change in self.changes[:MOST]]
+            found["restart"] = self.restart
+        if self.validation:
+            found["diagnostics"] = [d.to_json() for d in self.validation.diagnostics[:MOST]]
+            found["stories"] = [told(rehearsal) for rehearsal in self.validation.failed]
+        if took := self._took():
+            found["took"] = took
+        named = {"waiting_for": self.waiting_for, "reason": self.reason, "hint": self.hint, "notes": list(self.notes)}
+        return {**found, **{name: value for name, value in named.items() if value}, **self.more}
+
+
+def reason_of(refusal: Refusal, project: Project) -> str:
+    """Why it can't be, with the place in the new files where it could be said."""
+    place = project.place(f"behaviors/{refusal.behavior}.yaml", refusal.where) if refusal.behavior else None
+    return f"{place}: {refusal.reason}" if place else refusal.reason
+
+
+def what_for(verdict: MigrationDelay | Refusal) -> str:
+    """The state that has to be left first."""
+    return verdict.what if isinstance(verdict, MigrationDelay) else verdict.state

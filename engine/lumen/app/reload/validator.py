@@ -1,0 +1,137 @@
+"""Saved files on trial: loaded, linted, compared with what runs, and played on the recording robot."""
+
+import logging
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
+
+from lumen.app.rehearsal import Rehearsal
+from lumen.app.reload.validation_worker import InlineValidation, ValidationWorker
+from lumen.interpreters.changes import Change, Risk, changes
+from lumen.interpreters.statechart.program import compiled
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.loading.files import fingerprint
+from lumen.runtime.watcher import SavedFiles
+
+_log = logging.getLogger(__name__)
+
+BUDGET = 2.0
+"""How long the stories that were saved may take, all together [s]."""
+STORIES = "behaviors/stories"
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What came of saved files: a bundle, or what is wrong with them.
+
+    `failed` are stories that were saved with them and do not hold; `fault` is a failure of ours. `changes` are against
+    `running`, the bundle that ran when they were judged; `loading` and `playing` are how long each took [s].
+    """
+
+    saved: SavedFiles
+    hash: str
+    project: Project | None = None
+    diagnostics: tuple[Diagnostic, ...] = ()
+    running: Project | None = None
+    changes: tuple[Change, ...] = ()
+    failed: tuple[Rehearsal, ...] = ()
+    fault: str = ""
+    loading: float = 0.0
+    playing: float = 0.0
+
+    @property
+    def good(self) -> bool:
+        return self.project is not None and not self.failed and not self.fault
+
+    @property
+    def took(self) -> float:
+        """How long our own work took [s], without the quiet period."""
+        return self.loading + self.playing
+
+    def kept(self) -> "Validation":
+        """The same without the files and the projects that it is about."""
+        return replace(self, saved=self.saved._replace(files={}), project=None, running=None)
+
+
+class BundleValidator:
+    """Judges files against the bundle that runs, which `running` tells; called on a thread that may take its time.
+
+    `court` loads files and plays stories, here or in another process.
+    """
+
+    def __init__(
+        self, worker: InlineValidation | ValidationWorker, running: Callable[[], Project], budget: float = BUDGET
+    ) -> None:
+        self._worker, self._running, self._budget = worker, running, budget
+
+    def __call__(self, saved: SavedFiles) -> Validation:
+        """What came of them; nothing here raises for what they say."""
+        hash, began = "", time.perf_counter()
+        try:
+            hash = fingerprint(saved.files)
+            project, diagnostics = self._worker.load(saved.files)
+            if project is None:
+                return Validation(saved, hash, None, diagnostics, loading=time.perf_counter() - began)
+            compiled(project.machine)
+            running = self._running()
+            found = changes(running, project)
+            loaded = time.perf_counter()
+            failed = tuple(self._play(project, _saved_stories(project, saved.changed)))
+            took = loaded - began, time.perf_counter() - loaded
+            return Validation(saved, hash, project, diagnostics, running, found, failed, "", *took)
+        except Exception as error:  # a fault of ours costs the reload, and nothing else
+            return Validation(saved, hash, fault=fault_of(error))
+
+    def advise(self, validation: Validation, urgent: Callable[[], bool]) -> list[Rehearsal]:
+        """The stories of what was changed that would not hold any more, as far as there is leisure to play them."""
+        if not validation.good or validation.project is None:
+            return []
+        others = _touched_stories(validation.project, validation.changes, validation.saved.changed)
+        return list(self._play(validation.project, others, urgent))
+
+    def _play(
+        self, project: Project, stories: Iterable[Story], urgent: Callable[[], bool] = lambda: False
+    ) -> Iterator[Rehearsal]:
+        """Those that fail; one for which there is no time left is left out."""
+        until = time.perf_counter() + self._budget
+        for story in stories:
+            left = until - time.perf_counter()
+            if left <= 0.0 or urgent():
+                return
+            if failed := self._worker.play(project, story.name, left):
+                yield failed
+
+
+def _saved_stories(project: Project, changed: Iterable[str]) -> list[Story]:
+    names = [PurePosixPath(path).stem for path in changed if str(PurePosixPath(path).parent) == STORIES]
+    return [project.stories[name] for name in names if name in project.stories]
+
+
+def _touched_stories(project: Project, found: Iterable[Change], changed: Iterable[str]) -> list[Story]:
+    """Stories of behaviours that changed, the shown one first and then the shortest; all where gestures changed."""
+    saved = _saved_stories(project, changed)
+    files = {change.file for change in found if change.risk is not Risk.COSMETIC or change.kind == "text"}
+    behaviors = {PurePosixPath(file).stem for file in files if file.startswith("behaviors/")}
+    everything = any(change.risk in (Risk.MOTION, Risk.WIRING) for change in found)
+    touched = [
+        story
+        for story in project.stories.values()
+        if story not in saved and (everything or (story.behavior or project.behavior) in behaviors)
+    ]
+    return sorted(touched, key=lambda story: (story.name != project.story, len(story.steps)))
+
+
+def told(rehearsal: Rehearsal) -> str:
+    """A failure in a line, with its place."""
+    place = f"{rehearsal.place}: " if rehearsal.place else ""
+    failed = rehearsal.failed
+    return f"{place}{failed.what if failed else ''}"
+
+
+def fault_of(error: Exception) -> str:
+    """What is said of a fault of ours, with where it was raised in the log."""
+    _log.error("a fault of ours with saved files", exc_info=error)
+    return f"Lumen failed on these files: {error!r}"

@@ -1,0 +1,66 @@
+"""Who plays: the robot, its clock and the hall around it, chosen by name."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from lumen.clocks.real import RealClock
+from lumen.clocks.simulated import SimulatedClock
+from lumen.errors import UsageError
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.ports import Clock, Hall, Robot
+from lumen.runtime.tracking import TrackingService
+
+ROBOTS = ("simulation", "naoqi", "recording", "remote", "none")
+SPEEDS = ("1", "4", "max")
+NAO = "nao.local"
+VOICES = ("none", "espeak")
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A robot with its clock; `hall` is the simulated world around it, None for a robot in no world of ours.
+
+    `blind` says why its camera has no images and what to do about it; empty where it has. `remote`: its server is
+    somewhere else; `tracking` is who lets controllers follow what is seen, where that is not the exhibition itself.
+    """
+
+    robot: Robot
+    clock: Clock
+    hall: Hall | None
+    blind: str = ""
+    remote: bool = False
+    tracking: TrackingService | None = None
+
+
+def set_up(kind: str, project: Project, speed: str, story: Story | None = None, url: str | None = None) -> Setup:
+    """The robot of that name, on its feet; `url` is where a real one is."""
+    if url and kind != "naoqi":
+        raise UsageError("--robot-url is where a real robot is: say --robot naoqi with it")
+    pace = None if speed == "max" else float(speed)
+    if kind == "simulation":
+        from lumen.robots.simulation import SimulatedRobot, available
+
+        simulated = SimulatedRobot(project.body, Path(project.root) / "models", project.hall, stage=project.stage)
+        return Setup(simulated, SimulatedClock(simulated.advance, pace), simulated, available() or "")
+    if kind == "recording":
+        from lumen.robots.recording import RecordingRobot
+
+        recording = RecordingRobot(project.body, story.robot if story else None)
+        return Setup(recording, SimulatedClock(recording.advance, pace), recording)
+    if kind == "naoqi":
+        from lumen.robots.naoqi import NaoqiRobot, PhysicalHall
+
+        if speed != "1":
+            raise UsageError("a real robot lives in real time: leave out --speed")
+        if story:
+            raise UsageError("a story needs a visitor of ours in a simulated hall: leave out --robot naoqi")
+        clock = RealClock()
+        return Setup(NaoqiRobot(project.body, url or NAO, clock.now, stage=project.stage), clock, PhysicalHall())
+    if kind == "none":
+        from lumen.robots.none import NoRobot
+
+        if speed != "1":
+            raise UsageError("without a robot there is nothing to simulate: leave out --speed")
+        return Setup(NoRobot(), RealClock(), None)
+    raise UsageError(f"no robot `{kind}`: there are {', '.join(ROBOTS)}")

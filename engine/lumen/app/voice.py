@@ -1,0 +1,119 @@
+"""`--voice espeak`: the simulated robot's texts as sound, in a file or on a device."""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import IO
+
+from lumen.app.setup import Setup
+from lumen.errors import ModuleError, UsageError
+from lumen.modules.sound import Sound, save
+from lumen.modules.voice import espeak
+from lumen.ports import Robot
+
+PLAYERS = (("aplay", "-q"), ("paplay",), ("afplay",), ("pw-play",))
+
+
+class Speaker:
+    """A voice of the simulated robot: each text takes as long as its sound.
+
+    With a `file` it writes the sound of the whole run, each text where it was said in simulated time; else the
+    machine's own player gets it. A language that espeak-ng lacks is spoken in `language`.
+    """
+
+    def __init__(self, language: str, file: Path | None) -> None:
+        self._espeak, self._language, self._file = espeak(), language, file
+        self._track: list[bytes] = []
+        self._length = 0
+        self._saying: tuple[Sound, float] | None = None
+        self._player = None if file else next((p for p in PLAYERS if shutil.which(p[0])), None)
+        self._playing: subprocess.Popen[bytes] | None = None
+        self._sheet: IO[bytes] | None = None
+
+    @property
+    def mute(self) -> bool:
+        """Whether nobody hears anything."""
+        return self._file is None and self._player is None
+
+    def begin(self, text: str, language: str, now: float) -> float:
+        try:
+            sound = self._espeak.speak(text, language or self._language)
+        except ModuleError:
+            sound = self._espeak.speak(text, self._language)
+        self._saying = (sound, now)
+        if self._player:
+            self._play(self._player, sound)
+        return sound.duration
+
+    def end(self, now: float) -> None:
+        if self._saying is None:
+            return
+        (sound, began), self._saying = self._saying, None
+        self._hush()
+        if self._file:
+            self._append(sound.until(now - began), began)
+
+    def close(self) -> None:
+        """Write the file. Raises ModuleError where it can't be."""
+        if self._saying:
+            self.end(self._saying[1] + self._saying[0].duration)
+        self._hush()
+        if self._file:
+            save(self._file, Sound(self._espeak.rate, b"".join(self._track)))
+
+    def _append(self, sound: Sound, at: float) -> None:
+        silence = max(0, round(at * sound.rate) - self._length)
+        self._track += [bytes(2 * silence), sound.samples]
+        self._length += silence + len(sound.samples) // 2
+
+    def _play(self, player: tuple[str, ...], sound: Sound) -> None:
+        self._hush()
+        with suppress(OSError, ModuleError):
+            self._sheet = tempfile.NamedTemporaryFile(suffix=".wav")  # noqa: SIM115  it lasts as long as the sound
+            save(Path(self._sheet.name), sound)
+            self._playing = subprocess.Popen(
+                [*player, self._sheet.name], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            )
+
+    def _hush(self) -> None:
+        if self._playing:
+            self._playing.terminate()
+            self._playing.wait()
+            self._playing = None
+        if self._sheet:
+            self._sheet.close()
+            self._sheet = None
+
+
+def voiced(chosen: Setup, voice: str, file: Path | None, language: str) -> Callable[[], None]:
+    """Give the robot the voice that was asked for; what ends it.
+
+    Raises UsageError or ModuleError where that can't be had.
+    """
+    found = speaker(voice, file, chosen.robot, language)
+    if found is None:
+        return lambda: None
+    chosen.robot.speak_with(found)  # type: ignore[attr-defined]
+    return found.close
+
+
+def speaker(voice: str, file: Path | None, robot: Robot, language: str) -> Speaker | None:
+    """The voice that was asked for; None for none. Raises UsageError or ModuleError where it can't be had."""
+    if voice == "none":
+        if file:
+            raise UsageError("--sound writes what --voice says: say --voice espeak, too")
+        return None
+    if not hasattr(robot, "speak_with"):
+        raise UsageError("--voice gives the simulated robot a voice: leave out --robot")
+    if file and (file.suffix != ".wav" or not file.parent.is_dir()):
+        raise UsageError(f"can't write a sound to {file}: name a .wav file in a folder that is there")
+    found = Speaker(language, file)
+    if found.mute:
+        print(
+            "There is no sound player here: texts take their time, and `--sound FILE.wav` keeps them.", file=sys.stderr
+        )
+    return found
