@@ -118,7 +118,7 @@ def lumens(url: str, body: Any, route: Route, seconds: float) -> float:
     bus.carry({KEY: route})
     connection = pika.BlockingConnection(pika.URLParameters(url))
     sink(connection.channel())
-    sender = bus._way.publishing
+    sender = bus._transport.publisher
     began, count = time.perf_counter(), 0
     while time.perf_counter() - began < seconds:
         for _ in range(100):

@@ -10,7 +10,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, BusError, Message, connect
-from lumen.buses.amqp import CLOSING
+from lumen.buses.amqp import CLOSE_TIMEOUT
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.waiting import Collector, until
@@ -69,7 +69,7 @@ def test_closing_leaves_no_thread_and_no_queue(broker: RabbitMQ, stranger: Any) 
     before = threading.active_count()
     bus = connect(broker.url)
     bus.subscribe("lumen.#", Collector())
-    queue = bus._way.consuming.subscriptions()[0].queue  # type: ignore[attr-defined]
+    queue = bus._transport.consumer.subscriptions()[0].queue  # type: ignore[attr-defined]
     bus.close()
     assert threading.active_count() == before
     with pytest.raises(pika.exceptions.ChannelClosedByBroker, match="NOT_FOUND"):
@@ -204,14 +204,14 @@ def test_a_key_that_may_not_be_written_is_logged_and_the_others_go_on(
 def test_a_queue_that_somebody_deletes_is_made_again(bus: Bus, stranger: Any) -> None:
     seen = Collector()
     bus.subscribe("lumen.a", seen)
-    bus._way.consuming._later(lambda: bus._way.consuming.channel.queue_delete(_subscriptions(bus)[0].queue))
+    bus._transport.consumer._later(lambda: bus._transport.consumer.channel.queue_delete(_subscriptions(bus)[0].queue))
     until(lambda: _subscriptions(bus)[0].epoch == 2)
     bus.publish("lumen.a", "again")
     assert seen.wait(1) == ["again"]
 
 
 def _subscriptions(bus: Any) -> list[Any]:
-    return list(bus._way.consuming.subscriptions())
+    return list(bus._transport.consumer.subscriptions())
 
 
 def test_closing_while_the_broker_is_away_takes_no_longer_than_promised(caplog: pytest.LogCaptureFixture) -> None:
@@ -219,10 +219,10 @@ def test_closing_while_the_broker_is_away_takes_no_longer_than_promised(caplog: 
     broker.start()
     bus = connect(broker.url)
     broker.stop()
-    links = (bus._way.publishing, bus._way.consuming)  # type: ignore[attr-defined]
+    links = (bus._transport.publisher, bus._transport.consumer)  # type: ignore[attr-defined]
     until(lambda: all(link.connection is None for link in links))
     bus.publish("lumen.a", "for nobody")
     began = time.monotonic()
     bus.close()
-    assert time.monotonic() - began < 4 * CLOSING
+    assert time.monotonic() - began < 4 * CLOSE_TIMEOUT
     assert "1 messages unsent" in caplog.text

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.buses.bodies import MAX_BYTES, copied, decode, encode
+from lumen.buses.bodies import MAX_BODY_BYTES, copied, decode, encode
 from lumen.errors import BusError
 
 INTEGERS = st.integers(-(2**63), 2**63)
@@ -94,9 +94,9 @@ def test_what_json_has_not_is_refused_with_a_reason(body: Any) -> None:
 
 def test_too_many_bytes_are_refused_on_both_sides() -> None:
     with pytest.raises(BusError, match="bytes"):
-        encode("x" * MAX_BYTES)
+        encode("x" * MAX_BODY_BYTES)
     with pytest.raises(ValueError, match="bytes"):
-        decode(b" " * (MAX_BYTES + 1))
+        decode(b" " * (MAX_BODY_BYTES + 1))
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, BusError, Message, Refused, connect
-from lumen.buses.consumer import PATIENCE, PREFETCH
+from lumen.buses.consumer import BIND_TIMEOUT, PREFETCH
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
@@ -81,7 +81,7 @@ def test_of_telemetry_the_newest_wins_where_a_handler_is_slow(opened: Open) -> N
     for i in range(500):
         other.publish("lumen.newest", i)
     other.close()
-    (subscription,) = [s for s in bus._way.consuming.subscriptions() if s.handler is slow]  # type: ignore[attr-defined]
+    (subscription,) = [s for s in bus._transport.consumer.subscriptions() if s.handler is slow]  # type: ignore[attr-defined]
     until(lambda: subscription.received >= PREFETCH)
     go.set()
     until(lambda: seen.bodies[-1] == 499)
@@ -295,7 +295,7 @@ def test_what_was_prepared_is_subscribed_to_without_waiting_for_the_network(brok
     bus.carry({way.key: way for way in ways})
     for way in ways:
         bus.subscribe(way.key, seen)
-    assert time.monotonic() - began < PATIENCE, "nothing comes through a relay that is cut"
+    assert time.monotonic() - began < BIND_TIMEOUT, "nothing comes through a relay that is cut"
     for way in ways:
         sender.publish(way.key, way.key)
     sender.close()
@@ -322,5 +322,5 @@ def test_a_route_that_is_carried_otherwise_goes_on(opened: Open) -> None:
         bus.carry({way.key: way})
         bus.publish(way.key, i)
         until(lambda i=i: i in seen.bodies)  # type: ignore[misc]
-    (subscription,) = [s for s in bus._way.consuming.subscriptions() if s.handler is seen]  # type: ignore[attr-defined]
+    (subscription,) = [s for s in bus._transport.consumer.subscriptions() if s.handler is seen]  # type: ignore[attr-defined]
     until(lambda: subscription.queue == "lumen.queue.avatar.N.command")

@@ -12,7 +12,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, Message, connect
-from lumen.buses.consumer import PATIENCE
+from lumen.buses.consumer import BIND_TIMEOUT
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
@@ -106,7 +106,7 @@ def live_through_a_power_cut(broker: RabbitMQ) -> None:
     began = time.monotonic()
     reader.subscribe("lumen.fault.later", later)
     sender.publish("lumen.fault.later", "stale", ttl=0.001)
-    assert time.monotonic() - began < PATIENCE, "who subscribes and sends waits for no broker that is away"
+    assert time.monotonic() - began < BIND_TIMEOUT, "who subscribes and sends waits for no broker that is away"
     sent = sending.sent
     until(lambda: sending.sent > sent + 50)
     broker.start()
@@ -127,13 +127,13 @@ def test_a_broker_that_is_killed_while_a_journal_is_made_makes_it_anew() -> None
     broker.start()
     try:
         reader, sender = opened(broker.url), opened(broker.url)
-        consuming = reader._way.consuming  # type: ignore[attr-defined]
+        consumer = reader._transport.consumer  # type: ignore[attr-defined]
         subscribing = threading.Thread(target=reader.subscribe, args=(key, seen))
         subscribing.start()
-        until(lambda: consuming._maker.settling)
+        until(lambda: consumer._declarer.settling)
         broker.kill()
         broker.start()
-        until(lambda: any(s.tag for s in consuming.subscriptions() if s.pattern == key), 60)
+        until(lambda: any(s.tag for s in consumer.subscriptions() if s.pattern == key), 60)
         for n in range(3):
             sender.publish(key, n)
         assert seen.wait(3) == [0, 1, 2]
@@ -145,7 +145,7 @@ def test_a_broker_that_is_killed_while_a_journal_is_made_makes_it_anew() -> None
 
 
 def links_of(bus: Any) -> list[Any]:
-    return [bus._way.publishing, bus._way.consuming]
+    return [bus._transport.publisher, bus._transport.consumer]
 
 
 def cut_for(seconds: float, broker: RabbitMQ) -> None:
@@ -195,7 +195,7 @@ def flood(broker: RabbitMQ, count: int, pause: float) -> float:
     tracemalloc.start()
     for n in range(count):
         for key in WAYS:
-            while len(sender._way.publishing.outbox) > 5_000:  # type: ignore[attr-defined]
+            while len(sender._transport.publisher.outbox) > 5_000:  # type: ignore[attr-defined]
                 threading.Event().wait(0.01)
             sender.publish(key, {"n": n, "filler": filler})
     arrive_once(effects, count, 600)

@@ -1,4 +1,4 @@
-"""The door of an embedded bus: who may come in, and that nobody who does can hold up the exhibition."""
+"""The server of an embedded bus: who may connect, and that nobody who does can hold up the exhibition."""
 
 import json
 import socket
@@ -13,21 +13,20 @@ import pytest
 
 from lumen.bus import BusError, connect
 from lumen.buses.local import LocalAddress, LocalBusClient, LocalBusServer
-from lumen.buses.local import server as door
 from lumen.buses.local.frames import frame
 from lumen.buses.memory import MemoryBus
 from tests.waiting import Collector, until
 
 
 class Opened:
-    """A bus with a door."""
+    """A bus that is served."""
 
     def __init__(self, folder: Path) -> None:
         self.bus = connect("memory://")
-        self.door = LocalBusServer(self.bus, folder)
+        self.server = LocalBusServer(self.bus, folder)
 
     def raw(self) -> socket.socket:
-        wire = self.door.address.connect()
+        wire = self.server.address.connect()
         wire.settimeout(10.0)
         return wire
 
@@ -36,7 +35,7 @@ class Opened:
 def opened(tmp_path: Path) -> Iterator[Opened]:
     one = Opened(tmp_path)
     yield one
-    one.door.close()
+    one.server.close()
     one.bus.close()
 
 
@@ -51,11 +50,11 @@ def ended(wire: socket.socket) -> bool:
 
 
 def test_only_the_owner_can_open_it(opened: Opened) -> None:
-    assert stat.S_IMODE(Path(opened.door.address.path).stat().st_mode) == 0o600
+    assert stat.S_IMODE(Path(opened.server.address.path).stat().st_mode) == 0o600
 
 
 def test_who_does_not_know_the_key_stays_out(opened: Opened) -> None:
-    address = opened.door.address
+    address = opened.server.address
     with pytest.raises(BusError, match="is not the exhibition"):
         LocalBusClient(LocalAddress(address.path, address.port, "another key"))
     LocalBusClient(address).close()
@@ -74,20 +73,20 @@ def test_who_does_not_know_the_key_stays_out(opened: Opened) -> None:
         frame("proof", "0" * 64, "x"),
     ],
 )
-def test_who_speaks_no_sense_is_shown_out_and_nobody_else(opened: Opened, said: bytes) -> None:
-    with LocalGuest(opened) as guest, opened.raw() as wire:
+def test_who_speaks_no_sense_is_disconnected_and_nobody_else(opened: Opened, said: bytes) -> None:
+    with Client(opened) as client, opened.raw() as wire:
         wire.sendall(said)
         wire.shutdown(socket.SHUT_WR)
         assert ended(wire)
-        guest.still_hears()
+        client.still_hears()
 
 
-class LocalGuest:
+class Client:
     def __init__(self, opened: Opened) -> None:
         self.opened, self.seen = opened, Collector()
 
-    def __enter__(self) -> "LocalGuest":
-        self.bus = LocalBusClient(self.opened.door.address)
+    def __enter__(self) -> "Client":
+        self.bus = LocalBusClient(self.opened.server.address)
         self.bus.subscribe("lumen.alive", self.seen)
         return self
 
@@ -112,29 +111,29 @@ class LocalGuest:
     ],
 )
 def test_nonsense_of_somebody_who_knows_the_key_costs_only_them(opened: Opened, words: tuple[object, ...]) -> None:
-    with LocalGuest(opened) as guest, LocalGuest(opened) as other:
+    with Client(opened) as client, Client(opened) as other:
         other.bus._put(frame(*words))
-        guest.still_hears()
+        client.still_hears()
 
 
 def test_who_never_says_a_word_is_forgotten(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(door, "KNOCKING", 0.1)
+    monkeypatch.setattr("lumen.buses.local.server.PROOF_TIMEOUT", 0.1)
     with opened.raw() as wire:
         assert ended(wire)
 
 
 def test_more_than_so_many_do_not_fit_in(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(door, "GUESTS", 1)
-    with LocalGuest(opened) as guest:
+    monkeypatch.setattr("lumen.buses.local.server.MAX_CLIENTS", 1)
+    with Client(opened) as client:
         with pytest.raises(BusError):
-            LocalBusClient(opened.door.address)
-        guest.still_hears()
+            LocalBusClient(opened.server.address)
+        client.still_hears()
 
 
 def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(door, "BYTES", 1_000_000)
-    with LocalGuest(opened) as guest:
-        slow = LocalBusClient(opened.door.address)
+    monkeypatch.setattr("lumen.buses.local.server.MAX_UNSENT_BYTES", 1_000_000)
+    with Client(opened) as client:
+        slow = LocalBusClient(opened.server.address)
         held = threading.Event()
         slow.subscribe("lumen.much", lambda _: held.wait(60.0))
         slow._wire.shutdown(socket.SHUT_RD)
@@ -142,8 +141,8 @@ def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monk
         for _ in range(300):
             opened.bus.publish("lumen.much", {"text": "x" * 50_000})
         assert time.monotonic() - began < 30.0
-        guest.still_hears()
-        assert all(guest.bytes < 2_000_000 for guest in opened.door._guests.values())
+        client.still_hears()
+        assert all(client.bytes < 2_000_000 for client in opened.server._clients.values())
         held.set()
         slow.close()
 
@@ -151,32 +150,32 @@ def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monk
 def test_who_dies_is_forgotten(opened: Opened) -> None:
     assert isinstance(opened.bus, MemoryBus)
     before = len(opened.bus._hub.subscriptions)
-    guest = LocalBusClient(opened.door.address)
-    guest.subscribe("lumen.#", lambda _: None)
-    guest._wire.shutdown(socket.SHUT_RDWR)
+    client = LocalBusClient(opened.server.address)
+    client.subscribe("lumen.#", lambda _: None)
+    client._wire.shutdown(socket.SHUT_RDWR)
     until(lambda: isinstance(opened.bus, MemoryBus) and len(opened.bus._hub.subscriptions) == before)
-    guest.close()
+    client.close()
 
 
-def test_when_the_exhibition_ends_its_guests_are_told(opened: Opened) -> None:
-    guest = LocalBusClient(opened.door.address)
-    opened.door.close()
-    assert guest.gone.wait(10.0)
+def test_when_the_exhibition_ends_its_clients_are_told(opened: Opened) -> None:
+    client = LocalBusClient(opened.server.address)
+    opened.server.close()
+    assert client.gone.wait(10.0)
     with pytest.raises(BusError, match="gone"):
-        guest.publish("lumen.a", 1)
-    guest.close()
+        client.publish("lumen.a", 1)
+    client.close()
     with pytest.raises(BusError, match="nobody opens"):
-        LocalBusClient(opened.door.address)
-    assert not Path(opened.door.address.path).exists()
+        LocalBusClient(opened.server.address)
+    assert not Path(opened.server.address.path).exists()
 
 
-def test_a_project_deep_in_folders_has_a_door_too(tmp_path: Path) -> None:
+def test_a_project_deep_in_folders_is_served_too(tmp_path: Path) -> None:
     deep = tmp_path / ("a" * 100) / ("b" * 100)
     deep.mkdir(parents=True)
     one = Opened(deep)
-    LocalBusClient(one.door.address).close()
-    one.door.close()
-    assert not Path(one.door.address.path).parent.exists()
+    LocalBusClient(one.server.address).close()
+    one.server.close()
+    assert not Path(one.server.address.path).parent.exists()
 
 
 @pytest.mark.parametrize("data", [{}, {"path": "", "port": "x", "key": ""}, {"path": "", "port": [], "key": ""}])

@@ -76,7 +76,7 @@ def test_what_others_send_to_nowhere_is_told_where_a_policy_says_so(
 ) -> None:
     bus = connect(secure.url)
     bus.carry({"lumen.audio.speech": Route("heard", "lumen.audio.speech", Direction.IN, carried=Carried.TELEMETRY)})
-    until(lambda: all(s.queue for s in bus._way.consuming.subscriptions()))  # type: ignore[attr-defined]
+    until(lambda: all(s.queue for s in bus._transport.consumer.subscriptions()))  # type: ignore[attr-defined]
     stranger = connect(secure.url)
     stranger.publish("lumen.audio.spech", "hello")
     until(lambda: "nobody takes what is sent on `lumen.audio.spech`: did you mean `lumen.audio.speech`?" in caplog.text)

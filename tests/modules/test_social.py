@@ -39,7 +39,7 @@ def test_what_can_not_be_posted_is_one_line(stand: Make, tmp_path: Path, monkeyp
     ]
     full = stand()
     full.add(Social(full.project, full.bus, full.told.append, tmp_path / "posts.jsonl"))
-    monkeypatch.setattr(social, "BYTES", 10)
+    monkeypatch.setattr(social, "MAX_FILE_BYTES", 10)
     for _ in range(2):
         full.bus.publish(EXPRESSION, {"text": "Hello"})
     full.settle()

@@ -30,9 +30,9 @@ def another(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Connect]
         first.close()
     else:
         inside = connect("memory://")
-        door = LocalBusServer(inside, tmp_path)
-        yield lambda: LocalBusClient(door.address)
-        door.close()
+        server = LocalBusServer(inside, tmp_path)
+        yield lambda: LocalBusClient(server.address)
+        server.close()
         inside.close()
 
 
@@ -51,7 +51,7 @@ def test_messages_come_in_the_order_published(bus: Bus) -> None:
     assert seen.wait(500) == list(range(500))
 
 
-def test_a_subscription_is_in_force_when_subscribe_returns(bus: Bus) -> None:
+def test_a_subscription_is_active_when_subscribe_returns(bus: Bus) -> None:
     for i in range(20):
         seen = Collector()
         undo = bus.subscribe(f"lumen.at.{i}", seen)

@@ -13,20 +13,25 @@ import orjson
 
 from lumen.errors import BusError
 
-MAX_DEPTH = 64
-MAX_BYTES = 1024 * 1024
-MAX_KEY = 255
+MAX_BODY_DEPTH = 64
+"""How many levels deep lists and objects in a body may be nested."""
+MAX_BODY_BYTES = 1024 * 1024
+"""How long a body may be [bytes of JSON in UTF-8]."""
+MAX_KEY_BYTES = 255
+"""How long a routing key may be [bytes]: AMQP's bound on a short string."""
+KEY_PREFIXES = ("avatar", "lumen")
+"""What every key of ours begins with."""
 TEXT = "text/plain"
 JSON = "application/json"
 
-LEAST, MOST = -(2**63), 2**63
+MIN_INTEGER, MAX_INTEGER = -(2**63), 2**63
 """Between which integers may lie: what every language can hold, and a float without overflowing."""
 
 _SCALARS = frozenset((str, bool, type(None)))
 _FLOATS, _INTEGERS = frozenset((float,)), frozenset((int,))
 
 
-def copied(body: Any, depth: int = MAX_DEPTH) -> Any:
+def copied(body: Any, depth: int = MAX_BODY_DEPTH) -> Any:
     """A copy that shares no container with `body`; tuples become lists, as JSON would have them.
 
     Raises BusError for what JSON can't say: other types, keys that are no texts, NaN and infinity, deep nesting; and
@@ -40,7 +45,7 @@ def copied(body: Any, depth: int = MAX_DEPTH) -> Any:
     if kind is float or kind is int:
         return _number(body)
     if not depth:
-        raise BusError(f"a body may be nested {MAX_DEPTH} levels deep")
+        raise BusError(f"a body may be nested {MAX_BODY_DEPTH} levels deep")
     if kind is list or kind is tuple:
         return list(body) if _plain(body) else [copied(value, depth - 1) for value in body]
     return _derived(body, depth)
@@ -52,7 +57,7 @@ def _object(body: dict[Any, Any], depth: int) -> dict[str, Any]:
     for key, value in body.items():
         kind = type(value)
         if kind is int or kind is float:
-            if not LEAST <= value <= MOST:
+            if not MIN_INTEGER <= value <= MAX_INTEGER:
                 _number(value)
         elif kind not in _SCALARS:
             value = copied(value, depth)
@@ -66,13 +71,13 @@ def _plain(values: Sequence[Any]) -> bool:
     if kinds == _FLOATS:
         return isfinite(sum(values))
     if kinds == _INTEGERS:
-        return bool(min(values) >= LEAST and max(values) <= MOST)
+        return bool(min(values) >= MIN_INTEGER and max(values) <= MAX_INTEGER)
     return kinds <= _SCALARS
 
 
 def _number(number: float) -> float:
     if isinstance(number, int):
-        if LEAST <= number <= MOST:
+        if MIN_INTEGER <= number <= MAX_INTEGER:
             return number
         raise BusError("an integer in a body lies between -2**63 and 2**63")
     if isfinite(number):
@@ -103,8 +108,8 @@ def _derived(body: object, depth: int) -> Any:
 
 def check_key(key: str) -> None:
     """Raise BusError where AMQP could not carry this key: a text of 255 bytes at most."""
-    if not isinstance(key, str) or len(key.encode(errors="replace")) > MAX_KEY:
-        raise BusError(f"a key is a text of at most {MAX_KEY} bytes, not {str(key)[:40]!r}")
+    if not isinstance(key, str) or len(key.encode(errors="replace")) > MAX_KEY_BYTES:
+        raise BusError(f"a key is a text of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
 
 
 def encode(body: Any) -> bytes:
@@ -113,15 +118,15 @@ def encode(body: Any) -> bytes:
         data = orjson.dumps(copied(body))
     except orjson.JSONEncodeError as error:
         raise BusError("a text in the body is not valid Unicode: it holds half a surrogate pair") from error
-    if len(data) > MAX_BYTES:
-        raise BusError(f"a body may have {MAX_BYTES:,} bytes, and this one has {len(data):,}")
+    if len(data) > MAX_BODY_BYTES:
+        raise BusError(f"a body may have {MAX_BODY_BYTES:,} bytes, and this one has {len(data):,}")
     return data
 
 
 def decode(data: bytes, content_type: str = JSON) -> Any:
     """The body in these bytes, JSON or (`text/plain`) the text itself; raises ValueError that says what is wrong."""
-    if len(data) > MAX_BYTES:
-        raise ValueError(f"it has more than {MAX_BYTES:,} bytes")
+    if len(data) > MAX_BODY_BYTES:
+        raise ValueError(f"it has more than {MAX_BODY_BYTES:,} bytes")
     try:
         text = data.decode()
         return text if content_type.startswith(TEXT) else copied(_decoder.decode(text))
@@ -130,7 +135,7 @@ def decode(data: bytes, content_type: str = JSON) -> Any:
     except json.JSONDecodeError as error:
         raise ValueError(f"it is not JSON ({error})") from error
     except RecursionError as error:
-        raise ValueError(f"it is nested deeper than {MAX_DEPTH} levels") from error
+        raise ValueError(f"it is nested deeper than {MAX_BODY_DEPTH} levels") from error
     except BusError as error:
         raise ValueError(str(error)) from error
     except ValueError as error:  # Python reads 4,300 digits

@@ -15,12 +15,16 @@ from pika import exceptions
 
 from lumen.errors import BusError
 
-HEARTBEAT = 10
-PATIENCE = 5.0
-CREDENTIALS = "LUMEN_BUS_CREDENTIALS"
+HEARTBEAT_INTERVAL = 10
+"""How often both sides show that they live [s], where the address does not say."""
+SOCKET_TIMEOUT = 5.0
+"""How long connecting, and each answer while logging in, may take [s]."""
+BROKER_TIMEOUT = 2 * SOCKET_TIMEOUT
+"""How long the broker may take to answer a request [s]."""
+CREDENTIALS_VARIABLE = "LUMEN_BUS_CREDENTIALS"
 """The environment variable that names a file with `NAME:PASSWORD`."""
-OLDEST = (3, 10)
-"""The RabbitMQ since which quorum queues know a time to live."""
+MIN_RABBITMQ_VERSION = (3, 10)
+"""Since this RabbitMQ quorum queues have a time to live."""
 
 logging.getLogger("pika").setLevel(logging.CRITICAL)  # it logs a traceback for every failure that we report ourselves
 
@@ -41,14 +45,14 @@ class BrokerAddress:
             ) from error
         options = self.parameters
         options.connection_attempts = 1
-        options.socket_timeout = PATIENCE
-        options.stack_timeout = 2 * PATIENCE
-        options.blocked_connection_timeout = 3 * HEARTBEAT
-        options.heartbeat = options.heartbeat if "heartbeat=" in parts.query else HEARTBEAT
+        options.socket_timeout = SOCKET_TIMEOUT
+        options.stack_timeout = BROKER_TIMEOUT
+        options.blocked_connection_timeout = 3 * HEARTBEAT_INTERVAL
+        options.heartbeat = options.heartbeat if "heartbeat=" in parts.query else HEARTBEAT_INTERVAL
         options.client_properties = {"connection_name": "lumen"}
         if options.ssl_options:
             options.ssl_options = pika.SSLOptions(_trusting(authority), parts.hostname)
-        if not parts.username and (file := os.environ.get(CREDENTIALS)):
+        if not parts.username and (file := os.environ.get(CREDENTIALS_VARIABLE)):
             options.credentials = _credentials(file)
         self.user = options.credentials.username
         self.vhost = options.virtual_host
@@ -62,8 +66,8 @@ class BrokerAddress:
         version = server.get("version", b"")
         text = version.decode(errors="replace") if isinstance(version, bytes) else str(version)
         numbers = tuple(int(n) for n in re.findall(r"\d+", text)[:2])
-        if "RabbitMQ" in str(server.get("product")) and numbers < OLDEST:
-            least = ".".join(map(str, OLDEST))
+        if "RabbitMQ" in str(server.get("product")) and numbers < MIN_RABBITMQ_VERSION:
+            least = ".".join(map(str, MIN_RABBITMQ_VERSION))
             raise BusError(f"the broker at {self} is RabbitMQ {text}, and too old: install {least} or newer")
 
     def explain(self, error: BaseException) -> BusError:
@@ -118,9 +122,9 @@ def _credentials(file: str) -> Any:
     try:
         name, separator, password = Path(file).read_text("utf-8").strip().partition(":")
     except (OSError, UnicodeDecodeError) as error:
-        raise BusError(f"the file `{file}` that {CREDENTIALS} names can't be read: {error}") from None
+        raise BusError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names can't be read: {error}") from None
     if not separator or not name or "\n" in password:
-        raise BusError(f"the file `{file}` that {CREDENTIALS} names holds no line `NAME:PASSWORD`")
+        raise BusError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names holds no line `NAME:PASSWORD`")
     if os.name == "posix" and Path(file).stat().st_mode & 0o077:
         logging.getLogger(__name__).warning("others can read the password in `%s`: type `chmod 600 %s`", file, file)
     return pika.PlainCredentials(name, password)

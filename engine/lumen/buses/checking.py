@@ -11,13 +11,14 @@ if TYPE_CHECKING:
     from jsonschema import Draft202012Validator
     from jsonschema.exceptions import ValidationError
 
-SHOWN = 80
+MAX_SHOWN_CHARACTERS = 80
+"""How much of either end of a long reason is shown."""
 
 BodyCheck = Callable[[Any], str]
 """What is wrong with a body; empty where nothing is."""
 
 
-def checks(project: Project) -> dict[str, BodyCheck]:
+def body_checks(project: Project) -> dict[str, BodyCheck]:
     """A check for every key of the project's routes that names a schema; schemas are compiled when first needed."""
     compiled = {name: SchemaCheck(schema) for name, schema in project.messages.items()}
     return {
@@ -53,7 +54,9 @@ class SchemaCheck:
 def _say(error: "ValidationError") -> str:
     """`x: 'left' is not of type 'integer'`, cut where a body holds a picture."""
     message = (
-        error.message if len(error.message) <= 2 * SHOWN else f"{error.message[:SHOWN]} … {error.message[-SHOWN:]}"
+        error.message
+        if len(error.message) <= 2 * MAX_SHOWN_CHARACTERS
+        else f"{error.message[:MAX_SHOWN_CHARACTERS]} … {error.message[-MAX_SHOWN_CHARACTERS:]}"
     )
     place = error.json_path.removeprefix("$").removeprefix(".")
     return f"{place}: {message}" if place else message

@@ -13,15 +13,18 @@ from pika.exceptions import AMQPChannelError, AMQPError, ChannelClosedByBroker
 
 from lumen.buses.broker import BrokerAddress
 
-FIRST_DELAY = 0.2
-LONGEST_DELAY = 10.0
-STEADY = 5.0
+MIN_RECONNECT_DELAY = 0.2
+"""How long the first attempt to reconnect is waited for [s]; each further one twice as long."""
+MAX_RECONNECT_DELAY = 10.0
+"""How long an attempt to reconnect is waited for at most [s]."""
+STABLE_TIME = 5.0
+"""A connection that lived for so long [s] was a good one: the next loss begins with the shortest delay again."""
 
 _log = logging.getLogger(__name__)
 
 
 class OutageLog:
-    """One broker as all links of a bus see it: its going and its coming back are told once, whoever notices.
+    """One broker as all connections of a bus see it: each loss and each return is logged once, whoever notices first.
 
     The `repr` of every failure is logged, those after the first of an outage, and repeated ones, at level INFO.
     """
@@ -29,23 +32,23 @@ class OutageLog:
     def __init__(self, address: BrokerAddress) -> None:
         self._address = address
         self._away: set[str] = set()
-        self._said: set[str] = set()
+        self._logged: set[str] = set()
         self._changing = threading.Lock()
 
-    def lost(self, link: str, what: str, error: BaseException) -> None:
+    def lost(self, connection: str, what: str, error: BaseException) -> None:
         with self._changing:
-            new = not self._away or what not in self._said
-            self._away.add(link)
-            self._said.add(what)
+            new = not self._away or what not in self._logged
+            self._away.add(connection)
+            self._logged.add(what)
         _log.log(logging.WARNING if new else logging.INFO, "the broker at %s %s: %r", self._address, what, error)
 
-    def back(self, link: str) -> None:
+    def back(self, connection: str) -> None:
         with self._changing:
-            was = link in self._away
-            self._away.discard(link)
+            was = connection in self._away
+            self._away.discard(connection)
             over = was and not self._away
             if over:
-                self._said.clear()
+                self._logged.clear()
         if over:
             _log.warning("the broker at %s is back", self._address)
 
@@ -53,8 +56,8 @@ class OutageLog:
 class BrokerConnection:
     """Opens, serves and reopens; a subclass says what there is to do (`begin`, `serve`, `finish`).
 
-    All of pika happens on the link's own thread. A first failure is raised by `open`; later ones are logged, and the
-    link tries again, waiting twice as long each time, up to 10 s, and at random between half and all of that.
+    All of pika happens on the connection's own thread. A first failure is raised by `open`; later ones are logged,
+    and it is opened again, after twice as long each time, up to 10 s, and at random between half and all of that.
     """
 
     def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
@@ -64,7 +67,7 @@ class BrokerConnection:
         self.ending = threading.Event()
         self._opened: Future[None] = Future()
         self._thread = threading.Thread(target=self._run, name=f"lumen-bus-{name}", daemon=True)
-        self._delay = FIRST_DELAY
+        self._delay = MIN_RECONNECT_DELAY
 
     def open(self) -> None:
         """Connect; raises BusError with what to do where that fails."""
@@ -89,7 +92,7 @@ class BrokerConnection:
         """The channel is open: make on the broker what is needed."""
 
     def serve(self) -> bool:
-        """Do what there is to do, at most for a second; false when all is done and the link may end."""
+        """Do what there is to do, at most for a second; false when all is done and the connection may end."""
         raise NotImplementedError
 
     def connect(self) -> Any:
@@ -156,8 +159,8 @@ class BrokerConnection:
             self._opened.set_exception(error)
             self.ending.set()
             return
-        if time.monotonic() - since > STEADY:
-            self._delay = FIRST_DELAY
+        if time.monotonic() - since > STABLE_TIME:
+            self._delay = MIN_RECONNECT_DELAY
         if not self.ending.is_set():
             what = "refuses" if isinstance(error, ChannelClosedByBroker) else "is lost"
             self._outage.lost(self.name, what, error)
@@ -165,4 +168,4 @@ class BrokerConnection:
 
     def _pause(self) -> None:
         self.ending.wait(self._delay * random.uniform(0.5, 1.0))
-        self._delay = min(2 * self._delay, LONGEST_DELAY)
+        self._delay = min(2 * self._delay, MAX_RECONNECT_DELAY)

@@ -1,7 +1,6 @@
 """The connection that receives: a queue of its own for every subscription, and nothing but enqueueing in callbacks."""
 
 import logging
-import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -9,22 +8,25 @@ from typing import Any
 
 from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
 
-from lumen.buses.bodies import MAX_BYTES
+from lumen.buses.bodies import MAX_BODY_BYTES
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.declarer import QueueDeclarer
-from lumen.buses.queues import NOWHERE, queue_of
-from lumen.buses.subscriptions import Delivery, Subscription
+from lumen.buses.queues import UNROUTED, queue_of
+from lumen.buses.subscriptions import Delivery, Subscription, Subscriptions
 from lumen.errors import BusError
 from lumen.language.routes import Route
 from lumen.ports import MessageHandler
 
 PREFETCH = 64
-PATIENCE = 5.0
-TURN = 1.0
-STALL = 0.5
+"""Deliveries of one subscription that the broker sends ahead of their being handled."""
+BIND_TIMEOUT = 5.0
+"""How long a subscription waits for the broker to confirm it [s]."""
+TURN_TIME = 1.0
+"""How long the connection is left to itself at a time [s]."""
+STALL_TIME = 0.5
 """By how much a turn may take longer [s] before this process counts as having stood still."""
-LEAVING = 2.0
+UNBOUND_READ_TIME = 2.0
 """How long a queue that nothing comes to any more is read on [s]: what was in it has come by then."""
 
 _log = logging.getLogger(__name__)
@@ -42,10 +44,8 @@ class Consumer(BrokerConnection):
     ) -> None:
         super().__init__(address, name, outage)
         self._receive = receive
-        self._subscriptions: list[Subscription] = []
-        self._prepared: dict[str, Subscription] = {}
-        self._maker = QueueDeclarer()
-        self._changing = threading.Lock()
+        self._subscriptions = Subscriptions()
+        self._declarer = QueueDeclarer()
         self._hurried = False
         self._epoch = 0
         self._acknowledged = 0
@@ -56,46 +56,45 @@ class Consumer(BrokerConnection):
         self._acknowledged = 0
         self.channel.add_on_cancel_callback(self._cancelled)
         self.channel.basic_qos(prefetch_count=PREFETCH)
-        for subscription in [*self.subscriptions(), *self._prepared.values()]:
+        for subscription in self._subscriptions.all():
             self._bind(subscription)
 
     def serve(self) -> bool:
         now = time.monotonic()
-        self._since = self._turned if now - self._turned > TURN + STALL else now
+        self._since = self._turned if now - self._turned > TURN_TIME + STALL_TIME else now
         self._turned = now
-        self.process(TURN)
+        self.process(TURN_TIME)
         return not self.ending.is_set()
 
     def subscriptions(self) -> list[Subscription]:
-        with self._changing:
-            return list(self._subscriptions)
+        """Those that have a handler, in the order subscribed."""
+        return self._subscriptions.active()
 
     def add(self, pattern: str, handler: MessageHandler, route: Route | None = None) -> Subscription:
-        """Subscribe; returns when the binding is in force, at once where the broker is away (it is made on its return).
+        """Subscribe; returns when the queue is bound, at once where the broker is away (it is bound on its return).
 
-        Raises BusError where the broker refuses it. Whoever has ever prepared can't wait: what was prepared is in force
+        Raises BusError where the broker refuses it. Whoever has ever prepared can't wait: what was prepared is bound
         already, the rest as soon as the broker has answered; what it refuses is logged.
         """
-        if subscription := self._claimed(pattern, handler):
-            return subscription
-        subscription = self._subscribed(pattern, handler, route)
+        if prepared := self._subscriptions.claim(pattern, handler):
+            self._later(lambda: self._consume(prepared))
+            return prepared
+        subscription = self._subscriptions.add(pattern, handler, route)
+        if not self._later(lambda: self._bind(subscription)) and self._epoch:
+            subscription.bound.set()
+            _log.warning("`%s` is subscribed to as soon as the broker at %s is back", pattern, self.address)
         if not self._hurried:
             self._await(subscription)
         return subscription
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        """Have queues for these keys bound, which gather until somebody subscribes; those prepared before are let go.
+        """Have queues for these keys bound, which gather until somebody subscribes; those prepared before are dropped.
 
         Raises BusError where the broker refuses one.
         """
         self._hurried = True
-        with self._changing:
-            taken = {s.pattern for s in self._subscriptions}
-            old, self._prepared = self._prepared, {}
-            for key in routes.keys() - taken:
-                self._prepared[key] = old.pop(key) if key in old else Subscription(key, None, routes[key])
-            waiting = list(self._prepared.values())
-        for subscription in old.values():
+        waiting, dropped = self._subscriptions.prepare(routes)
+        for subscription in dropped:
             subscription.active = False
             self._later(lambda s=subscription: self._drop(s))  # type: ignore[misc]
         for subscription in waiting:
@@ -103,15 +102,13 @@ class Consumer(BrokerConnection):
                 self._later(lambda s=subscription: self._bind(s))  # type: ignore[misc]
                 self._await(subscription)
 
-    def watch(self, told: Callable[[str], None]) -> None:
-        """Tell of the keys for which nobody waits, as far as the broker knows of them."""
-        subscription = Subscription("#", lambda message: told(message.key), exchange=NOWHERE)
-        with self._changing:
-            self._subscriptions.append(subscription)
+    def watch(self, unrouted: Callable[[str], None]) -> None:
+        """Call `unrouted` with every key under which nobody takes a message, as far as the broker knows of them."""
+        subscription = self._subscriptions.add("#", lambda message: unrouted(message.key), None, UNROUTED)
         self._later(lambda: self._bind(subscription))
 
     def carry(self, routes: Mapping[str, Route]) -> None:
-        """Go on under these routes; where one of them needs another queue, that is bound before the old one is left."""
+        """Go on under these routes; where one needs another queue, that is bound before the old one is unbound."""
         for subscription in self.subscriptions():
             old, new = subscription.route, routes.get(subscription.pattern)
             subscription.route = new
@@ -120,36 +117,11 @@ class Consumer(BrokerConnection):
 
     def remove(self, subscription: Subscription) -> None:
         """No message reaches the handler from now on; its queue goes away."""
-        with self._changing:
-            if not subscription.active:
-                return
-            subscription.active = False
-            self._subscriptions.remove(subscription)
-        self._later(lambda: self._drop(subscription))
-
-    def _claimed(self, pattern: str, handler: MessageHandler) -> Subscription | None:
-        with self._changing:
-            subscription = self._prepared.pop(pattern, None)
-            if subscription is None or not subscription.bound.is_set() or subscription.refusal:
-                return None
-            subscription.handler = handler
-            self._subscriptions.append(subscription)
-        self._later(lambda: self._consume(subscription))
-        return subscription
-
-    def _subscribed(self, pattern: str, handler: MessageHandler, route: Route | None) -> Subscription:
-        with self._changing:
-            numbers = {s.number for s in self._subscriptions if s.pattern == pattern}
-            number = next(n for n in range(len(numbers) + 1) if n not in numbers)
-            subscription = Subscription(pattern, handler, route, number)
-            self._subscriptions.append(subscription)
-        if not self._later(lambda: self._bind(subscription)) and self._epoch:
-            subscription.bound.set()
-            _log.warning("`%s` is subscribed to as soon as the broker at %s is back", pattern, self.address)
-        return subscription
+        if self._subscriptions.remove(subscription):
+            self._later(lambda: self._drop(subscription))
 
     def _await(self, subscription: Subscription) -> None:
-        if not subscription.bound.wait(PATIENCE):
+        if not subscription.bound.wait(BIND_TIMEOUT):
             _log.warning(
                 "the broker at %s does not confirm the subscription to `%s`", self.address, subscription.pattern
             )
@@ -171,7 +143,7 @@ class Consumer(BrokerConnection):
         return self.join(timeout)
 
     def _later(self, work: Callable[[], None]) -> bool:
-        """Have the link's thread do this; false where there is no connection."""
+        """Have the connection's thread do this; false where there is no connection."""
         connection = self.connection
         if connection is None:
             return False
@@ -186,7 +158,7 @@ class Consumer(BrokerConnection):
             return
         try:
             queue = queue_of(subscription.pattern, subscription.route, subscription.number, subscription.exchange)
-            subscription.queue, refusal = self._maker.make(self.connection, queue)
+            subscription.queue, refusal = self._declarer.declare(self.connection, queue)
             if refusal:
                 self._refused(subscription, refusal)
                 return
@@ -196,14 +168,10 @@ class Consumer(BrokerConnection):
         finally:
             subscription.bound.set()
 
-    def _refused(self, subscription: Subscription, refusal: str) -> None:
-        subscription.refusal, subscription.active = refusal, False
+    def _refused(self, subscription: Subscription, reason: str) -> None:
+        self._subscriptions.refuse(subscription, reason)
         if self._hurried and subscription.handler is not None:
-            _log.error("the broker at %s refuses to let us read `%s`: %s", self.address, subscription.pattern, refusal)
-        with self._changing:
-            if subscription in self._subscriptions:
-                self._subscriptions.remove(subscription)
-            self._prepared.pop(subscription.pattern, None)
+            _log.error("the broker at %s refuses to let us read `%s`: %s", self.address, subscription.pattern, reason)
 
     def _consume(self, subscription: Subscription) -> None:
         if self.channel is not None and subscription.active and subscription.epoch == self._epoch:
@@ -212,11 +180,11 @@ class Consumer(BrokerConnection):
     def _move(self, subscription: Subscription, old: Route | None) -> None:
         if self.channel is None or not subscription.active:
             return
-        left = Subscription(subscription.pattern, None, old, queue=subscription.queue, tag=subscription.tag)
+        unbound = Subscription(subscription.pattern, None, old, queue=subscription.queue, tag=subscription.tag)
         subscription.epoch = 0
         self._bind(subscription)
-        self._maker.leave(self.connection, left)
-        self.connection.call_later(LEAVING, lambda: self._drop(left))
+        self._declarer.unbind(self.connection, unbound)
+        self.connection.call_later(UNBOUND_READ_TIME, lambda: self._drop(unbound))
 
     def _drop(self, subscription: Subscription) -> None:
         """Stop reading a queue; nothing of it stays on the broker but what somebody needs."""
@@ -226,10 +194,10 @@ class Consumer(BrokerConnection):
             self.channel.basic_cancel(subscription.tag)
         if any(other.queue == subscription.queue for other in self.subscriptions()):
             return
-        self._maker.unmake(self.connection, subscription)
+        self._declarer.remove(self.connection, subscription)
 
     def _cancelled(self, frame: Any) -> None:
-        """The broker took a queue from us (somebody deleted it): start anew."""
+        """The broker ended a subscription (somebody deleted its queue): start anew."""
         raise ConsumerCancelled(frame.method.consumer_tag)
 
     def _acknowledge(self, delivery: Delivery) -> None:
@@ -239,7 +207,7 @@ class Consumer(BrokerConnection):
 
     def _callback(self, subscription: Subscription) -> Callable[..., None]:
         def arrived(_: Any, method: Any, properties: Any, body: bytes) -> None:
-            kept = body if len(body) <= MAX_BYTES else body[: MAX_BYTES + 1]
+            kept = body if len(body) <= MAX_BODY_BYTES else body[: MAX_BODY_BYTES + 1]
             key, number, again = method.routing_key, method.delivery_tag, method.redelivered
             subscription.received += 1
             self._receive(Delivery(subscription, key, kept, properties, number, self._epoch, again, self._arrival()))
@@ -252,4 +220,4 @@ class Consumer(BrokerConnection):
         Who wakes up in the middle of a turn may see only in the next one what came in this one.
         """
         now = time.monotonic()
-        return self._since if now - self._since > TURN + STALL else now
+        return self._since if now - self._since > TURN_TIME + STALL_TIME else now

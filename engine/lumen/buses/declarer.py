@@ -1,4 +1,4 @@
-"""Makes queues on the broker, each over a channel of its own: what it refuses costs nothing else."""
+"""Declares queues on the broker, each over a channel of its own: what it refuses costs nothing else."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -6,20 +6,20 @@ from typing import Any
 
 from pika.exceptions import ChannelClosedByBroker
 
-from lumen.buses.queues import EXCHANGE, SETTLING, Queue, queue_of
+from lumen.buses.queues import EXCHANGE, QUORUM_SETTLE_TIME, Queue, queue_of
 from lumen.buses.subscriptions import Subscription
 
-OTHERWISE = 406
-"""The broker's code for a queue that exists and was made otherwise."""
+PRECONDITION_FAILED = 406
+"""AMQP's code for a queue that exists with other arguments."""
 
 
 class QueueDeclarer:
-    """Makes and unmakes queues; remembers, also over an outage, which ones a crash could still lose."""
+    """Declares and deletes queues; remembers, also over an outage, which ones a crash could still lose."""
 
     def __init__(self) -> None:
         self.settling: set[str] = set()
 
-    def make(self, connection: Any, queue: Queue) -> tuple[str, str]:
+    def declare(self, connection: Any, queue: Queue) -> tuple[str, str]:
         """Declare and bind a queue; its name, and why the broker refuses."""
         for attempt in self._attempts(queue):
             channel = connection.channel()
@@ -29,28 +29,28 @@ class QueueDeclarer:
                 return name, ""
             except ChannelClosedByBroker as error:
                 refusal = str(error.reply_text)
-                if error.reply_code != OTHERWISE:
+                if error.reply_code != PRECONDITION_FAILED:
                     break
         return "", refusal
 
-    def leave(self, connection: Any, subscription: Subscription) -> None:
+    def unbind(self, connection: Any, subscription: Subscription) -> None:
         """Nothing comes to its queue under its key any more; what is in there can still be read."""
         with suppress(ChannelClosedByBroker):
             channel = connection.channel()
             channel.queue_unbind(subscription.queue, EXCHANGE, subscription.pattern)
             channel.close()
 
-    def unmake(self, connection: Any, subscription: Subscription) -> None:
+    def remove(self, connection: Any, subscription: Subscription) -> None:
         """A queue that outlives us, and that no other process reads, is bound to nothing any more.
 
         It is deleted if it is empty; a quorum queue can't be deleted so carefully, and stays.
         """
         with suppress(ChannelClosedByBroker):
             channel = connection.channel()
-            self._unmake(channel, subscription)
+            self._remove(channel, subscription)
             channel.close()
 
-    def _unmake(self, channel: Any, subscription: Subscription) -> None:
+    def _remove(self, channel: Any, subscription: Subscription) -> None:
         name, must = subscription.queue, subscription.must_arrive
         if must:
             if channel.queue_declare(name, passive=True).method.consumer_count:
@@ -60,52 +60,52 @@ class QueueDeclarer:
             channel.queue_delete(name, if_unused=True, if_empty=must)
 
     def _attempts(self, queue: Queue) -> tuple[Callable[[Any, Queue], str], ...]:
-        """One after the other, where there is a queue of that name that was made otherwise."""
+        """What to try, one after the other, where there is a queue of that name with other arguments."""
         if queue.quorum:
-            return self._found, _adopt
+            return self._declare_quorum, _adopt
         return (_declare, _renew, _adopt) if queue.name else (_declare,)
 
-    def _found(self, channel: Any, queue: Queue) -> str:
+    def _declare_quorum(self, channel: Any, queue: Queue) -> str:
         """A quorum queue, which is bound when a crash of the broker can't lose it any more.
 
-        Where the broker was killed before that, it has no log for it and never answers for it: it is made anew.
+        Where the broker was killed before that, it has no log for it and never answers for it: it is declared anew.
         """
         if queue.name in self.settling:
             channel.queue_delete(queue.name)
         if not _exists(channel, queue.name):
             self.settling.add(queue.name)
             channel.queue_declare(queue.name, durable=True, arguments=queue.arguments)
-            channel.connection.sleep(SETTLING)
+            channel.connection.sleep(QUORUM_SETTLE_TIME)
             self.settling.discard(queue.name)
         return _declare(channel, queue)
 
 
 def _exists(channel: Any, name: str) -> bool:
-    asking = channel.connection.channel()
+    other = channel.connection.channel()
     try:
-        asking.queue_declare(name, passive=True)
+        other.queue_declare(name, passive=True)
     except ChannelClosedByBroker:
         return False
-    asking.close()
+    other.close()
     return True
 
 
 def _declare(channel: Any, queue: Queue) -> str:
-    mine = not queue.name
-    made = channel.queue_declare(
-        queue.name, durable=not mine, exclusive=mine, auto_delete=mine, arguments=queue.arguments
+    exclusive = not queue.name
+    declared = channel.queue_declare(
+        queue.name, durable=not exclusive, exclusive=exclusive, auto_delete=exclusive, arguments=queue.arguments
     )
-    channel.queue_bind(made.method.queue, queue.exchange, queue.key)
-    return str(made.method.queue)
+    channel.queue_bind(declared.method.queue, queue.exchange, queue.key)
+    return str(declared.method.queue)
 
 
 def _renew(channel: Any, queue: Queue) -> str:
-    """There is one of that name that was made otherwise: where it holds nothing, another takes its place."""
+    """There is one of that name with other arguments: where it holds nothing, another takes its place."""
     channel.queue_delete(queue.name, if_unused=True, if_empty=True)
     return _declare(channel, queue)
 
 
 def _adopt(channel: Any, queue: Queue) -> str:
-    """Use the one that there is: nothing in it is lost, and it is made anew when it is empty."""
+    """Use the one that there is: nothing in it is lost, and it is replaced when it is empty."""
     channel.queue_bind(queue.name, EXCHANGE, queue.key)
     return queue.name

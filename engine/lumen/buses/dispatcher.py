@@ -1,4 +1,4 @@
-"""The thread that runs handlers, one at a time, so that a slow one keeps nobody's heart from beating."""
+"""The thread that runs handlers, one at a time, so that a slow one delays no heartbeat."""
 
 import hashlib
 import logging
@@ -8,13 +8,15 @@ import time
 from collections.abc import Callable
 
 from lumen.buses.bodies import JSON, decode
-from lumen.buses.queues import NOWHERE
+from lumen.buses.queues import UNROUTED
 from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.ports import Message, Refused
 
-MARK = "lumen.mark"
-REMEMBERED = 10_000
+FLUSH_MARK = "lumen.mark"
+"""The type of a message that only says that everything published before it has arrived."""
+MAX_REMEMBERED_IDS = 10_000
+"""Messages that must arrive by which a second one of the same id is known."""
 
 _log = logging.getLogger(__name__)
 
@@ -22,10 +24,9 @@ _log = logging.getLogger(__name__)
 class Dispatcher:
     """Decodes deliveries and hands them to their handlers in the order received.
 
-    `handled` is told of each delivery that is over, `refused` of one that nobody could use, with the reason. Of
+    `handled` is called with each delivery that is over, `refused` with one that nobody could use, and the reason. Of
     telemetry only the newest are handed on, as many as the route keeps, while they are young enough; what must arrive
-    and comes twice is handed on once. A delivery of type `MARK` only says that everything published before it has
-    arrived.
+    and comes twice is handed on once.
     """
 
     def __init__(self, handled: Callable[[Delivery], None], refused: Callable[[Delivery, str], None]) -> None:
@@ -34,7 +35,7 @@ class Dispatcher:
         self._marks: set[str] = set()
         self._marked = threading.Event()
         self._done: dict[tuple[int, str], None] = {}
-        self._pace = RateLimiter()
+        self._limiter = RateLimiter()
         self._thread = threading.Thread(target=self._run, name="lumen-bus-handlers", daemon=True)
         self._thread.start()
 
@@ -65,13 +66,13 @@ class Dispatcher:
         while (delivery := self._waiting.get()) is not None:
             subscription = delivery.subscription
             subscription.handled += 1
-            if delivery.properties.type == MARK:
-                self._pass(delivery.body.decode(errors="replace"))
+            if delivery.properties.type == FLUSH_MARK:
+                self._mark_arrived(delivery.body.decode(errors="replace"))
             elif subscription.active and self._wanted(subscription, delivery):
                 self._deliver(subscription, delivery)
             self._handled(delivery)
 
-    def _pass(self, mark: str) -> None:
+    def _mark_arrived(self, mark: str) -> None:
         if mark in self._marks:
             self._marks.discard(mark)
             if not self._marks:
@@ -89,7 +90,7 @@ class Dispatcher:
             return not late and self._new(subscription, delivery)
         if late or (route.keep and subscription.received - subscription.handled >= route.keep):
             return False
-        return self._pace.allows(delivery.key)
+        return self._limiter.allows(delivery.key)
 
     def _new(self, subscription: Subscription, delivery: Delivery) -> bool:
         """Whether it was not handled before; messages of others have no id, and are known by all that they hold."""
@@ -98,13 +99,13 @@ class Dispatcher:
         if mark in self._done and (id or delivery.again):
             return False
         self._done[mark] = None
-        if len(self._done) > REMEMBERED:
+        if len(self._done) > MAX_REMEMBERED_IDS:
             del self._done[next(iter(self._done))]
         return True
 
     def _deliver(self, subscription: Subscription, delivery: Delivery) -> None:
         properties = delivery.properties
-        if subscription.exchange == NOWHERE:
+        if subscription.exchange == UNROUTED:
             self._hand(subscription, delivery, Message(delivery.key, None))
             return
         try:
@@ -133,5 +134,5 @@ class Dispatcher:
 
 def _digest(delivery: Delivery) -> str:
     properties = delivery.properties
-    said = f"{delivery.key} {properties.correlation_id} {properties.reply_to} {properties.timestamp} "
-    return hashlib.sha256(said.encode(errors="replace") + delivery.body).hexdigest()
+    head = f"{delivery.key} {properties.correlation_id} {properties.reply_to} {properties.timestamp} "
+    return hashlib.sha256(head.encode(errors="replace") + delivery.body).hexdigest()

@@ -21,9 +21,12 @@ from lumen.interpreters.routing import matches
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler, Refused
 
-CLOSING = 5.0
-REMEMBERED = 4_096
-WAITING = 100_000
+CLOSE_TIMEOUT = 5.0
+"""How long closing waits for a subscriber that still works [s]."""
+MAX_CACHED_KEYS = 4_096
+"""Keys whose listeners are remembered."""
+MAX_PENDING_MESSAGES = 100_000
+"""Messages that wait for a subscriber; then the oldest give way."""
 
 _log = logging.getLogger(__name__)
 
@@ -61,26 +64,26 @@ class _Hub:
         """Who listens to this key, in the order subscribed; remembered until somebody comes or goes."""
         check_key(key)
         with self.changing:
-            if len(self.listeners) >= REMEMBERED:
+            if len(self.listeners) >= MAX_CACHED_KEYS:
                 self.listeners = {}
             found = tuple(s for s in self.subscriptions if matches(s.pattern, key))
             self.listeners[key] = found
             return found
 
     def shed(self) -> None:
-        """Let the oldest message go; who waits for his leave (`close`) goes on waiting, behind the newest."""
+        """Drop the oldest messages; a `close` that waits in the queue goes on waiting, behind the newest."""
         with self.changing:
-            while len(self.queue) > WAITING:
+            while len(self.queue) > MAX_PENDING_MESSAGES:
                 item = self.queue.popleft()
                 if type(item) is tuple:
                     self.dropped += 1
                     if self.dropped == 1:
-                        _log.warning("%d messages wait for a subscriber: the oldest are dropped", WAITING)
+                        _log.warning("%d messages wait for a subscriber: the oldest are dropped", MAX_PENDING_MESSAGES)
                 else:
                     self.queue.append(item)
 
     def refuse(self, message: Message, reason: str) -> None:
-        """Tell who wants an answer that nobody could use the message."""
+        """Answer a sender who wants an answer that nobody could use the message."""
         if message.reply_to and (listeners := self.find(message.reply_to)):
             text = f"message refused: {reason}"
             self.queue.append((listeners, Message(message.reply_to, text, "", message.correlation_id)))
@@ -173,7 +176,7 @@ class MemoryBus:
             listeners = hub.find(key)
         if listeners:
             hub.queue.append((listeners, Message(key, own, reply_to, correlation_id)))
-            if len(hub.queue) > WAITING:
+            if len(hub.queue) > MAX_PENDING_MESSAGES:
                 hub.shed()
             hub.deliver()
 
@@ -189,8 +192,8 @@ class MemoryBus:
         gone = threading.Event()
         self._hub.queue.append(lambda: self._leave(gone))
         self._hub.deliver()
-        if self._hub.deliverer != threading.get_ident() and not gone.wait(CLOSING):
-            _log.warning("the bus was closed while a subscriber still works, after %g s", CLOSING)
+        if self._hub.deliverer != threading.get_ident() and not gone.wait(CLOSE_TIMEOUT):
+            _log.warning("the bus was closed while a subscriber still works, after %g s", CLOSE_TIMEOUT)
 
     def _leave(self, gone: threading.Event) -> None:
         mine = tuple(self._mine)

@@ -8,10 +8,12 @@ from typing import NamedTuple
 
 from lumen.errors import BusError
 
-CAPACITY = 50_000
-BYTES = 64 * 1024 * 1024
-MUST = 10_000
-"""Messages that must arrive and wait: beyond it, who sends another is told."""
+MAX_PENDING_MESSAGES = 50_000
+"""Messages that may be lost; then the oldest give way."""
+MAX_PENDING_BYTES = 64 * 1024 * 1024
+"""Bodies of either kind [bytes]."""
+MAX_PENDING_RELIABLE = 10_000
+"""Messages that must arrive; then `put` raises."""
 
 
 class OutgoingMessage(NamedTuple):
@@ -43,8 +45,8 @@ class Outbox:
     """Any thread puts, one thread takes, first what must arrive.
 
     When it is full the oldest gives way and is counted in `dropped`; what must arrive never does: `put` raises BusError
-    instead. `late` are those whose deadline passed before they could be sent. `awaken` is called where somebody may be
-    asleep who wants to know that there is something again.
+    instead. `late` counts those whose deadline passed before they could be sent. `awaken` is called where the thread
+    that takes has gone to sleep and there is something again.
     """
 
     def __init__(self, awaken: Callable[[], None] = lambda: None) -> None:
@@ -57,17 +59,17 @@ class Outbox:
         self._changed = threading.Condition()
         self._asleep = False
 
-    def put(self, parcel: OutgoingMessage) -> None:
+    def put(self, message: OutgoingMessage) -> None:
         with self._changed:
-            if parcel.id:
-                self._check_room(parcel)
-                self._must.append(parcel)
-            elif parcel.keep:
-                self._replace(parcel)
+            if message.id:
+                self._check_room(message)
+                self._must.append(message)
+            elif message.keep:
+                self._replace(message)
             else:
-                self._may.append(parcel)
-            self._weigh(parcel, +1)
-            while len(self._may) > CAPACITY or self._bytes[False] > BYTES:
+                self._may.append(message)
+            self._weigh(message, +1)
+            while len(self._may) > MAX_PENDING_MESSAGES or self._bytes[False] > MAX_PENDING_BYTES:
                 self._pop()
                 self.dropped += 1
             asleep, self._asleep = self._asleep, False
@@ -75,37 +77,37 @@ class Outbox:
         if asleep:
             self._awaken()
 
-    def take(self, most: int, timeout: float) -> list[OutgoingMessage]:
-        """The next parcels still wanted, at most so many; none if there is nothing within `timeout` [s]."""
+    def take(self, limit: int, timeout: float) -> list[OutgoingMessage]:
+        """The next messages still wanted, at most so many; none if there is nothing within `timeout` [s]."""
         with self._changed:
             if timeout and not self:
                 self._changed.wait(timeout)
             now = time.monotonic()
             taken: list[OutgoingMessage] = []
-            while self and len(taken) < most:
-                parcel = self._pop()
-                if parcel.deadline is None or parcel.deadline > now:
-                    taken.append(parcel)
+            while self and len(taken) < limit:
+                message = self._pop()
+                if message.deadline is None or message.deadline > now:
+                    taken.append(message)
                 else:
                     self.late += 1
             if not self:
                 self._changed.notify_all()
             return taken
 
-    def put_back(self, parcels: Iterable[OutgoingMessage]) -> None:
+    def put_back(self, messages: Iterable[OutgoingMessage]) -> None:
         """These could not be sent: they are the next again. What newer ones have replaced meanwhile is forgotten."""
         with self._changed:
-            for parcel in reversed(list(parcels)):
-                if parcel.id:
-                    self._must.appendleft(parcel)
-                elif parcel.keep and len(self._newest.get(parcel.key, ())) >= parcel.keep:
+            for message in reversed(list(messages)):
+                if message.id:
+                    self._must.appendleft(message)
+                elif message.keep and len(self._newest.get(message.key, ())) >= message.keep:
                     continue
-                elif parcel.keep:
-                    self._newest.setdefault(parcel.key, deque()).appendleft(parcel)
-                    self._may.appendleft(parcel.key)
+                elif message.keep:
+                    self._newest.setdefault(message.key, deque()).appendleft(message)
+                    self._may.appendleft(message.key)
                 else:
-                    self._may.appendleft(parcel)
-                self._weigh(parcel, +1)
+                    self._may.appendleft(message)
+                self._weigh(message, +1)
 
     def sleep(self) -> bool:
         """Whether there is nothing: then `awaken` is called at the next `put`."""
@@ -119,7 +121,7 @@ class Outbox:
             return self._changed.wait_for(lambda: not self, timeout)
 
     def wake(self) -> None:
-        """Let who waits in `take` look around."""
+        """Let `take` return."""
         with self._changed:
             self._changed.notify_all()
         self._awaken()
@@ -127,17 +129,17 @@ class Outbox:
     def __len__(self) -> int:
         return len(self._must) + len(self._may)
 
-    def _replace(self, parcel: OutgoingMessage) -> None:
-        """The newest of a key take the places of the oldest."""
-        waiting = self._newest.setdefault(parcel.key, deque())
-        waiting.append(parcel)
-        self._may.append(parcel.key)
-        while len(waiting) > parcel.keep:
+    def _replace(self, message: OutgoingMessage) -> None:
+        """The newest of a key replace the oldest."""
+        waiting = self._newest.setdefault(message.key, deque())
+        waiting.append(message)
+        self._may.append(message.key)
+        while len(waiting) > message.keep:
             self._weigh(waiting.popleft(), -1)
-            self._may.remove(parcel.key)
+            self._may.remove(message.key)
 
-    def _check_room(self, parcel: OutgoingMessage) -> None:
-        if len(self._must) < MUST and self._bytes[True] + len(parcel.body) <= BYTES:
+    def _check_room(self, message: OutgoingMessage) -> None:
+        if len(self._must) < MAX_PENDING_RELIABLE and self._bytes[True] + len(message.body) <= MAX_PENDING_BYTES:
             return
         now = time.monotonic()
         late = [p for p in self._must if p.deadline is not None and p.deadline <= now]
@@ -147,20 +149,20 @@ class Outbox:
         self._must = deque(p for p in self._must if p.deadline is None or p.deadline > now)
         self._bytes[True] = sum(len(p.body) for p in self._must)
 
-    def _weigh(self, parcel: OutgoingMessage, sign: int) -> None:
-        self._bytes[bool(parcel.id)] += sign * len(parcel.body)
+    def _weigh(self, message: OutgoingMessage, sign: int) -> None:
+        self._bytes[bool(message.id)] += sign * len(message.body)
 
     def _pop(self) -> OutgoingMessage:
-        parcel = self._must.popleft() if self._must else self._next()
-        self._weigh(parcel, -1)
-        return parcel
+        message = self._must.popleft() if self._must else self._next()
+        self._weigh(message, -1)
+        return message
 
     def _next(self) -> OutgoingMessage:
         item = self._may.popleft()
         if not isinstance(item, str):
             return item
         waiting = self._newest[item]
-        parcel = waiting.popleft()
+        message = waiting.popleft()
         if not waiting:
             del self._newest[item]
-        return parcel
+        return message

@@ -8,15 +8,15 @@ import pika
 from pika.adapters.select_connection import IOLoop
 from pika.exceptions import AMQPChannelError, AMQPConnectionError, AMQPError, ChannelClosedByBroker
 
-from lumen.buses.broker import PATIENCE
+from lumen.buses.broker import BROKER_TIMEOUT
 from lumen.buses.queues import ChannelCall
 
-TOGETHER = 8 * 1024
-"""From how many bytes on frames leave at once; what is less leaves at the next turn."""
+FLUSH_BYTES = 8 * 1024
+"""From how many bytes on frames are sent at once; what is less is sent at the next turn."""
 
 
-class _Gathering(pika.SelectConnection):  # type: ignore[misc]  # pika says nothing of its types
-    """Frames leave together: a message has three, and pika would call the system for each."""
+class _BufferedConnection(pika.SelectConnection):  # type: ignore[misc]  # pika is not typed
+    """Frames are sent together: a message has three, and pika would call the system for each."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         self._frames: list[bytes] = []
@@ -32,14 +32,14 @@ class _Gathering(pika.SelectConnection):  # type: ignore[misc]  # pika says noth
     def _adapter_emit_data(self, data: bytes) -> None:
         self._frames.append(data)
         self._size += len(data)
-        if self._size > TOGETHER:
+        if self._size > FLUSH_BYTES:
             self.flush()
 
 
 class PolledConnection:
     """An open connection and its channel. Raises what pika raises, where it can't be opened or is lost.
 
-    Unlike `BlockingConnection` it waits neither for each message to leave nor for each confirm to come.
+    Unlike `BlockingConnection` it waits neither for each message to be sent nor for each confirm to come.
     """
 
     def __init__(self, parameters: Any) -> None:
@@ -97,10 +97,10 @@ class PolledConnection:
 
     def until(self, done: Callable[[], object]) -> None:
         """Turn until that is so, for as long as the broker may take to answer."""
-        deadline = time.monotonic() + 2 * PATIENCE
+        deadline = time.monotonic() + BROKER_TIMEOUT
         while not done():
             if time.monotonic() > deadline:
-                raise TimeoutError(f"no answer within {2 * PATIENCE:g} s")
+                raise TimeoutError(f"no answer within {BROKER_TIMEOUT:g} s")
             self.turn(0.5)
 
     def turn(self, seconds: float) -> None:
@@ -133,7 +133,7 @@ class PolledConnection:
 
     def _open(self, parameters: Any) -> None:
         opened: list[Any] = []
-        self._connection = _Gathering(
+        self._connection = _BufferedConnection(
             parameters,
             on_open_callback=opened.append,
             on_open_error_callback=lambda _, error: self._failed(error),

@@ -1,4 +1,4 @@
-"""What a broker lets us do, asked without anybody else noticing."""
+"""What a broker lets us do, found out without anybody else noticing."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,8 +13,10 @@ from lumen.buses.queues import EXCHANGE, queue_of
 from lumen.errors import BusError
 from lumen.language.routes import Route
 
-NOBODY = "lumen doctor"
-REFUSED = 403
+FORGED_USER = "lumen doctor"
+"""Whom a probing message claims to be from."""
+ACCESS_REFUSED = 403
+"""AMQP's code for what a user may not do."""
 
 
 class QueueStatus(NamedTuple):
@@ -25,18 +27,18 @@ class QueueStatus(NamedTuple):
 
 
 class BrokerProbe:
-    """A connection that asks; raises BusError, saying what to do, where the broker can't be used."""
+    """A connection for questions; raises BusError, saying what to do, where the broker can't be used."""
 
     def __init__(self, url: str) -> None:
         self.address = BrokerAddress(url)
         try:
             self._connection = pika.BlockingConnection(self.address.parameters)
-            flow = PolledConnection(self.address.parameters)
+            polled = PolledConnection(self.address.parameters)
         except (AMQPError, OSError) as error:
             raise self.address.explain(error) from error
-        self.product, self.version = (_text(flow.server.get(name)) for name in ("product", "version"))
-        server = flow.server
-        flow.close()
+        self.product, self.version = (_text(polled.server.get(name)) for name in ("product", "version"))
+        server = polled.server
+        polled.close()
         self.address.check_version(server)
 
     def reading(self, key: str) -> str:
@@ -56,17 +58,17 @@ class BrokerProbe:
         The message claims to be from somebody else, which the broker refuses after it has looked whether we may send
         it: so it goes to nobody.
         """
-        properties = pika.BasicProperties(user_id=NOBODY)
+        properties = pika.BasicProperties(user_id=FORGED_USER)
         try:
             with self._channel() as channel:
                 channel.confirm_delivery()
                 channel.basic_publish(EXCHANGE, key, b"", properties)
         except ChannelClosedByBroker as error:
-            return str(error.reply_text) if error.reply_code == REFUSED else ""
-        raise BusError(f"the broker at {self.address} took a message that claims to be from `{NOBODY}`")
+            return str(error.reply_text) if error.reply_code == ACCESS_REFUSED else ""
+        raise BusError(f"the broker at {self.address} took a message that claims to be from `{FORGED_USER}`")
 
     def served(self, key: str, route: Route) -> QueueStatus:
-        """How the queue of a route that must arrive is doing."""
+        """How many wait and read in the queue of a route whose messages must arrive."""
         try:
             with self._channel() as channel:
                 found = channel.queue_declare(queue_of(key, route).name, passive=True).method

@@ -10,14 +10,19 @@ from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.outbox import Outbox, OutgoingMessage
 from lumen.buses.polled import PolledConnection
-from lumen.buses.queues import ASIDE, NOWHERE, ChannelCall, Queue, declare_aside
+from lumen.buses.queues import SIDE_QUEUES, UNROUTED, ChannelCall, Queue, declare_side_queues
 from lumen.language.diagnostics import did_you_mean
 
-WINDOW = 1_000
-WINDOW_BYTES = 4 * 1024 * 1024
-IDLE = 0.5
-TOLD = 1_000
-PERSISTENT = 2
+MAX_UNCONFIRMED_MESSAGES = 1_000
+"""Messages that are sent and not confirmed yet; more wait in the outbox."""
+MAX_UNCONFIRMED_BYTES = 4 * 1024 * 1024
+"""Their bodies [bytes]."""
+IDLE_TIME = 0.5
+"""How long the connection is left to itself while there is nothing to send [s]."""
+MAX_WARNED_KEYS = 1_000
+"""Keys that nobody takes and that were warned of; more are not."""
+PERSISTENT_DELIVERY = 2
+"""AMQP's delivery mode of a message that a broker writes to its disk."""
 
 _log = logging.getLogger(__name__)
 
@@ -25,9 +30,9 @@ _log = logging.getLogger(__name__)
 class Publisher(BrokerConnection):
     """Sends what is in the outbox; what is there when the broker is away waits for it to come back.
 
-    At most `WINDOW` messages are under way without the broker's word that it has them. When the connection is lost,
-    those of them that must arrive are the next again; what nobody waits for is told with the nearest of the `known`
-    keys. `journals` are the queues that keep what goes out until a module comes for it.
+    At most `MAX_UNCONFIRMED_MESSAGES` are sent without the broker's confirmation. When the connection is lost, those of
+    them that must arrive are the next again. What nobody takes is logged with the nearest of the `known` keys.
+    `journals` are the queues that keep what goes out until a module reads it.
     """
 
     def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
@@ -39,7 +44,7 @@ class Publisher(BrokerConnection):
         self._refused: set[str] = set()
         self._window: dict[int, OutgoingMessage] = {}
         self._bytes = self._number = self._dropped = self._late = 0
-        self._told: set[str] = set()
+        self._warned: set[str] = set()
 
     def connect(self) -> PolledConnection:
         return PolledConnection(self.address.parameters)
@@ -50,28 +55,28 @@ class Publisher(BrokerConnection):
     def begin(self) -> None:
         self.address.check_version(self.connection.server)
         self._number, self._declared, self._refused = 0, set(), set()
-        self._make(ASIDE, declare_aside)
+        self._declare(SIDE_QUEUES, declare_side_queues)
         self.channel.add_on_return_callback(self._returned)
         self.connection.ask(self.channel.confirm_delivery, self._confirmed)
 
     @property
-    def aside(self) -> bool:
-        """Whether the broker let us make the places for what nobody could use."""
-        return ASIDE in self._declared
+    def has_side_queues(self) -> bool:
+        """Whether the broker let us declare the places for what nobody could use."""
+        return SIDE_QUEUES in self._declared
 
     def serve(self) -> bool:
         for key, queue in self.journals.items():
-            self._make(key, queue.declare)
+            self._declare(key, queue.declare)
         room = self._room()
-        parcels = self.outbox.take(room, 0.0) if room > 0 else []
-        for sent, parcel in enumerate(parcels):
+        messages = self.outbox.take(room, 0.0) if room > 0 else []
+        for sent, message in enumerate(messages):
             try:
-                self._send(parcel)
+                self._send(message)
             except BaseException:
-                self.outbox.put_back(parcels[sent:])
+                self.outbox.put_back(messages[sent:])
                 raise
-        self.connection.turn(IDLE if self._idle(bool(parcels)) else 0.0)
-        self._report()
+        self.connection.turn(IDLE_TIME if self._idle(bool(messages)) else 0.0)
+        self._log_losses()
         return bool(self.outbox or self._window) or not self.ending.is_set()
 
     def finish(self) -> None:
@@ -79,7 +84,7 @@ class Publisher(BrokerConnection):
 
     def disconnect(self, connection: PolledConnection) -> None:
         lost, self._window, self._bytes = self._window, {}, 0
-        self.outbox.put_back([parcel for parcel in lost.values() if parcel.id])
+        self.outbox.put_back([message for message in lost.values() if message.id])
         connection.close()
 
     def end(self, timeout: float) -> bool:
@@ -89,11 +94,11 @@ class Publisher(BrokerConnection):
         return self.join(timeout)
 
     def _awaken(self) -> None:
-        if flow := self.connection:
-            flow.wake()
+        if connection := self.connection:
+            connection.wake()
 
     def _room(self) -> int:
-        return 0 if self._bytes > WINDOW_BYTES else WINDOW - len(self._window)
+        return 0 if self._bytes > MAX_UNCONFIRMED_BYTES else MAX_UNCONFIRMED_MESSAGES - len(self._window)
 
     def _idle(self, busy: bool) -> bool:
         """Whether there is nothing to do until the broker says something, or there is something to send."""
@@ -101,60 +106,60 @@ class Publisher(BrokerConnection):
             return True
         return not busy and self.outbox.sleep() and not (self.ending.is_set() and not self._window)
 
-    def _send(self, parcel: OutgoingMessage) -> None:
+    def _send(self, message: OutgoingMessage) -> None:
         properties = pika.BasicProperties(
-            content_type=parcel.content_type,
+            content_type=message.content_type,
             content_encoding="utf-8",
-            reply_to=parcel.reply_to or None,
-            correlation_id=parcel.correlation_id or None,
-            expiration=parcel.expiration,
-            type=parcel.type or None,
-            message_id=parcel.id or None,
-            delivery_mode=PERSISTENT if parcel.id else None,
-            headers=parcel.headers,
+            reply_to=message.reply_to or None,
+            correlation_id=message.correlation_id or None,
+            expiration=message.expiration,
+            type=message.type or None,
+            message_id=message.id or None,
+            delivery_mode=PERSISTENT_DELIVERY if message.id else None,
+            headers=message.headers,
         )
         self._number += 1
-        self._window[self._number] = parcel
-        self._bytes += len(parcel.body)
-        self.channel.basic_publish(parcel.exchange, parcel.key, parcel.body, properties, mandatory=bool(parcel.id))
+        self._window[self._number] = message
+        self._bytes += len(message.body)
+        self.channel.basic_publish(message.exchange, message.key, message.body, properties, mandatory=bool(message.id))
 
     def _confirmed(self, frame: Any) -> None:
         """The broker has this message, and with `multiple` all before it; or (a nack) could not take it."""
         method = frame.method
         first = next(iter(self._window), 0) if method.multiple else method.delivery_tag
         numbers = range(first, method.delivery_tag + 1)
-        parcels = [parcel for n in numbers if (parcel := self._window.pop(n, None))]
-        self._bytes -= sum(len(parcel.body) for parcel in parcels)
+        messages = [message for n in numbers if (message := self._window.pop(n, None))]
+        self._bytes -= sum(len(message.body) for message in messages)
         if isinstance(method, pika.spec.Basic.Nack):
-            _log.warning("the broker at %s could not take %d messages", self.address, len(parcels))
-            self.outbox.put_back([parcel for parcel in parcels if parcel.id])
+            _log.warning("the broker at %s could not take %d messages", self.address, len(messages))
+            self.outbox.put_back([message for message in messages if message.id])
 
     def _returned(self, _: Any, method: Any, properties: Any, body: bytes) -> None:
         """Nobody is there for a message that must arrive: it is put where somebody can find it."""
         key = method.routing_key
-        if method.exchange == NOWHERE:
+        if method.exchange == UNROUTED:
             return
-        self.lament(key)
-        if self.aside:
+        self.warn_once(key)
+        if self.has_side_queues:
             headers = {"reason": f"nobody takes `{key}`"}
-            self.outbox.put(OutgoingMessage(NOWHERE, key, body, properties.content_type or "", headers=headers))
+            self.outbox.put(OutgoingMessage(UNROUTED, key, body, properties.content_type or "", headers=headers))
 
-    def stray(self, key: str) -> None:
-        """Somebody sent a message under this key, and nobody took it: that is worth a word where no route has it."""
+    def unrouted(self, key: str) -> None:
+        """Somebody sent a message under this key, and nobody took it: log it where no route has the key."""
         if key not in self.known:
-            self.lament(key)
+            self.warn_once(key)
 
-    def lament(self, key: str) -> None:
-        """Say once that nobody takes what is sent under this key."""
-        if key in self._told or len(self._told) >= TOLD:
+    def warn_once(self, key: str) -> None:
+        """Log once that nobody takes what is sent under this key."""
+        if key in self._warned or len(self._warned) >= MAX_WARNED_KEYS:
             return
-        self._told.add(key)
+        self._warned.add(key)
         others = [other for other in self.known if other != key]
         hint = f": {did_you_mean(key, others)}" if others else ""
         _log.warning("nobody takes what is sent on `%s`%s", key, hint if "mean" in hint else "")
 
-    def _make(self, name: str, work: Callable[[ChannelCall, Any], None]) -> None:
-        """Make something on the broker once; where it refuses, as it does to a module with few rights, all goes on."""
+    def _declare(self, name: str, work: Callable[[ChannelCall, Any], None]) -> None:
+        """Declare something on the broker once; where it refuses, as it does to a user of few rights, all goes on."""
         if name in self._declared or name in self._refused:
             return
         if refusal := self.connection.attempt(work):
@@ -163,7 +168,7 @@ class Publisher(BrokerConnection):
         else:
             self._declared.add(name)
 
-    def _report(self) -> None:
+    def _log_losses(self) -> None:
         outbox = self.outbox
         if outbox.dropped > self._dropped:
             _log.warning("%d messages were dropped: the outbox was full", outbox.dropped - self._dropped)

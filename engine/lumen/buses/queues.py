@@ -1,4 +1,4 @@
-"""What we make on a broker: a queue for every way of being carried, and the places for what nobody could use.
+"""What we declare on a broker: a queue for every way of being carried, and places for what nobody could use.
 
 Telemetry has a queue that goes away with its reader and keeps the newest. A command has one that outlives a reader's
 absence for as long as the command is good for; then it is dead, with the others in `lumen.dead`. A journal that comes
@@ -14,25 +14,34 @@ from typing import Any
 from lumen.language.routes import Carried, Route
 
 EXCHANGE = "amq.topic"
-DEAD = "lumen.dead"
+DEAD_LETTERS = "lumen.dead"
 """Where messages go that could not be used, with the reason in their headers."""
-NOWHERE = "lumen.nowhere"
+UNROUTED = "lumen.nowhere"
 """Where messages go that nobody waits for; the alternate exchange of `amq.topic` where a policy says so."""
-ASIDE = f"{DEAD} and {NOWHERE}"
+SIDE_QUEUES = f"{DEAD_LETTERS} and {UNROUTED}"
 
-WAITING = 20_000
-NEWEST = 1_000
-MOST = 100_000
-UNUSED = 10 * 60 * 1000
+MAX_LENGTH_WITHOUT_ROUTE = 20_000
+"""Messages in a queue for a key that no route has; then the oldest give way."""
+MAX_LENGTH_TELEMETRY = 1_000
+"""Messages in a queue of telemetry whose route does not say how many to `keep`."""
+MAX_LENGTH_COMMANDS = 100_000
+"""Messages in a queue of commands; then the broker refuses the sender."""
+MAX_JOURNAL_BYTES = 10**9
+"""Size of a journal's queue or stream [bytes]."""
+MAX_SIDE_QUEUE_BYTES = 10**8
+"""Size of `lumen.dead` and of `lumen.nowhere` [bytes]."""
+MAX_QUEUE_NAME_BYTES = 255
+"""AMQP's bound on a short string; a longer name is replaced by its hash."""
 HOUR = 60 * 60 * 1000
-GIGABYTE = 10**9
-LONGEST = 255
-SETTLING = 1.0
+"""[ms], as RabbitMQ counts."""
+UNUSED_EXPIRY = 10 * 60 * 1000
+"""After how long without a reader a queue of commands goes away [ms]."""
+QUORUM_SETTLE_TIME = 1.0
 """How long a new quorum queue stays unbound [s]: RabbitMQ writes down half a second later which log is whose; killed
 before that, it loses what the queue held (docs/decisions)."""
 
 ChannelCall = Callable[..., Any]
-"""Calls a method of a channel with these arguments and waits for the answer."""
+"""Calls a method of a channel with these arguments, and waits for the broker's answer."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +58,7 @@ class Queue:
         return self.arguments.get("x-queue-type") == "quorum"
 
     def declare(self, call: ChannelCall, channel: Any) -> None:
-        """Make one that has a name, and bind it to its key."""
+        """Declare one that has a name, and bind it to its key."""
         call(channel.queue_declare, self.name, durable=True, arguments=self.arguments)
         call(channel.queue_bind, self.name, EXCHANGE, self.key)
 
@@ -57,30 +66,42 @@ class Queue:
 def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXCHANGE) -> Queue:
     """The queue for what comes in under a key; `number` tells those of the same key apart."""
     if route is None or not route.must_arrive:
-        newest = WAITING if route is None else route.keep or NEWEST
+        newest = MAX_LENGTH_WITHOUT_ROUTE if route is None else route.keep or MAX_LENGTH_TELEMETRY
         return Queue(
             key, exchange=exchange, arguments={"x-max-length": newest, "x-overflow": "drop-head", **_lifetime(route)}
         )
     if route.carried is Carried.JOURNAL:
-        limits = {"x-max-length-bytes": GIGABYTE, "x-overflow": "reject-publish", "x-dead-letter-exchange": DEAD}
+        limits = {
+            "x-max-length-bytes": MAX_JOURNAL_BYTES,
+            "x-overflow": "reject-publish",
+            "x-dead-letter-exchange": DEAD_LETTERS,
+        }
         kept = {"x-queue-type": "quorum", **limits, "x-single-active-consumer": True}
         return Queue(key, _name(f"lumen.inbox.{key}", number), exchange, kept)
     name = _name(f"lumen.queue.{key}", number)
-    limits = {"x-max-length": MOST, "x-overflow": "reject-publish", "x-dead-letter-exchange": DEAD}
-    unused = {"x-expires": UNUSED} if route.lifetime else {}
+    limits = {
+        "x-max-length": MAX_LENGTH_COMMANDS,
+        "x-overflow": "reject-publish",
+        "x-dead-letter-exchange": DEAD_LETTERS,
+    }
+    unused = {"x-expires": UNUSED_EXPIRY} if route.lifetime else {}
     return Queue(key, name, exchange, {**limits, **_lifetime(route), **unused, "x-single-active-consumer": True})
 
 
 def journal_of(key: str) -> Queue:
     """The stream of a journal that goes out: a month or a gigabyte, from which modules read where they left off."""
-    arguments = {"x-queue-type": "stream", "x-max-age": "30D", "x-max-length-bytes": GIGABYTE}
+    arguments = {"x-queue-type": "stream", "x-max-age": "30D", "x-max-length-bytes": MAX_JOURNAL_BYTES}
     return Queue(key, _name(f"lumen.journal.{key}"), arguments=arguments)
 
 
-def declare_aside(call: ChannelCall, channel: Any) -> None:
-    """Make the places for what nobody could use: bounded, the oldest gives way."""
-    for name, lifetime in ((DEAD, 7 * 24 * HOUR), (NOWHERE, HOUR)):
-        limits = {"x-max-length": NEWEST, "x-max-length-bytes": GIGABYTE // 10, "x-message-ttl": lifetime}
+def declare_side_queues(call: ChannelCall, channel: Any) -> None:
+    """Declare the places for what nobody could use: bounded, the oldest gives way."""
+    for name, lifetime in ((DEAD_LETTERS, 7 * 24 * HOUR), (UNROUTED, HOUR)):
+        limits = {
+            "x-max-length": MAX_LENGTH_TELEMETRY,
+            "x-max-length-bytes": MAX_SIDE_QUEUE_BYTES,
+            "x-message-ttl": lifetime,
+        }
         call(channel.exchange_declare, name, "fanout", durable=True)
         call(channel.queue_declare, name, durable=True, arguments=limits)
         call(channel.queue_bind, name, name, "")
@@ -92,6 +113,6 @@ def _lifetime(route: Route | None) -> dict[str, int]:
 
 def _name(name: str, number: int = 0) -> str:
     name = f"{name}.{number + 1}" if number else name
-    if len(name.encode()) <= LONGEST:
+    if len(name.encode()) <= MAX_QUEUE_NAME_BYTES:
         return name
     return f"lumen.queue.{hashlib.sha256(name.encode()).hexdigest()}"

@@ -4,16 +4,15 @@ import logging
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from lumen.buses.checking import BodyCheck, checks
+from lumen.buses.bodies import KEY_PREFIXES
+from lumen.buses.checking import BodyCheck, body_checks
 from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.ports import Bus, Message, MessageHandler, Refused
 
-PREFIXES = ("avatar", "lumen")
-
 OnRefused = Callable[[str, str], None]
-"""Told of a message that was not handed on: its key, and the reason."""
+"""Called for a message that was not handed on, with its key and the reason."""
 
 _log = logging.getLogger(__name__)
 
@@ -27,9 +26,9 @@ class ValidatedBus:
     """A bus on which only bodies pass that fit their route.
 
     A body of our own that does not is our own fault: `publish` raises BusError. One that comes in is not handed to the
-    subscriber: `on_refused` is told, the bus puts it aside and answers the sender. Keys without a route pass unchecked,
-    keys that begin with neither `avatar` nor `lumen` don't pass. `use` takes on another bundle of the project while
-    messages flow.
+    subscriber: `on_refused` is called, the bus puts it aside and answers the sender. Keys without a route pass
+    unchecked, keys that begin with neither `avatar` nor `lumen` don't pass. `use` takes another bundle of the project
+    while messages flow.
     """
 
     def __init__(self, bus: Bus, project: Project, on_refused: OnRefused = log_refusal) -> None:
@@ -39,7 +38,7 @@ class ValidatedBus:
 
     def use(self, project: Project) -> None:
         """Check against the routes and schemas of this project from now on."""
-        self._checks = checks(project)
+        self._checks = body_checks(project)
         self._bus.carry(by_key(project))
 
     def carry(self, routes: Mapping[str, Route]) -> None:
@@ -74,7 +73,7 @@ class ValidatedBus:
         check = self._checks.get(key)
         if check is not None:
             return check(body)
-        return "" if key.split(".", 1)[0] in PREFIXES else "its key begins with neither `avatar` nor `lumen`"
+        return "" if key.split(".", 1)[0] in KEY_PREFIXES else "its key begins with neither `avatar` nor `lumen`"
 
 
 def by_key(project: Project) -> dict[str, Route]:

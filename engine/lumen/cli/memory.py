@@ -8,9 +8,9 @@ from pathlib import Path
 
 from lumen.errors import UsageError
 from lumen.loading.packaged import find_project
-from lumen.modules.eyes.eyes import FILE as FACES
+from lumen.modules.eyes.eyes import FACES_FILE
 from lumen.modules.memory import Store
-from lumen.modules.memory.memory import FILE
+from lumen.modules.memory.memory import DATABASE_FILE
 from lumen.runtime.home import home_of
 
 WHATS = ("visitors", "journal", "forget")
@@ -26,7 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    file = home_of(find_project(options.project)) / FILE
+    file = home_of(find_project(options.project)) / DATABASE_FILE
     if not file.exists():
         raise UsageError(f"nothing is remembered: there is no {file}")
     store = Store(file)
@@ -41,7 +41,7 @@ def _run(options: argparse.Namespace, store: Store, file: Path) -> int:
     if options.what == "forget":
         if not (options.name or "").strip():
             raise UsageError("say whom: `lumen memory forget NAME`")
-        faces = _faces(options.name, file.with_name(FACES))
+        faces = _faces(options.name, file.with_name(FACES_FILE))
         visitors, entries = store.forget(options.name)
         told = f"forgot {options.name}: {visitors} visitors, {entries} entries, {faces} pictures"
         print(

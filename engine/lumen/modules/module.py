@@ -1,4 +1,4 @@
-"""What every module is: it hears messages on a thread of its own, and whatever fails is a line to the operator."""
+"""What every module is: it handles messages on a thread of its own, and whatever fails is a line to the operator."""
 
 import logging
 import threading
@@ -12,7 +12,7 @@ from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message, MessageHandler
 
-KEYS: Mapping[str, str] = {
+DEFAULT_KEYS: Mapping[str, str] = {
     "image": "avatar.{robot}.data.image",
     "joint": "avatar.{robot}.data.joint",
     "sonar": "avatar.{robot}.data.sonar",
@@ -40,16 +40,20 @@ KEYS: Mapping[str, str] = {
 }
 """Under which keys modules talk, where the project's routes do not say otherwise."""
 
-WAITING = 1_000
-"""How many messages wait at most for a module; beyond that the oldest go."""
-REASONS = 50
-"""How many kinds of trouble are told of at most."""
+MAX_WAITING_MESSAGES = 1_000
+"""Messages that wait for a module; then the oldest are dropped."""
+MAX_REASONS = 50
+"""Different lines of trouble that are said until it works again; then no more are."""
+KEEP_DAYS = 30.0
+"""How many days a module keeps what it knows of people, where `lumen.yaml` does not say."""
+DAY = 86_400.0
+"""[s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class Module:
-    """Hears the routes of `hears` one message at a time, in the order they came, on its own thread.
+    """Handles the routes of `hears` one message at a time, in the order they came, on its own thread.
 
     A handler that raises ModuleError costs that message: `tell` says why, once for each reason until it works again,
     and the route `trouble` to the operators of other processes. Of a route that keeps one message only the newest
@@ -62,10 +66,10 @@ class Module:
         self.project, self.bus = project, bus
         self.handled = 0
         self._tell = tell
-        self._waiting: deque[tuple[str, Message]] = deque(maxlen=WAITING)
+        self._waiting: deque[tuple[str, Message]] = deque(maxlen=MAX_WAITING_MESSAGES)
         self._changed = threading.Condition()
         self._busy = self._ending = False
-        self._said: set[str] = set()
+        self._told: set[str] = set()
         self._undo: list[Callable[[], None]] = []
         self._thread = threading.Thread(target=self._run, name=f"lumen-{self.name}", daemon=True)
 
@@ -84,7 +88,7 @@ class Module:
         self._thread.start()
 
     def use(self, project: Project) -> None:
-        """Talk on the routes of this project from now on."""
+        """Use the routes of this project from now on."""
         old, self.project = self._undo, project
         self._undo = []
         self._listen()
@@ -92,12 +96,12 @@ class Module:
             undo()
 
     def settle(self, timeout: float = 5.0) -> bool:
-        """Wait until everything heard so far is dealt with; whether that was so within `timeout` [s]."""
+        """Wait until everything that has come so far is handled; whether that was so within `timeout` [s]."""
         with self._changed:
             return self._changed.wait_for(lambda: not (self._waiting or self._busy), timeout)
 
     def close(self) -> None:
-        """Deal with what waits, and end; harmless when repeated."""
+        """Handle what waits, and end; harmless when repeated."""
         for undo in self._undo:
             undo()
         self._undo = []
@@ -108,7 +112,7 @@ class Module:
             self._thread.join(5.0)
 
     def publish(self, route: str, body: Any) -> None:
-        """Send a body on a route; where the bus refuses, the operator is told."""
+        """Send a body on a route; where the bus refuses, that is a line to the operator."""
         row = self.project.routes.get(route)
         try:
             self.bus.publish(self.key(route), body, ttl=row.ttl if row else None)
@@ -116,7 +120,7 @@ class Module:
             self.tell(str(error))
 
     def reply(self, message: Message, body: Any) -> None:
-        """Answer who asked; nobody where the bus is gone."""
+        """Answer the sender of a message; nobody where the bus is gone."""
         try:
             self.bus.reply(message, body)
         except BusError as error:
@@ -125,21 +129,21 @@ class Module:
     def key(self, route: str) -> str:
         """The routing key of a route."""
         row = self.project.routes.get(route)
-        return row.key_for(self.project.robot) if row else KEYS[route].replace("{robot}", self.project.robot)
+        return row.key_for(self.project.robot) if row else DEFAULT_KEYS[route].replace("{robot}", self.project.robot)
 
     def tell(self, text: str) -> None:
         """A line to the operator, once until `well`."""
-        if text not in self._said and len(self._said) < REASONS:
-            self._said.add(text)
+        if text not in self._told and len(self._told) < MAX_REASONS:
+            self._told.add(text)
             self._tell(text)
             try:
                 self.bus.publish(self.key("trouble"), {"module": self.name, "text": text}, ttl=10.0)
             except BusError as error:
-                _log.debug("nobody was told of the trouble: %s", error)
+                _log.debug("the trouble could not be published: %s", error)
 
     def well(self) -> None:
-        """It works (again): the next trouble is told of anew."""
-        self._said.clear()
+        """It works (again): from now on the same trouble is told once more."""
+        self._told.clear()
 
     def _listen(self) -> None:
         for route in self.hears():
@@ -149,7 +153,7 @@ class Module:
         row = self.project.routes.get(route)
         with self._changed:
             if row and row.keep == 1:
-                self._waiting = deque((w for w in self._waiting if w[0] != route), maxlen=WAITING)
+                self._waiting = deque((w for w in self._waiting if w[0] != route), maxlen=MAX_WAITING_MESSAGES)
             self._waiting.append((route, message))
             self._changed.notify_all()
 
@@ -160,14 +164,16 @@ class Module:
                 self.hears()[route](message)
             except ModuleError as error:
                 self.tell(str(error))
-            except Exception as error:  # a fault of ours: told, and the tour goes on without this message
+            except (
+                Exception
+            ) as error:  # a fault of ours: a line to the operator, and the tour goes on without this message
                 _log.exception("the module `%s` failed on `%s`", self.name, message.key)
                 self.tell(f"failed on a message: {error!r}")
             self.handled += 1
         self.end()
 
     def end(self) -> None:
-        """Let go of what its thread holds; called on that thread."""
+        """Close what its thread has open; called on that thread."""
 
     def idle(self) -> float | None:
         """Called on its thread when nothing waits; in how many seconds again, None for not before a message."""

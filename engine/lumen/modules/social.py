@@ -12,9 +12,9 @@ from lumen.language.projects import Project
 from lumen.modules.module import Module
 from lumen.ports import Bus, Message, MessageHandler
 
-FILE = "posts.jsonl"
-BYTES = 10_000_000
-"""After so much nothing more is written: somebody has to look at it first."""
+POSTS_FILE = "posts.jsonl"
+MAX_FILE_BYTES = 10_000_000
+"""How long the file may grow; then nothing more is written until somebody has moved it away."""
 
 
 class Social(Module):
@@ -49,7 +49,7 @@ class Social(Module):
         try:
             self._file.parent.mkdir(parents=True, exist_ok=True)
             with open(os.open(self._file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "ab") as file:
-                if file.tell() > BYTES:
+                if file.tell() > MAX_FILE_BYTES:
                     raise ModuleError(f"{self._file} is full: move it away, and the next posts are kept again")
                 file.write(line.encode("utf-8", "replace") + b"\n")
         except OSError as error:

@@ -9,8 +9,8 @@ from typing import IO, NamedTuple
 
 from lumen.errors import ModuleError
 
-LONGEST = 120.0
-"""How long a sound in a message may be [s]: nobody fills the memory."""
+MAX_DURATION = 120.0
+"""How long a sound in a message may be [s]."""
 
 
 class Sound(NamedTuple):
@@ -54,14 +54,14 @@ def wav(data: bytes) -> Sound:
             kind = f"{channels} channel{'s' * (channels != 1)}, {8 * width} bits, {rate} Hz"
             if channels != 1 or width != 2 or not 8_000 <= rate <= 48_000:
                 raise ModuleError(f"a sound has {kind}; one channel, 16 bits and 8,000 to 48,000 Hz are understood")
-            samples = file.readframes(round(LONGEST * rate) + 1)
+            samples = file.readframes(round(MAX_DURATION * rate) + 1)
     except (wave.Error, EOFError, OSError):
         raise ModuleError("a sound is no WAV, or of a kind that is not understood: it is not listened to") from None
     found = Sound(rate, samples[: len(samples) // 2 * 2])
     if not samples:
         raise ModuleError("a sound is empty: it is not listened to")
-    if found.duration > LONGEST:
-        raise ModuleError(f"a sound is longer than {LONGEST:g} s: it is not listened to")
+    if found.duration > MAX_DURATION:
+        raise ModuleError(f"a sound is longer than {MAX_DURATION:g} s: it is not listened to")
     return found
 
 

@@ -17,14 +17,14 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
     """
     if name == MEMORY:
         from lumen.modules.memory import Memory
-        from lumen.modules.memory.memory import FILE
+        from lumen.modules.memory.memory import DATABASE_FILE
 
-        return Memory(project, bus, tell, folder and folder / FILE)
+        return Memory(project, bus, tell, folder and folder / DATABASE_FILE)
     if name == EYES:
         from lumen.modules.eyes import Eyes
-        from lumen.modules.eyes.eyes import FILE as FACES
+        from lumen.modules.eyes.eyes import FACES_FILE
 
-        return Eyes(project, bus, tell, folder and folder / FACES)
+        return Eyes(project, bus, tell, folder and folder / FACES_FILE)
     if name == VOICE:
         from lumen.modules.voice import Voice
 
@@ -34,8 +34,7 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
 
         return Ears(project, bus, tell)
     if name == SOCIAL:
-        from lumen.modules.social import FILE as POSTS
-        from lumen.modules.social import Social
+        from lumen.modules.social import POSTS_FILE, Social
 
-        return Social(project, bus, tell, folder and folder / POSTS)
+        return Social(project, bus, tell, folder and folder / POSTS_FILE)
     raise UsageError(f"no module `{name}`: there are {', '.join(MODULES)}")

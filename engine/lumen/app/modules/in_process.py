@@ -9,7 +9,7 @@ from lumen.app.node import Node
 from lumen.errors import LumenError
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
-from lumen.modules.module import KEYS, Module
+from lumen.modules.module import DEFAULT_KEYS, Module
 from lumen.ports import Bus, Message
 
 STARVED = 60.0
@@ -26,7 +26,9 @@ class ModuleTroubles:
         self._tell, self._own = tell, own
         self._messages: deque[Message] = deque(maxlen=100)
         row = project.routes.get("trouble")
-        self.close = bus.subscribe(row.key_for(project.robot) if row else KEYS["trouble"], self._messages.append)
+        self.close = bus.subscribe(
+            row.key_for(project.robot) if row else DEFAULT_KEYS["trouble"], self._messages.append
+        )
 
     def tick(self, now: float) -> None:
         while self._messages:

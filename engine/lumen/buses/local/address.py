@@ -1,4 +1,4 @@
-"""Where a door is, and the key to it."""
+"""Where a local bus server listens, and the key that its clients have to know."""
 
 import os
 import secrets
@@ -12,10 +12,13 @@ from typing import Any
 
 from lumen.errors import BusError
 
-LONGEST = 100
-"""Bytes that the path of a socket may have: systems allow 104 to 108."""
-NAME = "door.sock"
-PATIENCE = 5.0
+MAX_SOCKET_PATH_BYTES = 100
+"""How long the path of a socket may be [bytes]: systems allow 104 to 108."""
+SOCKET_NAME = "door.sock"
+TEMPORARY_PREFIX = "lumen-door-"
+"""Of the folder that is made for a socket whose path would be too long."""
+ANSWER_TIMEOUT = 5.0
+"""How long the server may take to answer [s]."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ class LocalAddress:
     def connect(self) -> socket.socket:
         """A connection to whoever listens there; raises OSError where nobody does."""
         wire = socket.socket(socket.AF_UNIX if self.path else socket.AF_INET)
-        wire.settimeout(PATIENCE)
+        wire.settimeout(ANSWER_TIMEOUT)
         try:
             wire.connect(self.path or ("127.0.0.1", self.port))
         except OSError:
@@ -50,7 +53,7 @@ class LocalAddress:
         if self.path:
             with suppress(OSError):
                 os.unlink(self.path)
-            if Path(self.path).parent.name.startswith("lumen-door-"):
+            if Path(self.path).parent.name.startswith(TEMPORARY_PREFIX):
                 with suppress(OSError):
                     os.rmdir(Path(self.path).parent)
 
@@ -61,9 +64,9 @@ def listen(folder: Path) -> tuple[socket.socket, LocalAddress]:
     if not hasattr(socket, "AF_UNIX"):
         listener = socket.create_server(("127.0.0.1", 0))
         return listener, LocalAddress(port=listener.getsockname()[1], key=key)
-    if len(os.fsencode(folder / NAME)) > LONGEST:
-        folder = Path(tempfile.mkdtemp(prefix="lumen-door-"))
-    path = folder / NAME
+    if len(os.fsencode(folder / SOCKET_NAME)) > MAX_SOCKET_PATH_BYTES:
+        folder = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX))
+    path = folder / SOCKET_NAME
     with suppress(FileNotFoundError):
         path.unlink()
     listener = socket.socket(socket.AF_UNIX)

@@ -12,23 +12,34 @@ from itertools import count
 from typing import Any
 
 from lumen.buses.bodies import check_key, encode
-from lumen.buses.local.address import PATIENCE, LocalAddress
-from lumen.buses.local.frames import BadFrameError, frame, framed, nonce, proof, proves, unframed
+from lumen.buses.local.address import ANSWER_TIMEOUT, LocalAddress
+from lumen.buses.local.frames import (
+    CLIENT,
+    RECEIVE_BYTES,
+    SERVER,
+    BadFrameError,
+    frame,
+    framed,
+    nonce,
+    proof,
+    proves,
+    unframed,
+)
 from lumen.buses.local.sendbuffer import SendBuffer
 from lumen.errors import BusError
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler, Refused
 
-CLOSING = 5.0
-WAITING = 20_000
-CHUNK = 1 << 16
-GONE = "the exhibition is gone"
+CLOSE_TIMEOUT = 5.0
+"""How long closing may take [s]."""
+MAX_PENDING_MESSAGES = 20_000
+"""Messages that wait for a handler; then the oldest are dropped."""
 
 _log = logging.getLogger(__name__)
 
 
 class LocalBusClient:
-    """The bus behind a door; raises BusError where nobody opens it.
+    """The bus of a `LocalBusServer`; raises BusError where none listens, or does not know the key.
 
     A thread sends, one receives, one runs the handlers. Where a handler is too slow the oldest messages are dropped.
     When the exhibition ends, `gone` is set and nothing can be published any more.
@@ -36,12 +47,12 @@ class LocalBusClient:
 
     def __init__(self, address: LocalAddress) -> None:
         self.gone = threading.Event()
-        self._wire, self._read = _enter(address)
-        self._leaving, self._closed = SendBuffer(), False
+        self._wire, self._read = _connect(address)
+        self._unsent, self._closed = SendBuffer(), False
         self._handlers: dict[int, MessageHandler] = {}
         self._answers: dict[int, tuple[threading.Event, list[str]]] = {}
         self._numbers, self._marked = count(), threading.Event()
-        self._arrived: deque[tuple[MessageHandler, int, Message]] = deque(maxlen=WAITING)
+        self._arrived: deque[tuple[MessageHandler, int, Message]] = deque(maxlen=MAX_PENDING_MESSAGES)
         self._arriving = threading.Condition()
         self._threads = [
             threading.Thread(target=work, name=f"lumen-local-{name}", daemon=True)
@@ -64,7 +75,7 @@ class LocalBusClient:
         answered, reason = self._answers[number] = (threading.Event(), [])
         self._handlers[number] = handler
         self._put(frame("subscribe", number, pattern))
-        if not answered.wait(PATIENCE) or reason != [""]:
+        if not answered.wait(ANSWER_TIMEOUT) or reason != [""]:
             del self._handlers[number]
             raise BusError(reason[0] if reason else f"the exhibition does not let us read `{pattern}`")
 
@@ -82,7 +93,7 @@ class LocalBusClient:
         for name in (key, reply_to, correlation_id):
             check_key(name)
         if self.gone.is_set():
-            raise BusError(GONE)
+            raise BusError("the exhibition is gone")
         self._put(framed(["publish", key, reply_to, correlation_id, ttl], encode(body)))
 
     def reply(self, message: Message, body: Any) -> None:
@@ -93,13 +104,13 @@ class LocalBusClient:
         """Deliver what was published, to our own subscribers too, within 5 s, and end."""
         if self._closed:
             return
-        deadline = time.monotonic() + CLOSING
+        deadline = time.monotonic() + CLOSE_TIMEOUT
         inside = threading.current_thread() is self._threads[2]
         if not self.gone.is_set() and not inside:
             self._put(frame("mark"))
-            self._marked.wait(CLOSING)
+            self._marked.wait(CLOSE_TIMEOUT)
         self._closed = True
-        self._leaving.emptied(max(0.0, deadline - time.monotonic()))
+        self._unsent.emptied(max(0.0, deadline - time.monotonic()))
         self._end()
         for thread in self._threads:
             if thread is not threading.current_thread():
@@ -117,12 +128,12 @@ class LocalBusClient:
             self._arriving.notify_all()
 
     def _put(self, data: bytes) -> None:
-        self._leaving.put(data)
+        self._unsent.put(data)
 
     def _send(self) -> None:
         try:
             while not self.gone.is_set():
-                for data in self._leaving.take(0.5):
+                for data in self._unsent.take(0.5):
                     self._wire.sendall(data)
         except OSError:
             self._end()
@@ -132,13 +143,13 @@ class LocalBusClient:
             while True:
                 for words in unframed(self._read):
                     self._take(words)
-                data = self._wire.recv(CHUNK)
+                data = self._wire.recv(RECEIVE_BYTES)
                 if not data:
                     break
                 self._read += data
         except (OSError, BadFrameError) as error:
             if not self._closed:
-                _log.debug("the door was closed: %r", error)
+                _log.debug("the exhibition closed the connection: %r", error)
         self._end()
 
     def _take(self, words: list[Any]) -> None:
@@ -175,7 +186,7 @@ class LocalBusClient:
                 _log.exception("a subscriber failed on `%s`", message.key)
 
 
-def _enter(address: LocalAddress) -> tuple[socket.socket, bytearray]:
+def _connect(address: LocalAddress) -> tuple[socket.socket, bytearray]:
     """A connection on which both sides have proved that they know the key, and what else has come on it."""
     buffer = bytearray()
     try:
@@ -183,14 +194,14 @@ def _enter(address: LocalAddress) -> tuple[socket.socket, bytearray]:
     except OSError as error:
         raise BusError(f"nobody opens: {error.strerror or error}") from None
     try:
-        asked = nonce()
+        question = nonce()
         match _next(wire, buffer):
-            case ["prove", str(question)]:
-                wire.sendall(frame("proof", proof(address.key, "guest", question), asked))
+            case ["prove", str(theirs)]:
+                wire.sendall(frame("proof", proof(address.key, CLIENT, theirs), question))
             case _:
                 raise BadFrameError("it does not ask who we are")
         match _next(wire, buffer):
-            case ["proof", given] if proves(given, address.key, "door", asked):
+            case ["proof", given] if proves(given, address.key, SERVER, question):
                 wire.settimeout(None)
                 return wire, buffer
         raise BadFrameError("it does not know the key")
@@ -203,7 +214,7 @@ def _next(wire: socket.socket, buffer: bytearray) -> list[Any]:
     while True:
         for words in unframed(buffer):
             return words
-        data = wire.recv(CHUNK)
+        data = wire.recv(RECEIVE_BYTES)
         if not data:
             raise BadFrameError("it closed the connection")
         buffer += data

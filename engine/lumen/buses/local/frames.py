@@ -1,4 +1,4 @@
-"""What crosses the door: JSON arrays, each behind its length; and the proof that both sides know the key."""
+"""What goes over the socket: JSON arrays, each behind its length; and the proof that both sides know the key."""
 
 import hashlib
 import hmac
@@ -8,16 +8,20 @@ import struct
 from collections.abc import Iterator
 from typing import Any
 
-from lumen.buses.bodies import MAX_BYTES
+from lumen.buses.bodies import MAX_BODY_BYTES
 
-MOST = MAX_BYTES + 4_096
-"""Bytes of a frame: a body and what is said around it."""
+MAX_FRAME_BYTES = MAX_BODY_BYTES + 4_096
+"""How long a frame may be [bytes]: a body and what stands around it."""
+RECEIVE_BYTES = 1 << 16
+"""What is read from the socket at once."""
+CLIENT, SERVER = "guest", "door"
+"""The two sides, as they stand in a proof; a process of an older Lumen must come to the same."""
 
 _LENGTH = struct.Struct(">I")
 
 
 class BadFrameError(Exception):
-    """Who sent this does not speak our language: the connection ends."""
+    """What came is no frame, or none that fits here: the connection ends."""
 
 
 def frame(*words: Any) -> bytes:
@@ -27,7 +31,7 @@ def frame(*words: Any) -> bytes:
 
 
 def framed(head: list[Any], body: bytes) -> bytes:
-    """A frame that ends with a body that is JSON already."""
+    """A frame of `head` that ends with a body that is JSON already."""
     data = json.dumps(head, ensure_ascii=False)[:-1].encode() + b"," + body + b"]"
     return _LENGTH.pack(len(data)) + data
 
@@ -36,7 +40,7 @@ def unframed(buffer: bytearray) -> Iterator[list[Any]]:
     """The frames that have come as a whole, taken from the front of the buffer; raises BadFrameError."""
     while len(buffer) >= _LENGTH.size:
         (length,) = _LENGTH.unpack_from(buffer)
-        if length > MOST:
+        if length > MAX_FRAME_BYTES:
             raise BadFrameError(f"a frame of {length} bytes")
         if len(buffer) < _LENGTH.size + length:
             return
@@ -56,13 +60,15 @@ def _words(data: bytes) -> list[Any]:
 
 
 def nonce() -> str:
+    """A question that was never asked before."""
     return secrets.token_hex(16)
 
 
-def proof(key: str, side: str, asked: str) -> str:
-    """What only who knows the key can answer to `asked`; each side's answers differ, so that none can be sent back."""
-    return hmac.new(key.encode(), f"{side} {asked}".encode(), hashlib.sha256).hexdigest()
+def proof(key: str, side: str, question: str) -> str:
+    """The answer to a question that takes the key; each side's answers differ, so that none can be sent back."""
+    return hmac.new(key.encode(), f"{side} {question}".encode(), hashlib.sha256).hexdigest()
 
 
-def proves(given: object, key: str, side: str, asked: str) -> bool:
-    return isinstance(given, str) and hmac.compare_digest(given.encode(), proof(key, side, asked).encode())
+def proves(given: object, key: str, side: str, question: str) -> bool:
+    """Whether that is the proof, compared in constant time."""
+    return isinstance(given, str) and hmac.compare_digest(given.encode(), proof(key, side, question).encode())

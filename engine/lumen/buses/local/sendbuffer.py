@@ -1,9 +1,10 @@
-"""What waits to leave by the door: bounded, the oldest gives way."""
+"""What waits to be sent to the server: bounded, the oldest gives way."""
 
 import threading
 from collections import deque
 
-BYTES = 64 * 1024 * 1024
+MAX_UNSENT_BYTES = 64 * 1024 * 1024
+"""Frames that wait [bytes]; then the oldest are dropped."""
 
 
 class SendBuffer:
@@ -18,7 +19,7 @@ class SendBuffer:
         with self._changed:
             self._frames.append(frame)
             self._bytes += len(frame)
-            while self._bytes > BYTES:
+            while self._bytes > MAX_UNSENT_BYTES:
                 self._bytes -= len(self._frames.popleft())
             self._changed.notify_all()
 

@@ -1,7 +1,7 @@
-"""The door of an embedded bus: a thread that lets other processes of this machine publish and subscribe.
+"""The server of an embedded bus: a thread that lets other processes of this machine publish and subscribe.
 
-The exhibition pays an append for a message that somebody outside wants; the thread encodes and sends it. Who reads too
-slowly loses the oldest messages, who speaks no sense is shown out, and who is dead is forgotten.
+The exhibition pays an append for a message that a client wants; the thread encodes and sends it. A client that reads
+too slowly loses the oldest messages, one that sends nonsense is disconnected, and one that is dead is forgotten.
 """
 
 import logging
@@ -17,51 +17,66 @@ from typing import Any
 
 from lumen.buses.bodies import encode
 from lumen.buses.local import address as addresses
-from lumen.buses.local.frames import BadFrameError, frame, framed, nonce, proof, proves, unframed
+from lumen.buses.local.frames import (
+    CLIENT,
+    RECEIVE_BYTES,
+    SERVER,
+    BadFrameError,
+    frame,
+    framed,
+    nonce,
+    proof,
+    proves,
+    unframed,
+)
 from lumen.errors import BusError
 from lumen.ports import Bus, Message
 
-GUESTS = 32
-PATTERNS = 1_000
-WAITING = 20_000
-BYTES = 32 * 1024 * 1024
-KNOCKING = 5.0
-"""How long a guest may take to show that it knows the key [s]."""
-CHUNK = 1 << 16
-MARK = "lumen.door.mark"
+MAX_CLIENTS = 32
+"""Connections at a time; a further one is closed at once."""
+MAX_SUBSCRIPTIONS = 1_000
+"""Of one client."""
+MAX_PENDING_MESSAGES = 20_000
+"""Messages that wait for one client; then the oldest are dropped."""
+MAX_UNSENT_BYTES = 32 * 1024 * 1024
+"""Frames that wait for one client [bytes]; then the oldest are dropped."""
+PROOF_TIMEOUT = 5.0
+"""How long a client may take to show that it knows the key [s]."""
+FLUSH_MARK = "lumen.door.mark"
+"""The key of a message that only says that everything published before it has arrived."""
 
 _log = logging.getLogger(__name__)
 
 
 class ClientConnection:
-    """A process that has come in: what it subscribed to, and what waits for it."""
+    """A process that has connected: what it subscribed to, and what waits for it."""
 
     def __init__(self, wire: socket.socket) -> None:
-        self.wire, self.asked, self.known = wire, nonce(), False
+        self.wire, self.question, self.known = wire, nonce(), False
         self.since = time.monotonic()
         self.undo: dict[int, Callable[[], None]] = {}
-        self.arrived: deque[tuple[int, Message]] = deque(maxlen=WAITING)
-        self.read, self.leaving, self.bytes, self.sent = bytearray(), deque[bytes](), 0, 0
+        self.arrived: deque[tuple[int, Message]] = deque(maxlen=MAX_PENDING_MESSAGES)
+        self.read, self.unsent, self.bytes, self.sent = bytearray(), deque[bytes](), 0, 0
 
     def send(self, data: bytes) -> None:
-        """Put it behind what waits; where that is too much, the oldest that has not begun to leave is dropped."""
-        self.leaving.append(data)
+        """Put it behind what waits; where that is too much, the oldest that is not partly sent is dropped."""
+        self.unsent.append(data)
         self.bytes += len(data)
-        while self.bytes > BYTES and len(self.leaving) > 2:
-            begun = self.leaving.popleft()
-            self.bytes -= len(self.leaving.popleft())
-            self.leaving.appendleft(begun)
+        while self.bytes > MAX_UNSENT_BYTES and len(self.unsent) > 2:
+            begun = self.unsent.popleft()
+            self.bytes -= len(self.unsent.popleft())
+            self.unsent.appendleft(begun)
 
     def flush(self) -> None:
         """Send what the wire takes now. Raises OSError where it is broken."""
-        while self.leaving:
-            first = self.leaving[0]
+        while self.unsent:
+            first = self.unsent[0]
             try:
                 self.sent += self.wire.send(memoryview(first)[self.sent :])
             except BlockingIOError:
                 return
             if self.sent == len(first):
-                self.leaving.popleft()
+                self.unsent.popleft()
                 self.bytes -= len(first)
                 self.sent = 0
 
@@ -82,19 +97,19 @@ class LocalBusServer:
         self._selector = selectors.DefaultSelector()
         self._selector.register(self._listener, selectors.EVENT_READ)
         self._selector.register(self._woken, selectors.EVENT_READ)
-        self._guests: dict[socket.socket, ClientConnection] = {}
+        self._clients: dict[socket.socket, ClientConnection] = {}
         self._marks: dict[str, Callable[[], None]] = {}
-        self._undo = bus.subscribe(MARK, self._marked)
+        self._undo = bus.subscribe(FLUSH_MARK, self._marked)
         self._ending = False
-        self._thread = threading.Thread(target=self._run, name="lumen-door", daemon=True)
+        self._thread = threading.Thread(target=self._run, name="lumen-local-server", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
-        """Show everybody out and end; harmless when repeated."""
+        """Disconnect everybody and end; harmless when repeated."""
         if self._ending:
             return
         self._ending = True
-        self._rouse()
+        self._wake_up()
         self._thread.join()
         self._undo()
         self.address.remove()
@@ -103,131 +118,133 @@ class LocalBusServer:
         while not self._ending:
             for key, _ in self._selector.select(1.0):
                 if key.fileobj is self._listener:
-                    self._admit()
+                    self._accept()
                 elif key.fileobj is self._woken:
                     with suppress(BlockingIOError):
-                        self._woken.recv(CHUNK)
+                        self._woken.recv(RECEIVE_BYTES)
                 else:
-                    self._hear(self._guests[key.fileobj])  # type: ignore[index]
-            for guest in list(self._guests.values()):
-                self._serve(guest)
-        for guest in list(self._guests.values()):
-            self._leave(guest)
+                    self._receive(self._clients[key.fileobj])  # type: ignore[index]
+            for client in list(self._clients.values()):
+                self._serve(client)
+        for client in list(self._clients.values()):
+            self._disconnect(client)
         for end in (self._listener, self._wake, self._woken, self._selector):
             end.close()
 
-    def _admit(self) -> None:
+    def _accept(self) -> None:
         with suppress(OSError):
             wire, _ = self._listener.accept()
-            if len(self._guests) >= GUESTS:
+            if len(self._clients) >= MAX_CLIENTS:
                 wire.close()
                 return
             wire.setblocking(False)
-            guest = self._guests[wire] = ClientConnection(wire)
+            client = self._clients[wire] = ClientConnection(wire)
             self._selector.register(wire, selectors.EVENT_READ)
-            guest.send(frame("prove", guest.asked))
+            client.send(frame("prove", client.question))
 
-    def _hear(self, guest: ClientConnection) -> None:
+    def _receive(self, client: ClientConnection) -> None:
         try:
-            data = guest.wire.recv(CHUNK)
-            guest.read += data
-            for words in unframed(guest.read):
-                self._take(guest, words)
+            data = client.wire.recv(RECEIVE_BYTES)
+            client.read += data
+            for words in unframed(client.read):
+                self._take(client, words)
             if not data:
-                self._leave(guest)
+                self._disconnect(client)
         except BlockingIOError:
             return
         except OSError:
-            self._leave(guest)
+            self._disconnect(client)
         except (BadFrameError, TypeError, ValueError) as error:
-            _log.warning("a process that spoke no sense to the exhibition was shown out: %s", error)
-            self._leave(guest)
+            _log.warning("a process that sent nonsense to the exhibition was disconnected: %s", error)
+            self._disconnect(client)
 
-    def _take(self, guest: ClientConnection, words: list[Any]) -> None:
-        """Do what a guest asks; a ValueError or TypeError says that it makes no sense."""
+    def _take(self, client: ClientConnection, words: list[Any]) -> None:
+        """Do what a client asks for; a ValueError or TypeError says that it makes no sense."""
         match words:
-            case ["proof", given, asked] if not guest.known and proves(given, self.address.key, "guest", guest.asked):
-                guest.known = True
-                guest.send(frame("proof", proof(self.address.key, "door", str(asked))))
-            case _ if not guest.known:
+            case ["proof", given, question] if not client.known and proves(
+                given, self.address.key, CLIENT, client.question
+            ):
+                client.known = True
+                client.send(frame("proof", proof(self.address.key, SERVER, str(question))))
+            case _ if not client.known:
                 raise ValueError("it does not know the key")
             case ["subscribe", int(number), str(pattern)]:
-                self._subscribe(guest, number, pattern)
-            case ["unsubscribe", int(number)] if number in guest.undo:
-                guest.undo.pop(number)()
+                self._subscribe(client, number, pattern)
+            case ["unsubscribe", int(number)] if number in client.undo:
+                client.undo.pop(number)()
             case ["unsubscribe", int()]:
                 pass
             case ["publish", str(key), str(reply_to), str(correlation_id), ttl, body]:
-                self._publish(guest, key, body, reply_to, correlation_id, None if ttl is None else float(ttl))
+                self._publish(client, key, body, reply_to, correlation_id, None if ttl is None else float(ttl))
             case ["mark"]:
                 mark = nonce()
-                self._marks[mark] = lambda: guest.arrived.append((-1, Message(MARK, mark)))
-                self._bus.publish(MARK, mark)
+                self._marks[mark] = lambda: client.arrived.append((-1, Message(FLUSH_MARK, mark)))
+                self._bus.publish(FLUSH_MARK, mark)
             case _:
                 raise ValueError(f"nobody understands `{str(words[0])[:40]}`")
 
-    def _subscribe(self, guest: ClientConnection, number: int, pattern: str) -> None:
-        if number in guest.undo or len(guest.undo) >= PATTERNS:
+    def _subscribe(self, client: ClientConnection, number: int, pattern: str) -> None:
+        if number in client.undo or len(client.undo) >= MAX_SUBSCRIPTIONS:
             raise ValueError("too many subscriptions, or one twice")
 
         def arrived(message: Message) -> None:
-            if message.key == MARK:
+            if message.key == FLUSH_MARK:
                 return
-            guest.arrived.append((number, message))
-            self._rouse()
+            client.arrived.append((number, message))
+            self._wake_up()
 
         try:
-            guest.undo[number] = self._bus.subscribe(pattern, arrived)
-            guest.send(frame("subscribed", number, ""))
+            client.undo[number] = self._bus.subscribe(pattern, arrived)
+            client.send(frame("subscribed", number, ""))
         except BusError as error:
-            guest.send(frame("subscribed", number, str(error)))
+            client.send(frame("subscribed", number, str(error)))
 
     def _publish(
-        self, guest: ClientConnection, key: str, body: Any, reply_to: str, correlation_id: str, ttl: float | None
+        self, client: ClientConnection, key: str, body: Any, reply_to: str, correlation_id: str, ttl: float | None
     ) -> None:
         try:
             self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl)
         except BusError as error:
-            guest.send(frame("refused", key, str(error)))
+            client.send(frame("refused", key, str(error)))
 
     def _marked(self, message: Message) -> None:
         if mark := self._marks.pop(str(message.body), None):
             mark()
-            self._rouse()
+            self._wake_up()
 
-    def _rouse(self) -> None:
-        """Let the thread look around; it is awake where the wire to it is full."""
+    def _wake_up(self) -> None:
+        """Let the thread see what there is to do; it is awake where the socket to it is full."""
         with suppress(OSError):
             self._wake.send(b"!")
 
-    def _serve(self, guest: ClientConnection) -> None:
-        """Send on what has arrived for a guest; forget one that is dead, or that never said who it is."""
+    def _serve(self, client: ClientConnection) -> None:
+        """Send what has arrived for a client; forget one that is dead, or that never proved that it knows the key."""
         try:
-            while guest.arrived:
-                number, message = guest.arrived.popleft()
+            while client.arrived:
+                number, message = client.arrived.popleft()
                 if number < 0:
-                    guest.send(frame("marked"))
+                    client.send(frame("marked"))
                 else:
                     head = ["message", number, message.key, message.reply_to, message.correlation_id]
-                    guest.send(framed(head, encode(message.body)))
-            guest.flush()
+                    client.send(framed(head, encode(message.body)))
+            client.flush()
         except OSError:
-            self._leave(guest)
+            self._disconnect(client)
             return
         except BusError as error:
-            _log.warning("a message could not leave by the door: %s", error)
-        if not guest.known and time.monotonic() - guest.since > KNOCKING:
-            self._leave(guest)
+            _log.warning("a message could not be sent to another process: %s", error)
+        if not client.known and time.monotonic() - client.since > PROOF_TIMEOUT:
+            self._disconnect(client)
             return
-        events = selectors.EVENT_READ | (selectors.EVENT_WRITE if guest.leaving else 0)
-        self._selector.modify(guest.wire, events)
+        events = selectors.EVENT_READ | (selectors.EVENT_WRITE if client.unsent else 0)
+        self._selector.modify(client.wire, events)
 
-    def _leave(self, guest: ClientConnection) -> None:
-        if self._guests.pop(guest.wire, None) is None:
+    def _disconnect(self, client: ClientConnection) -> None:
+        if self._clients.pop(client.wire, None) is None:
             return
-        for undo in guest.undo.values():
+        for undo in client.undo.values():
             undo()
         with suppress(OSError):
-            guest.flush()
-        self._selector.unregister(guest.wire)
-        guest.wire.close()
+            client.flush()
+        self._selector.unregister(client.wire)
+        client.wire.close()

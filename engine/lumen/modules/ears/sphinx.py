@@ -15,18 +15,18 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-INSTALL = "pip install 'lumen-robot[ears]'"
-RATE = 16_000
+INSTALL_EARS = "pip install 'lumen-robot[ears]'"
+SAMPLE_RATE = 16_000
 """What its model was made from [Hz]."""
-REST = RATE // 2
-"""Half a second of silence: it wants some before and after."""
-HISS = 40.0
+REST_SAMPLES = SAMPLE_RATE // 2
+"""Half a second of silence [samples]: the recogniser wants some before and after."""
+NOISE_LEVEL = 40.0
 """The noise that is put under each sound, of 32,768: digital silence, which no microphone gives, misleads it."""
-QUIET = 300
-"""What stays below that is silence."""
-WORDS = 8_000
+SILENCE_LEVEL = 300
+"""A sound that nowhere reaches this level, of 32,768, is silence."""
+COMMON_WORDS = 8_000
 """How many common words it knows beside what is expected."""
-STEP = 1e-4
+LOG_STEP = 1e-4
 """PocketSphinx counts logarithms in such steps."""
 
 
@@ -42,12 +42,12 @@ class Sphinx:
         try:
             import pocketsphinx
         except ImportError as error:
-            raise ModuleError(f"speech needs PocketSphinx, which can't be imported ({error}): {INSTALL}") from None
+            raise ModuleError(f"speech needs PocketSphinx, which can't be imported ({error}): {INSTALL_EARS}") from None
         self._dictionary = Path(pocketsphinx.get_model_path("en-us/cmudict-en-us.dict"))
         try:
-            self._decoder: Any = pocketsphinx.Decoder(samprate=RATE, cmn="batch", loglevel="FATAL")
+            self._decoder: Any = pocketsphinx.Decoder(samprate=SAMPLE_RATE, cmn="batch", loglevel="FATAL")
         except (RuntimeError, ValueError) as error:
-            raise ModuleError(f"PocketSphinx can't load its model ({error}): {INSTALL} again") from None
+            raise ModuleError(f"PocketSphinx can't load its model ({error}): {INSTALL_EARS} again") from None
         self._english = self._decoder.get_lm(self._decoder.current_search())
         self._expected: Sequence[Sequence[str]] = ()
         self._ready: Sequence[Sequence[str]] = ()
@@ -58,7 +58,7 @@ class Sphinx:
 
     def recognise(self, sound: Sound) -> str:
         samples = _samples(sound)
-        if abs(samples).max(initial=0) < QUIET:
+        if abs(samples).max(initial=0) < SILENCE_LEVEL:
             return ""
         self._prepare(self._expected)
         decoder = self._decoder
@@ -87,22 +87,22 @@ class Sphinx:
         """The commonest words with their chances, by the model in the package."""
         lines = self._dictionary.read_text("utf-8").splitlines()
         words = [word for word in (line.partition(" ")[0] for line in lines) if "(" not in word]
-        first = sorted(((self._english.prob([word]), word) for word in words), reverse=True)[:WORDS]
-        return {word: exp(chance * STEP) for chance, word in first}
+        first = sorted(((self._english.prob([word]), word) for word in words), reverse=True)[:COMMON_WORDS]
+        return {word: exp(chance * LOG_STEP) for chance, word in first}
 
 
 def _samples(sound: Sound) -> "NDArray[np.float64]":
     import numpy as np
 
-    return np.frombuffer(resampled(sound, RATE).samples, "<i2").astype(float)
+    return np.frombuffer(resampled(sound, SAMPLE_RATE).samples, "<i2").astype(float)
 
 
 def _hissing(samples: "NDArray[np.float64]") -> bytes:
     """The sound between two rests, with a hiss that is always the same."""
     import numpy as np
 
-    padded = np.pad(samples, REST)
-    noise = np.random.default_rng(0).normal(0.0, HISS, padded.shape)
+    padded = np.pad(samples, REST_SAMPLES)
+    noise = np.random.default_rng(0).normal(0.0, NOISE_LEVEL, padded.shape)
     data: bytes = np.clip(padded + noise, -32_768, 32_767).astype("<i2").tobytes()
     return data
 

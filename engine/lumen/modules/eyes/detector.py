@@ -5,19 +5,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import ModuleError
-from lumen.modules.eyes.opencv import INSTALL, opencv
+from lumen.modules.eyes.opencv import INSTALL_EYES, opencv
 
 if TYPE_CHECKING:
     from lumen.modules.eyes.pictures import Grey
 
-CASCADE = "haarcascade_frontalface_alt.xml"
+FACE_CASCADE = "haarcascade_frontalface_alt.xml"
 """The stump-based Haar cascade of R. Lienhart: of those in the package it puts its box tightest around the face."""
-WIDTH = 320
+SEARCH_WIDTH = 320
 """Pictures are looked at in this width [px]: a face at 2 m is 22 px wide in it, and a look takes 50 ms."""
-SCALE, NEIGHBOURS, LEAST = 1.05, 3, 20
-RIM = 30
+SCALE_STEP, MIN_NEIGHBOURS, MIN_FACE_SIZE = 1.05, 3, 20
+"""By what factor the cascade grows, how many overlapping hits are a face, and how small one may be [px]."""
+RIM_WIDTH = 30
 """Pictures are continued so far over their rim [px]: a face whose forehead is cut off is still a face."""
-CERTAIN = 0.4
+MIN_PERSON_WEIGHT = 0.4
+"""How sure (the distance to the separating plane) a hit of a person has to be."""
 
 
 class Box(NamedTuple):
@@ -42,25 +44,25 @@ class PersonDetector:
 
     def __init__(self, cascade: Path | None = None) -> None:
         cv2 = self._cv2 = opencv()
-        file = cascade or Path(cv2.data.haarcascades) / CASCADE
+        file = cascade or Path(cv2.data.haarcascades) / FACE_CASCADE
         if not file.is_file():
-            raise ModuleError(f"the face model {file} is missing: {INSTALL}; OpenCV 5 does not carry it any more")
+            raise ModuleError(f"the face model {file} is missing: {INSTALL_EYES}; OpenCV 5 does not carry it any more")
         self._faces = cv2.CascadeClassifier()
         try:
             loaded = self._faces.load(str(file))
         except cv2.error:
             loaded = False
         if not loaded:
-            raise ModuleError(f"the face model {file} can't be loaded: {INSTALL} again")
+            raise ModuleError(f"the face model {file} can't be loaded: {INSTALL_EYES} again")
         self._people = cv2.HOGDescriptor()
         self._people.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
 
     def faces(self, grey: "Grey") -> list[Box]:
         """The faces, the largest first: whoever is nearest."""
         small, zoom = self._small(grey)
-        framed = self._cv2.copyMakeBorder(small, RIM, RIM, RIM, RIM, self._cv2.BORDER_REPLICATE)
-        found = self._faces.detectMultiScale(framed, SCALE, NEIGHBOURS, minSize=(LEAST, LEAST))
-        return _sorted([(x - RIM, y - RIM, w, h) for x, y, w, h in found], zoom)
+        framed = self._cv2.copyMakeBorder(small, RIM_WIDTH, RIM_WIDTH, RIM_WIDTH, RIM_WIDTH, self._cv2.BORDER_REPLICATE)
+        found = self._faces.detectMultiScale(framed, SCALE_STEP, MIN_NEIGHBOURS, minSize=(MIN_FACE_SIZE, MIN_FACE_SIZE))
+        return _sorted([(x - RIM_WIDTH, y - RIM_WIDTH, w, h) for x, y, w, h in found], zoom)
 
     def people(self, grey: "Grey", faces: Sequence[Box] = ()) -> list[Box]:
         """Those who can be seen from head to foot, or nearly so (Dalal and Triggs, CVPR 2005), and whose face is seen.
@@ -76,15 +78,17 @@ class PersonDetector:
         if small.shape[0] < 128 or small.shape[1] < 64:
             return []
         found, weights = self._people.detectMultiScale(small, winStride=(8, 8), scale=1.05)
-        return _sorted([box for box, weight in zip(found, weights, strict=True) if weight > CERTAIN], zoom)
+        return _sorted([box for box, weight in zip(found, weights, strict=True) if weight > MIN_PERSON_WEIGHT], zoom)
 
     def _small(self, grey: "Grey") -> tuple[Any, float]:
         """The picture at the width that is looked at, and what to multiply by to get back."""
         height, width = grey.shape
-        if width == WIDTH:
+        if width == SEARCH_WIDTH:
             return grey, 1.0
-        zoom = width / WIDTH
-        return self._cv2.resize(grey, (WIDTH, max(1, round(height / zoom))), interpolation=self._cv2.INTER_AREA), zoom
+        zoom = width / SEARCH_WIDTH
+        return self._cv2.resize(
+            grey, (SEARCH_WIDTH, max(1, round(height / zoom))), interpolation=self._cv2.INTER_AREA
+        ), zoom
 
 
 def _below(face: Box, height: int, width: int) -> Box:

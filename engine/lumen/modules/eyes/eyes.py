@@ -10,26 +10,26 @@ from lumen.errors import ModuleError
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.modules.eyes.detector import Box, PersonDetector
-from lumen.modules.eyes.gallery import DAY, SAMPLES, FaceGallery
+from lumen.modules.eyes.gallery import MAX_PICTURES_PER_NAME, FaceGallery
 from lumen.modules.eyes.pictures import Frame, frame_of
-from lumen.modules.eyes.video import ROBOT, VideoSource
+from lumen.modules.eyes.video import ROBOT_CAMERA, VideoSource
 from lumen.modules.eyes.window import Window
-from lumen.modules.module import Module
+from lumen.modules.module import DAY, KEEP_DAYS, Module
 from lumen.ports import Bus, Message, MessageHandler
 
-FILE = "faces.npz"
-EVERY = 0.1
+FACES_FILE = "faces.npz"
+LOOK_INTERVAL = 0.1
 """How often it looks [s]."""
-PEOPLE = 1.0
+PEOPLE_INTERVAL = 1.0
 """How often it looks for people [s], which takes longer."""
-AGAIN = 2.0
-"""How often it says whose face it is, while that stays the same [s]."""
-GONE = 1.0
+NAME_INTERVAL = 2.0
+"""How often it publishes whose face it is, while that stays the same [s]."""
+NEW_VISITOR_GAP = 1.0
 """After how long without a face the next one is a new visitor's [s]."""
-KEEP = 30.0
 UNKNOWN, UNRECOGNISED, FAILED = "unknown", "face unrecognized", "error cvException"
 """What the modules of 2015 said where a face has no name, where there is none to name, and where OpenCV failed."""
-LONGEST = 60
+MAX_NAME_CHARACTERS = 60
+"""How long a name may be under which a face is learnt."""
 
 
 class Eyes(Module):
@@ -51,10 +51,13 @@ class Eyes(Module):
     ) -> None:
         super().__init__(project, bus, tell)
         options = self.settings.options
-        self._clock, self._finder, self._known = clock, PersonDetector(), FaceGallery(file, clock)
-        camera = options.get("camera", ROBOT)
-        self._source = None if camera == ROBOT else VideoSource(camera, Path(project.root))
-        self._every, self._keep = float(options.get("every", EVERY)), float(options.get("keep", KEEP)) * DAY
+        self._clock, self._detector, self._gallery = clock, PersonDetector(), FaceGallery(file, clock)
+        camera = options.get("camera", ROBOT_CAMERA)
+        self._source = None if camera == ROBOT_CAMERA else VideoSource(camera, Path(project.root))
+        self._every, self._keep = (
+            float(options.get("every", LOOK_INTERVAL)),
+            float(options.get("keep", KEEP_DAYS)) * DAY,
+        )
         self._looked = self._sought = self._seen = self._named = float("-inf")
         self._learning, self._left = "", 0
         self._who, self._expired = "", 0.0
@@ -71,7 +74,7 @@ class Eyes(Module):
     def idle(self) -> float | None:
         if self._clock() - self._expired > 3_600.0:
             self._expired = self._clock()
-            self._guarded(lambda: self._known.expire(self._clock() - self._keep))
+            self._guarded(lambda: self._gallery.expire(self._clock() - self._keep))
         if self._source is None:
             return 3_600.0
         self._guarded(self._watch)
@@ -86,12 +89,12 @@ class Eyes(Module):
     def look(self, frame: Frame, now: float) -> None:
         """Publish what there is in a frame that was taken at `now` [s]."""
         try:
-            faces = self._finder.faces(frame.grey)
+            faces = self._detector.faces(frame.grey)
             if faces:
                 self._face(frame, faces[0], now)
-            if now - self._sought >= PEOPLE:
+            if now - self._sought >= PEOPLE_INTERVAL:
                 self._sought = now
-                self._people = self._finder.people(frame.grey, faces)
+                self._people = self._detector.people(frame.grey, faces)
                 for person in self._people[:1]:
                     x, y = self._place(frame, person)
                     self.publish("human", {"x": round(x), "y": round(y), **_when(frame)})
@@ -129,8 +132,8 @@ class Eyes(Module):
         self.publish("face_tracking", {"x": x, "y": y, **_when(frame)})
         if self._left:
             self._learn(frame, face)
-        who = self._known.who(frame.grey, face) or UNKNOWN
-        if who != self._who or now - self._seen > GONE or now - self._named >= AGAIN:
+        who = self._gallery.who(frame.grey, face) or UNKNOWN
+        if who != self._who or now - self._seen > NEW_VISITOR_GAP or now - self._named >= NAME_INTERVAL:
             self._who, self._named = who, now
             self.publish("recognised", {"name": who, **_when(frame)})
         self._seen = now
@@ -156,7 +159,7 @@ class Eyes(Module):
         return min(max(x, 0.0), float(camera.width)), min(max(y, 0.0), float(camera.height))
 
     def _learn(self, frame: Frame, face: Box) -> None:
-        self._known.enrol(self._learning, frame.grey, face)
+        self._gallery.enrol(self._learning, frame.grey, face)
         self._left -= 1
         if not self._left:
             self._tell(f"knows {self._learning} by now")
@@ -164,9 +167,11 @@ class Eyes(Module):
     def _enrol(self, message: Message) -> None:
         """Whose face the next ones are; a bare name, as in 2015."""
         name = message.body.strip() if isinstance(message.body, str) else ""
-        if not name or len(name) > LONGEST or not name.isprintable():
-            raise ModuleError(f"a name of up to {LONGEST} characters is expected on {message.key}, and nothing else")
-        self._learning, self._left = name, SAMPLES
+        if not name or len(name) > MAX_NAME_CHARACTERS or not name.isprintable():
+            raise ModuleError(
+                f"a name of up to {MAX_NAME_CHARACTERS} characters is expected on {message.key}, and nothing else"
+            )
+        self._learning, self._left = name, MAX_PICTURES_PER_NAME
 
     def _forget(self, message: Message) -> None:
         """Who is forgotten is not recognised either."""
@@ -174,7 +179,7 @@ class Eyes(Module):
             case {"name": str(name)} if name.strip():
                 if self._learning.casefold() == name.strip().casefold():
                     self._learning, self._left = "", 0
-                self._known.forget(name.strip())
+                self._gallery.forget(name.strip())
 
     def _guarded(self, work: Callable[[], Any]) -> None:
         try:

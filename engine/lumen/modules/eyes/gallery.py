@@ -13,14 +13,14 @@ from lumen.modules.eyes.opencv import opencv
 if TYPE_CHECKING:
     from lumen.modules.eyes.pictures import Grey
 
-SIZE = 96
+FACE_SIZE = 96
 """Faces are compared at this width and height [px]."""
-SAMPLES = 8
+MAX_PICTURES_PER_NAME = 8
 """How many pictures of a face are kept for a name."""
-ALIKE = 70.0
+MAX_DISTANCE = 70.0
 """How far (chi-square distance of the patterns' histograms) a face may be from a known one to be it."""
-MOST = 500
-DAY = 86_400.0
+MAX_PICTURES = 500
+"""Of all names together; then nobody new is learnt."""
 
 
 class FaceGallery:
@@ -46,10 +46,12 @@ class FaceGallery:
     def enrol(self, name: str, grey: "Grey", face: Box) -> int:
         """Remember this face under a name; how many pictures of it there are now. Raises ModuleError where it can't."""
         mine = [i for i, (other, _, _) in enumerate(self._faces) if other == name]
-        if len(mine) >= SAMPLES:
+        if len(mine) >= MAX_PICTURES_PER_NAME:
             del self._faces[mine[0]]
-        if len(self._faces) >= MOST:
-            raise ModuleError(f"{MOST} pictures of faces are known: forget somebody before `{name}` can be learnt")
+        if len(self._faces) >= MAX_PICTURES:
+            raise ModuleError(
+                f"{MAX_PICTURES} pictures of faces are known: forget somebody before `{name}` can be learnt"
+            )
         self._faces.append((name, self._clock(), self._cut(grey, face)))
         self._save()
         return sum(other == name for other, _, _ in self._faces)
@@ -59,7 +61,7 @@ class FaceGallery:
         if self._model is None:
             return ""
         label, distance = self._model.predict(self._cut(grey, face))
-        return self.names[label] if distance <= ALIKE else ""
+        return self.names[label] if distance <= MAX_DISTANCE else ""
 
     def forget(self, name: str) -> int:
         """Delete what is kept under a name, whatever its capitals; how many pictures that were."""
@@ -81,7 +83,7 @@ class FaceGallery:
         left, top = max(0, round(face.x)), max(0, round(face.y))
         right, bottom = min(width, round(face.x + face.width)), min(height, round(face.y + face.height))
         cut = grey[top : max(bottom, top + 1), left : max(right, left + 1)]
-        return self._cv2.equalizeHist(self._cv2.resize(cut, (SIZE, SIZE), interpolation=self._cv2.INTER_AREA))
+        return self._cv2.equalizeHist(self._cv2.resize(cut, (FACE_SIZE, FACE_SIZE), interpolation=self._cv2.INTER_AREA))
 
     def _train(self) -> None:
         import numpy as np
@@ -103,7 +105,7 @@ class FaceGallery:
         data, draft = io.BytesIO(), self._file.with_suffix(".new")
         names = np.array([name for name, _, _ in self._faces], dtype=np.str_)
         times = np.array([time for _, time, _ in self._faces], dtype=np.float64)
-        faces = np.array([face for _, _, face in self._faces], dtype=np.uint8).reshape(-1, SIZE, SIZE)
+        faces = np.array([face for _, _, face in self._faces], dtype=np.uint8).reshape(-1, FACE_SIZE, FACE_SIZE)
         np.savez_compressed(data, names=names, times=times, faces=faces)
         try:
             self._file.parent.mkdir(parents=True, exist_ok=True)
@@ -120,7 +122,7 @@ def _read(file: Path) -> Iterable[tuple[str, float, Any]]:
     try:
         with np.load(file, allow_pickle=False) as data:
             names, times, faces = data["names"].tolist(), data["times"].tolist(), data["faces"]
-        if faces.shape != (len(names), SIZE, SIZE) or faces.dtype != np.uint8 or len(times) != len(names):
+        if faces.shape != (len(names), FACE_SIZE, FACE_SIZE) or faces.dtype != np.uint8 or len(times) != len(names):
             raise ValueError
     except Exception:  # a damaged file raises whatever zip, numpy and the disk do
         raise ModuleError(f"{file} holds no faces, or is damaged: move it away, and names are learnt anew") from None

@@ -4,7 +4,7 @@ from types import ModuleType
 
 from lumen.errors import ModuleError
 
-INSTALL = "pip install 'lumen-robot[eyes]'"
+INSTALL_EYES = "pip install 'lumen-robot[eyes]'"
 
 
 def opencv() -> ModuleType:
@@ -12,10 +12,12 @@ def opencv() -> ModuleType:
     try:
         import cv2
     except ImportError as error:
-        raise ModuleError(f"the eyes need OpenCV, which can't be imported ({error}): {INSTALL}") from None
+        raise ModuleError(f"the eyes need OpenCV, which can't be imported ({error}): {INSTALL_EYES}") from None
     for part in ("CascadeClassifier", "HOGDescriptor", "face"):
         if not hasattr(cv2, part):
-            raise ModuleError(f"this OpenCV ({cv2.__version__}) has no `{part}`: {INSTALL}, without another OpenCV")
+            raise ModuleError(
+                f"this OpenCV ({cv2.__version__}) has no `{part}`: {INSTALL_EYES}, without another OpenCV"
+            )
     cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what it has to say is said by us, in one line
     cv2.setNumThreads(1)  # the robot's physics and the behaviour want the other cores
     module: ModuleType = cv2

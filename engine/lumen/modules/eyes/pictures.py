@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     Grey = NDArray[np.uint8]
     """Shape (height, width)."""
 
-LEAST, MOST = 32, 4096
-"""Between these sizes [px] a picture is one that somebody can be found in."""
+MIN_PICTURE_SIZE, MAX_PICTURE_SIZE = 32, 4096
+"""How wide and high a picture may be [px]: nobody is found in a smaller one, a larger one takes too long."""
 
 
 class Frame(NamedTuple):
@@ -55,5 +55,6 @@ def _grey(data: bytes) -> "Grey":
 
 def check_size(width: int, height: int) -> None:
     """Raises ModuleError where nobody could be found in a picture of that size [px], or it would take too long."""
-    if not (LEAST <= width <= MOST and LEAST <= height <= MOST):
-        raise ModuleError(f"an image is {width} x {height} px, and has to lie between {LEAST} and {MOST} either way")
+    if not (MIN_PICTURE_SIZE <= width <= MAX_PICTURE_SIZE and MIN_PICTURE_SIZE <= height <= MAX_PICTURE_SIZE):
+        bounds = f"between {MIN_PICTURE_SIZE} and {MAX_PICTURE_SIZE}"
+        raise ModuleError(f"an image is {width} x {height} px, and has to lie {bounds} either way")

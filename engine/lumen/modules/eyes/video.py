@@ -7,8 +7,8 @@ from lumen.errors import ModuleError
 from lumen.modules.eyes.opencv import opencv
 from lumen.modules.eyes.pictures import Frame, check_size
 
-ROBOT = "robot"
-"""What `camera` says where the eyes are the robot's."""
+ROBOT_CAMERA = "robot"
+"""The value of `camera` that stands for the robot's own."""
 
 
 class VideoSource:

@@ -11,12 +11,13 @@ from lumen.modules.eyes.opencv import opencv
 if TYPE_CHECKING:
     from lumen.modules.eyes.pictures import Grey
 
-HOST = "127.0.0.1"
-"""Nobody else is shown who stands there."""
-BOUNDARY = "frame"
-FACE, PERSON, INK = (0, 200, 0), (200, 120, 0), (255, 255, 255)
+WINDOW_HOST = "127.0.0.1"
+"""Only this machine sees who stands there."""
+PART_BOUNDARY = "frame"
+FACE_COLOUR, PERSON_COLOUR, TEXT_COLOUR = (0, 200, 0), (200, 120, 0), (255, 255, 255)
 """Colours, blue first."""
-AGAIN = 1.0
+WAKE_INTERVAL = 1.0
+"""How often a page that has no new picture checks whether the window is closed [s]."""
 
 
 class Window:
@@ -36,10 +37,10 @@ class Window:
                 window.serve(self)
 
             def log_message(self, format: str, *arguments: Any) -> None:
-                """A page that is looked at is no news."""
+                """Nothing: that somebody looks is not worth a line."""
 
         try:
-            self._server = ThreadingHTTPServer((HOST, port), Page)
+            self._server = ThreadingHTTPServer((WINDOW_HOST, port), Page)
         except (OSError, OverflowError) as error:
             raise ModuleError(f"the eyes' window can't be opened on port {port}: {error}") from None
         self.port = self._server.server_address[1]
@@ -51,10 +52,12 @@ class Window:
             return
         cv2 = self._cv2
         picture = cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR)
-        for boxes, colour in ((people, PERSON), (faces, FACE)):
+        for boxes, colour in ((people, PERSON_COLOUR), (faces, FACE_COLOUR)):
             for x, y, width, height in boxes:
                 cv2.rectangle(picture, (round(x), round(y)), (round(x + width), round(y + height)), colour, 2)
-        cv2.putText(picture, words, (6, picture.shape[0] - 8), cv2.FONT_HERSHEY_SIMPLEX, 0.4, INK, 1, cv2.LINE_AA)
+        cv2.putText(
+            picture, words, (6, picture.shape[0] - 8), cv2.FONT_HERSHEY_SIMPLEX, 0.4, TEXT_COLOUR, 1, cv2.LINE_AA
+        )
         data = cv2.imencode(".jpg", picture)[1].tobytes()
         with self._changed:
             self._picture, self._number = data, self._number + 1
@@ -63,7 +66,7 @@ class Window:
     def serve(self, page: BaseHTTPRequestHandler) -> None:
         """Send every new picture until the looker goes."""
         page.send_response(200)
-        page.send_header("Content-Type", f"multipart/x-mixed-replace; boundary={BOUNDARY}")
+        page.send_header("Content-Type", f"multipart/x-mixed-replace; boundary={PART_BOUNDARY}")
         page.send_header("Cache-Control", "no-store")
         page.end_headers()
         with self._changed:
@@ -71,10 +74,10 @@ class Window:
         try:
             while self._open:
                 with self._changed:
-                    if not self._changed.wait_for(lambda: self._number > seen or not self._open, AGAIN):  # noqa: B023
+                    if not self._changed.wait_for(lambda: self._number > seen or not self._open, WAKE_INTERVAL):  # noqa: B023
                         continue
                     seen, data = self._number, self._picture
-                head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\n\r\n"
+                head = f"--{PART_BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\n\r\n"
                 page.wfile.write(head.encode() + data + b"\r\n")
         except OSError:
             pass  # the looker is gone

@@ -1,4 +1,4 @@
-"""Journals what the bus tells of, knows visitors by their names, and answers who asks."""
+"""Writes a journal of what the bus carries, knows visitors by their names, and answers questions about both."""
 
 import time
 from collections import deque
@@ -10,19 +10,19 @@ from typing import Any
 from lumen.errors import ModuleError
 from lumen.language.modules import MEMORY
 from lumen.language.projects import Project
-from lumen.modules.memory.store import DAY, JournalEntry, Store
-from lumen.modules.module import Module
+from lumen.modules.memory.store import JournalEntry, Store
+from lumen.modules.module import DAY, KEEP_DAYS, Module
 from lumen.ports import Bus, Message, MessageHandler
 
-FILE = "memory.db"
-KEEP = 30.0
-"""How many days everything is kept, where `lumen.yaml` does not say."""
-VISITOR = "visitor"
+DATABASE_FILE = "memory.db"
+VISITOR_KEY = "visitor"
 """The key of the behaviour's context that holds the visitor's name, where `lumen.yaml` does not say."""
-PENDING = 10_000
-"""How many entries wait for a database that can't be written; beyond that the oldest are lost."""
-AGAIN = 1.0
-HOUR = 3_600.0
+MAX_PENDING_ENTRIES = 10_000
+"""Entries that wait for a database that can't be written; then the oldest are dropped."""
+RETRY_INTERVAL = 1.0
+"""How often a database that can't be written is tried again [s]."""
+EXPIRY_INTERVAL = 3_600.0
+"""How often what is too old is deleted [s]."""
 SENSES = ("joint", "sonar", "tactile", "battery")
 
 
@@ -45,10 +45,10 @@ class Memory(Module):
     ) -> None:
         super().__init__(project, bus, tell)
         self._store, self._clock = Store(file), clock
-        self._pending: deque[JournalEntry] = deque(maxlen=PENDING)
+        self._pending: deque[JournalEntry] = deque(maxlen=MAX_PENDING_ENTRIES)
         self._visitor, self._expired = "", 0.0
         self._sampled: dict[str, float] = {}
-        self._met: deque[str] = deque(maxlen=PENDING)
+        self._met: deque[str] = deque(maxlen=MAX_PENDING_ENTRIES)
 
     def hears(self) -> Mapping[str, MessageHandler]:
         heard: dict[str, MessageHandler] = {
@@ -68,13 +68,13 @@ class Memory(Module):
         now = self._clock()
         try:
             self._write()
-            if now - self._expired > HOUR:
-                self._store.expire(now - float(self.settings.options.get("keep", KEEP)) * DAY)
+            if now - self._expired > EXPIRY_INTERVAL:
+                self._store.expire(now - float(self.settings.options.get("keep", KEEP_DAYS)) * DAY)
                 self._expired = now
         except ModuleError as error:
             self.tell(str(error))
-            return AGAIN
-        return HOUR
+            return RETRY_INTERVAL
+        return EXPIRY_INTERVAL
 
     def end(self) -> None:
         try:
@@ -108,7 +108,7 @@ class Memory(Module):
             case {"command": {"verb": "say", "text": str(text)}}:
                 self._note("said", {"text": text}, "text")
             case {"context": dict(context)}:
-                self._meet(str(context.get(self.settings.options.get("visitor", VISITOR)) or ""))
+                self._meet(str(context.get(self.settings.options.get("visitor", VISITOR_KEY)) or ""))
                 if entered := message.body.get("entered"):
                     data = {"event": message.body.get("event", "")}
                     self._note("state", {"text": ", ".join(entered)}, "text", data)

@@ -12,11 +12,10 @@ from typing import Any, NamedTuple
 
 from lumen.errors import ModuleError
 
-DAY = 86_400.0
-PATIENCE = 0.5
+LOCK_TIMEOUT = 0.5
 """How long a locked database is waited for [s]."""
-MOST = 1_000
-"""How many rows are handed out at once."""
+MAX_ROWS = 1_000
+"""Rows of one answer."""
 
 _TABLES = """
 CREATE TABLE IF NOT EXISTS journal (
@@ -68,10 +67,10 @@ class Store:
         """Somebody of that name came, once more or for the first time; what is known of them is added to."""
         name = _sound(name)
         known = self.visitor(name)
-        told = _json({**(known["data"] if known else {}), **(data or {})})
+        known_data = _json({**(known["data"] if known else {}), **(data or {})})
         sql = """INSERT INTO visitors VALUES (?, ?, ?, 1, ?)
             ON CONFLICT (name) DO UPDATE SET last = excluded.last, visits = visits + 1, data = excluded.data"""
-        self._do(lambda db: db.execute(sql, (name, now, now, told)))
+        self._do(lambda db: db.execute(sql, (name, now, now, known_data)))
 
     def visitor(self, name: str) -> dict[str, Any] | None:
         """What is known of somebody, None where nothing is."""
@@ -82,13 +81,15 @@ class Store:
     def visitors(self) -> list[dict[str, Any]]:
         """Everybody, who came last first."""
         sql = "SELECT * FROM visitors ORDER BY last DESC, name LIMIT ?"
-        return [_visitor(row) for row in self._do(lambda db: db.execute(sql, (MOST,)).fetchall())]
+        return [_visitor(row) for row in self._do(lambda db: db.execute(sql, (MAX_ROWS,)).fetchall())]
 
     def journal(self, *, since: float = 0.0, visitor: str = "", limit: int = 100) -> list[dict[str, Any]]:
         """The newest entries, the oldest of them first."""
         sql = "SELECT * FROM journal WHERE time >= ? AND (? = '' OR visitor = ?) ORDER BY time DESC, id DESC LIMIT ?"
         found = self._do(
-            lambda db: db.execute(sql, (float(since), _sound(visitor), _sound(visitor), min(limit, MOST))).fetchall()
+            lambda db: db.execute(
+                sql, (float(since), _sound(visitor), _sound(visitor), min(limit, MAX_ROWS))
+            ).fetchall()
         )
         return [{**dict(row), "data": json.loads(row["data"])} for row in reversed(found)]
 
@@ -150,7 +151,7 @@ class Store:
         if self._file:
             self._file.parent.mkdir(parents=True, exist_ok=True)
             os.close(os.open(self._file, os.O_RDWR | os.O_CREAT, 0o600))
-        db = sqlite3.connect(self._file or ":memory:", timeout=PATIENCE)
+        db = sqlite3.connect(self._file or ":memory:", timeout=LOCK_TIMEOUT)
         self._connection = db
         db.row_factory = sqlite3.Row
         db.execute("PRAGMA secure_delete = ON")

@@ -9,10 +9,11 @@ from typing import Any
 from lumen.errors import ModuleError
 from lumen.modules.sound import Sound
 
-INSTALL = "pip install 'lumen-robot[voice]', or install the package espeak-ng"
-PACE = 175
-LONGEST = 1_000
-"""Characters of a text; the rest is not said."""
+INSTALL_VOICE = "pip install 'lumen-robot[voice]', or install the package espeak-ng"
+WORDS_PER_MINUTE = 175
+"""How fast it speaks where nobody says."""
+MAX_TEXT_CHARACTERS = 1_000
+"""How much of a text is spoken; the rest is not."""
 
 _SYNCHRONOUS, _DONT_EXIT, _UTF8, _CHARACTERS, _RATE = 2, 0x8000, 1, 1, 1
 
@@ -26,25 +27,25 @@ class Espeak:
         try:
             self._library = ctypes.CDLL(library)
         except OSError as error:
-            raise ModuleError(f"espeak-ng can't be loaded ({error}): {INSTALL}") from None
+            raise ModuleError(f"espeak-ng can't be loaded ({error}): {INSTALL_VOICE}") from None
         self._lock = threading.Lock()
         self._parts: list[bytes] = []
         self._heard = _Callback(self._hear)
         self.rate = self._library.espeak_Initialize(_SYNCHRONOUS, 0, data and data.encode(), _DONT_EXIT)
         if self.rate <= 0:
-            raise ModuleError(f"espeak-ng can't read its data in {data or 'its usual folder'}: {INSTALL}")
+            raise ModuleError(f"espeak-ng can't read its data in {data or 'its usual folder'}: {INSTALL_VOICE}")
         self._library.espeak_SetSynthCallback(self._heard)
         self._library.espeak_Synth.argtypes = [
             ctypes.c_char_p, ctypes.c_size_t, ctypes.c_uint, ctypes.c_int, ctypes.c_uint, ctypes.c_uint,
             ctypes.c_void_p, ctypes.c_void_p,
         ]  # fmt: skip
 
-    def speak(self, text: str, language: str = "en", pace: int = PACE) -> Sound:
+    def speak(self, text: str, language: str = "en", pace: int = WORDS_PER_MINUTE) -> Sound:
         """The text in that language, at `pace` words a minute.
 
         Raises ModuleError for a language that it has no voice for.
         """
-        said = "".join(sign if sign.isprintable() else " " for sign in text[:LONGEST])
+        said = "".join(sign if sign.isprintable() else " " for sign in text[:MAX_TEXT_CHARACTERS])
         data = said.encode("utf-8", "replace") + b"\0"
         with self._lock:
             if self._library.espeak_SetVoiceByName((language or "en").lower().encode()):
@@ -69,6 +70,6 @@ def espeak() -> Espeak:
     except ImportError:
         found = ctypes.util.find_library("espeak-ng")
         if found is None:
-            raise ModuleError(f"there is no espeak-ng: {INSTALL}") from None
+            raise ModuleError(f"there is no espeak-ng: {INSTALL_VOICE}") from None
         return Espeak(found, None)
     return Espeak(espeakng_loader.get_library_path(), espeakng_loader.get_data_path())

@@ -1,0 +1,92 @@
+"""What carries messages between a bus and its broker: a connection that sends, one that receives, and the handlers."""
+
+import time
+import uuid
+from typing import Any
+
+from lumen.buses.bodies import JSON, KEY_PREFIXES, MAX_BODY_BYTES, TEXT, encode
+from lumen.buses.broker import BrokerAddress
+from lumen.buses.connection import OutageLog
+from lumen.buses.consumer import Consumer
+from lumen.buses.dispatcher import FLUSH_MARK, Dispatcher
+from lumen.buses.outbox import OutgoingMessage
+from lumen.buses.publisher import Publisher
+from lumen.buses.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY
+from lumen.buses.subscriptions import Delivery
+
+REPLY_LIFETIME = 30.0
+"""How long an answer waits for a broker that is away [s]."""
+
+
+class Transport:
+    """A connection that sends, one that receives, and a thread for the handlers, which `name` tells from others."""
+
+    def __init__(self, address: BrokerAddress, outage: OutageLog, name: str = "") -> None:
+        self.publisher = Publisher(address, f"{name}out", outage)
+        self.consumer = Consumer(address, f"{name}in", outage, lambda delivery: self.dispatcher.receive(delivery))
+        self.dispatcher = Dispatcher(self.consumer.handled, self._refused)
+
+    def open(self) -> None:
+        """Raises BusError, saying what to do, where the broker can't be used."""
+        self.consumer.open()
+        self.publisher.open()
+
+    def begin(self) -> None:
+        """Open as soon as may be; waits for nothing."""
+        self.consumer.begin_alone()
+        self.publisher.begin_alone()
+
+    def answer(self, reply_to: str, correlation_id: str, body: Any) -> None:
+        """Send to a key of ours, or to a queue: there a text as it is, as modules of 2015 expect it; else JSON."""
+        ours = reply_to.split(".")[0] in KEY_PREFIXES and not reply_to.startswith("amq.")
+        text = isinstance(body, str) and not ours
+        deadline = time.monotonic() + REPLY_LIFETIME
+        self.publisher.outbox.put(
+            OutgoingMessage(
+                EXCHANGE if ours else "",
+                reply_to,
+                body.encode(errors="replace") if text else encode(body),
+                TEXT if text else JSON,
+                correlation_id=correlation_id,
+                deadline=deadline,
+            )
+        )
+
+    def close(self, deadline: float) -> None:
+        """Send what waits, and receive what of it comes back to us, until then [s, monotonic]."""
+        if not self.dispatcher.inside:
+            self._flush(deadline)
+
+    def end(self, deadline: float) -> bool:
+        """End all threads; whether they have ended until then [s, monotonic]."""
+        parts = (self.publisher, self.consumer, self.dispatcher)
+        ended = [part.end(deadline - time.monotonic()) for part in parts]
+        return all(ended)
+
+    def _refused(self, delivery: Delivery, reason: str) -> None:
+        """Put aside what nobody could use, and answer the sender who wants an answer."""
+        properties = delivery.properties
+        if self.publisher.has_side_queues:
+            headers = {"reason": reason[:1000], "key": delivery.key}
+            body, kind = delivery.body[:MAX_BODY_BYTES], properties.content_type or JSON
+            self.publisher.outbox.put(
+                OutgoingMessage(DEAD_LETTERS, delivery.key, body, kind, headers=headers, keep=MAX_LENGTH_TELEMETRY)
+            )
+        if properties.reply_to:
+            self.answer(properties.reply_to, properties.correlation_id or "", f"message refused: {reason}")
+
+    def _flush(self, deadline: float) -> None:
+        """Send a mark after everything else into each of our queues: when it has come, everything else has.
+
+        Queues that others may read too have none: what is in them is not lost.
+        """
+        outbox = self.publisher.outbox
+        if self.publisher.connection is None and not outbox:
+            return
+        queues = {s.queue for s in self.consumer.subscriptions() if s.queue and not s.must_arrive}
+        marks = {f"{uuid.uuid4()} {queue}": queue for queue in queues}
+        marked = self.dispatcher.expect(set(marks))
+        for mark, queue in marks.items():
+            outbox.put(OutgoingMessage("", queue, mark.encode(), TEXT, type=FLUSH_MARK))
+        marked.wait(max(0.0, deadline - time.monotonic()))
+        outbox.emptied(max(0.0, deadline - time.monotonic()))
