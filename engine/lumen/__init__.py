@@ -7,7 +7,30 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lumen.errors import BusError, LumenError, ProjectError, RobotError, SnapshotError, UsageError
+    from lumen.errors import (
+        BadCommandError,
+        BadMessageError,
+        BusAddressError,
+        BusClosedError,
+        BusError,
+        BusFullError,
+        BusRefusedError,
+        BusUnreachableError,
+        ExpressionError,
+        LumenError,
+        ModuleError,
+        ProjectError,
+        Refused,
+        RobotError,
+        RobotFailedError,
+        RobotLostError,
+        RobotModelError,
+        RobotRefusedError,
+        RobotUnreachableError,
+        SenseError,
+        SnapshotError,
+        UsageError,
+    )
     from lumen.language.diagnostics import Diagnostic
     from lumen.language.events import Event
     from lumen.language.projects import Project
@@ -16,13 +39,29 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "BadCommandError",
+    "BadMessageError",
+    "BusAddressError",
+    "BusClosedError",
     "BusError",
+    "BusFullError",
+    "BusRefusedError",
+    "BusUnreachableError",
     "Diagnostic",
     "Event",
+    "ExpressionError",
     "LumenError",
+    "ModuleError",
     "Project",
     "ProjectError",
+    "Refused",
     "RobotError",
+    "RobotFailedError",
+    "RobotLostError",
+    "RobotModelError",
+    "RobotRefusedError",
+    "RobotUnreachableError",
+    "SenseError",
     "SnapshotError",
     "UsageError",
     "__version__",
@@ -31,7 +70,30 @@ __all__ = [
 ]
 
 _HOMES = {
-    "lumen.errors": ("BusError", "LumenError", "ProjectError", "RobotError", "SnapshotError", "UsageError"),
+    "lumen.errors": (
+        "BadCommandError",
+        "BadMessageError",
+        "BusAddressError",
+        "BusClosedError",
+        "BusError",
+        "BusFullError",
+        "BusRefusedError",
+        "BusUnreachableError",
+        "ExpressionError",
+        "LumenError",
+        "ModuleError",
+        "ProjectError",
+        "Refused",
+        "RobotError",
+        "RobotFailedError",
+        "RobotLostError",
+        "RobotModelError",
+        "RobotRefusedError",
+        "RobotUnreachableError",
+        "SenseError",
+        "SnapshotError",
+        "UsageError",
+    ),
     "lumen.language.diagnostics": ("Diagnostic",),
     "lumen.language.events": ("Event",),
     "lumen.language.projects": ("Project",),

@@ -2,9 +2,9 @@
 
 from lumen.buses.memory import MemoryBus
 from lumen.buses.validated import OnRefused, log_refusal, validated
-from lumen.errors import BusError
+from lumen.errors import BusAddressError, BusError, Refused
 from lumen.language.projects import Project
-from lumen.ports import Bus, Message, Refused
+from lumen.ports import Bus, Message
 
 __all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
 
@@ -31,4 +31,4 @@ def _open(url: str) -> Bus:
         return AmqpBus(url)
     known = "memory://, memory://NAME, amqp://HOST or amqps://HOST"
     what = f"`{scheme}://` is no bus" if separator else "the address of a bus begins with `memory://` or `amqp://`"
-    raise BusError(f"{what}: write {known}")
+    raise BusAddressError(f"{what}: write {known}")

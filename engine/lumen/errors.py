@@ -5,8 +5,22 @@ LumenError
  ├── UsageError        a flag, a name or a path given to Lumen is wrong
  ├── ExpressionError   an expression can't be read, or has no value here
  ├── SnapshotError     a snapshot belongs to another machine
- ├── RobotError        the robot can't do what was asked, or is gone
- ├── BusError          the broker is gone, or refuses
+ ├── RobotError        the robot can't be used, or can't do what it should
+ │    ├── RobotUnreachableError   there is none at the address
+ │    ├── RobotLostError          it was there, and is gone or silent
+ │    ├── RobotModelError         it, or the model it is simulated from, lacks what is needed
+ │    ├── BadCommandError         no robot of this body could do that, now or later
+ │    ├── RobotRefusedError       it does not begin that as it stands now
+ │    ├── RobotFailedError        it began, and did not succeed
+ │    └── SenseError              a sensor gives nothing that can be used
+ ├── BusError          the bus can't be used, or does not take a message
+ │    ├── BusAddressError         the address, or a file that it names, is none
+ │    ├── BusUnreachableError     no broker, or no exhibition, answers there
+ │    ├── BusRefusedError         it answers, and does not let this user or process do that
+ │    ├── BusClosedError          it was closed, or whose bus it was has ended
+ │    ├── BusFullError            too much waits to be sent already
+ │    └── BadMessageError         the body or the key can't be sent
+ ├── Refused           a subscriber's word for a message that it can't use
  └── ModuleError       a module (memory, eyes, ears, voice, social) can't do its work
 
 A fault in somebody's YAML is a `Diagnostic`, collected and returned; a fault in the world is one of these, and
@@ -54,11 +68,82 @@ class SnapshotError(LumenError):
 
 
 class RobotError(LumenError):
-    """The robot refused or failed a command, or there is no robot."""
+    """The robot can't be used, or can't do what it should."""
+
+
+class RobotUnreachableError(RobotError):
+    """No robot at its address, or the package `qi` that reaches one is missing: check the address, then try again."""
+
+
+class RobotLostError(RobotError):
+    """The connection to the robot broke, or it does not answer any more; the robot reconnects by itself."""
+
+
+class RobotModelError(RobotError):
+    """The robot, or what it is simulated from (`models/`, MuJoCo), lacks what is needed: mend that, then start anew."""
+
+
+class BadCommandError(RobotError):
+    """No robot of this body can do that: no such method, joint or posture, or a number out of range.
+
+    Sending it again changes nothing: change the command.
+    """
+
+
+class RobotRefusedError(RobotError):
+    """The robot does not begin that as it stands: fallen, motors off, in another posture, at the edge of the stage.
+
+    Nothing has moved. Bring it into the state that the message names, then send the command again.
+    """
+
+
+class RobotFailedError(RobotError):
+    """The robot began, and something kept it from succeeding: it may stand in between."""
+
+
+class SenseError(RobotError):
+    """A sensor is missing, or gives nothing that can be used; the other senses go on."""
 
 
 class BusError(LumenError):
-    """The bus can't be reached, was closed, or refused a message."""
+    """The bus can't be used, or does not take a message."""
+
+
+class BusAddressError(BusError):
+    """The address of the bus, or a file of credentials or certificates that it names, is none: mend it."""
+
+
+class BusUnreachableError(BusError):
+    """Nobody answers at the address, or no broker that Lumen can use: start it there, or try again later."""
+
+
+class BusRefusedError(BusError):
+    """What answers does not let us: wrong name, password or virtual host, a missing right, or another has the place.
+
+    Trying again changes nothing.
+    """
+
+
+class BusClosedError(BusError):
+    """The bus was closed, here or by the exhibition that it belonged to: connect anew.
+
+    A broker that goes away raises nothing: an open bus comes back with it.
+    """
+
+
+class BusFullError(BusError):
+    """So many messages that must arrive wait for the broker that no more are taken: send again later."""
+
+
+class BadMessageError(BusError):
+    """The body is no JSON data, too large, or against the schema of its route, or the key is too long: mend it."""
+
+
+class Refused(LumenError):  # noqa: N818  a word to the bus, not an error of whoever hands the message over
+    """Raised by a handler for a message that it can't use; the text says why.
+
+    The bus answers a sender who wants an answer, and a broker puts the message aside, with the reason.
+    """
 
 
 class ModuleError(LumenError):

@@ -222,13 +222,6 @@ class Message(NamedTuple):
 MessageHandler = Callable[[Message], None]
 
 
-class Refused(Exception):  # noqa: N818  not an error of whoever hands the message over
-    """Raised by a handler for a message that it can't use; the text says why.
-
-    The sender gets an answer where it wants one, and a broker puts the message aside, with the reason, to be looked at.
-    """
-
-
 class Bus(Protocol):
     """Messages by topic: `*` in a pattern stands for one word of the key, `#` for any number."""
 

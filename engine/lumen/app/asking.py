@@ -5,7 +5,7 @@ import uuid
 from collections.abc import Iterator
 from typing import Any
 
-from lumen.errors import BusError
+from lumen.errors import BusUnreachableError
 from lumen.ports import Bus
 
 PATIENCE = 10.0
@@ -27,6 +27,6 @@ def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = PATIENCE
             yield answers.get(timeout=timeout)
             timeout = None
     except queue.Empty:
-        raise BusError(f"nobody answers on `{key}`: is an exhibition running on that bus?") from None
+        raise BusUnreachableError(f"nobody answers on `{key}`: is an exhibition running on that bus?") from None
     finally:
         undo()

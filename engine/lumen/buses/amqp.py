@@ -19,7 +19,7 @@ from lumen.buses.connection import OutageLog
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of
 from lumen.buses.transport import Transport
-from lumen.errors import BusError
+from lumen.errors import BusClosedError, BusError
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Message, MessageHandler
 
@@ -74,7 +74,7 @@ class AmqpBus:
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
-            raise BusError("the bus is closed: nobody can subscribe any more")
+            raise BusClosedError("the bus is closed: nobody can subscribe any more")
         check_key(pattern)
         route = self._routes.get(pattern)
         consumer = self._transport_of(route).consumer
@@ -85,7 +85,7 @@ class AmqpBus:
         self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
     ) -> None:
         if self._closed:
-            raise BusError("the bus is closed: nothing can be published any more")
+            raise BusClosedError("the bus is closed: nothing can be published any more")
         for name in (key, reply_to, correlation_id):
             check_key(name)
         route, data = self._routes.get(key), encode(body)
@@ -104,7 +104,7 @@ class AmqpBus:
         if not message.reply_to:
             return
         if self._closed:
-            raise BusError("the bus is closed: nothing can be published any more")
+            raise BusClosedError("the bus is closed: nothing can be published any more")
         check_key(message.reply_to)
         self._transport.answer(message.reply_to, message.correlation_id, body)
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import orjson
 
-from lumen.errors import BusError
+from lumen.errors import BadMessageError
 
 MAX_BODY_DEPTH = 64
 """How many levels deep lists and objects in a body may be nested."""
@@ -45,7 +45,7 @@ def copied(body: Any, depth: int = MAX_BODY_DEPTH) -> Any:
     if kind is float or kind is int:
         return _number(body)
     if not depth:
-        raise BusError(f"a body may be nested {MAX_BODY_DEPTH} levels deep")
+        raise BadMessageError(f"a body may be nested {MAX_BODY_DEPTH} levels deep")
     if kind is list or kind is tuple:
         return list(body) if _plain(body) else [copied(value, depth - 1) for value in body]
     return _derived(body, depth)
@@ -79,16 +79,16 @@ def _number(number: float) -> float:
     if isinstance(number, int):
         if MIN_INTEGER <= number <= MAX_INTEGER:
             return number
-        raise BusError("an integer in a body lies between -2**63 and 2**63")
+        raise BadMessageError("an integer in a body lies between -2**63 and 2**63")
     if isfinite(number):
         return number
-    raise BusError(f"{number} is not a number that JSON has")
+    raise BadMessageError(f"{number} is not a number that JSON has")
 
 
 def _key(key: object) -> str:
     if isinstance(key, str):
         return str(key)
-    raise BusError(f"the keys of a body are texts, not {type(key).__name__} ({key!r})")
+    raise BadMessageError(f"the keys of a body are texts, not {type(key).__name__} ({key!r})")
 
 
 def _derived(body: object, depth: int) -> Any:
@@ -103,13 +103,13 @@ def _derived(body: object, depth: int) -> Any:
         return copied(dict(body), depth)
     if isinstance(body, list | tuple):
         return copied(list(body), depth)
-    raise BusError(f"a body is JSON data, and {type(body).__name__} is not")
+    raise BadMessageError(f"a body is JSON data, and {type(body).__name__} is not")
 
 
 def check_key(key: str) -> None:
     """Raise BusError where AMQP could not carry this key: a text of 255 bytes at most."""
     if not isinstance(key, str) or len(key.encode(errors="replace")) > MAX_KEY_BYTES:
-        raise BusError(f"a key is a text of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
+        raise BadMessageError(f"a key is a text of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
 
 
 def encode(body: Any) -> bytes:
@@ -117,9 +117,9 @@ def encode(body: Any) -> bytes:
     try:
         data = orjson.dumps(copied(body))
     except orjson.JSONEncodeError as error:
-        raise BusError("a text in the body is not valid Unicode: it holds half a surrogate pair") from error
+        raise BadMessageError("a text in the body is not valid Unicode: it holds half a surrogate pair") from error
     if len(data) > MAX_BODY_BYTES:
-        raise BusError(f"a body may have {MAX_BODY_BYTES:,} bytes, and this one has {len(data):,}")
+        raise BadMessageError(f"a body may have {MAX_BODY_BYTES:,} bytes, and this one has {len(data):,}")
     return data
 
 
@@ -136,14 +136,14 @@ def decode(data: bytes, content_type: str = JSON) -> Any:
         raise ValueError(f"it is not JSON ({error})") from error
     except RecursionError as error:
         raise ValueError(f"it is nested deeper than {MAX_BODY_DEPTH} levels") from error
-    except BusError as error:
+    except BadMessageError as error:
         raise ValueError(str(error)) from error
     except ValueError as error:  # Python reads 4,300 digits
         raise ValueError("it holds an integer of thousands of digits") from error
 
 
 def _no_constant(name: str) -> Any:
-    raise BusError(f"it is not JSON (it holds {name})")
+    raise BadMessageError(f"it is not JSON (it holds {name})")
 
 
 _decoder = json.JSONDecoder(parse_constant=_no_constant)

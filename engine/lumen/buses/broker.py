@@ -13,7 +13,7 @@ from urllib.parse import SplitResult, parse_qsl, urlencode, urlsplit
 import pika
 from pika import exceptions
 
-from lumen.errors import BusError
+from lumen.errors import BusAddressError, BusError, BusRefusedError, BusUnreachableError
 
 HEARTBEAT_INTERVAL = 10
 """How often both sides show that they live [s], where the address does not say."""
@@ -40,7 +40,7 @@ class BrokerAddress:
             authority, url = _authority(parts)
             self.parameters = pika.URLParameters(url)
         except (ValueError, TypeError, KeyError) as error:
-            raise BusError(
+            raise BusAddressError(
                 f"`{_public(url)}` is no address of a broker ({error}): write amqp://USER:PASSWORD@HOST:PORT/"
             ) from error
         options = self.parameters
@@ -68,18 +68,29 @@ class BrokerAddress:
         numbers = tuple(int(n) for n in re.findall(r"\d+", text)[:2])
         if "RabbitMQ" in str(server.get("product")) and numbers < MIN_RABBITMQ_VERSION:
             least = ".".join(map(str, MIN_RABBITMQ_VERSION))
-            raise BusError(f"the broker at {self} is RabbitMQ {text}, and too old: install {least} or newer")
+            raise BusUnreachableError(f"the broker at {self} is RabbitMQ {text}, and too old: install {least} or newer")
 
     def explain(self, error: BaseException) -> BusError:
         """What to do about a connection that could not be opened."""
         if isinstance(error, BusError):
             return error
-        causes = list(_causes(error))
-        return BusError(next(filter(None, map(self._reason, causes)), f"the broker at {self} can't be used: {error!r}"))
+        found = filter(None, map(self._explained, _causes(error)))
+        return next(found, None) or BusUnreachableError(f"the broker at {self} can't be used: {error!r}")
 
-    def _reason(self, cause: BaseException) -> str:
+    def _explained(self, cause: BaseException) -> BusError | None:
         code = cause.reply_code if isinstance(cause, exceptions.ConnectionClosed) else 0
-        text = str(cause)
+        if isinstance(cause, exceptions.ProbableAuthenticationError | exceptions.AuthenticationError):
+            return BusRefusedError(
+                f"the broker at {self} refuses user `{self.user}`: check the name and the password in the address"
+            )
+        if isinstance(cause, exceptions.ProbableAccessDeniedError) or code == 530 or "vhost" in str(cause):
+            return BusRefusedError(
+                f"user `{self.user}` may not use the virtual host `{self.vhost}` at {self}, or there is none"
+            )
+        reason = self._unreachable(cause)
+        return BusUnreachableError(reason) if reason else None
+
+    def _unreachable(self, cause: BaseException) -> str:
         if isinstance(cause, ConnectionRefusedError):
             return f"no broker listens at {self}: start RabbitMQ there, or use --bus memory://"
         if isinstance(cause, socket.gaierror):
@@ -91,10 +102,6 @@ class BrokerAddress:
             return f"the certificate of the broker at {self} can't be trusted: {what}"
         if isinstance(cause, ssl.SSLError):
             return f"the broker at {self} does not speak TLS: use amqp://, or the port for TLS (5671)"
-        if isinstance(cause, exceptions.ProbableAuthenticationError | exceptions.AuthenticationError):
-            return f"the broker at {self} refuses user `{self.user}`: check the name and the password in the address"
-        if isinstance(cause, exceptions.ProbableAccessDeniedError) or code == 530 or "vhost" in text:
-            return f"user `{self.user}` may not use the virtual host `{self.vhost}` at {self}, or there is none"
         if isinstance(cause, exceptions.IncompatibleProtocolError | exceptions.StreamLostError):
             return f"what listens at {self} is no AMQP 0-9-1 broker, or closed the connection at once"
         if isinstance(cause, TimeoutError) or "Timeout" in type(cause).__name__:
@@ -115,16 +122,16 @@ def _trusting(authority: str) -> ssl.SSLContext:
         return ssl.create_default_context(cafile=authority or None)
     except (OSError, ssl.SSLError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise BusError(f"`{authority}` holds no certificates of who signs the broker's: {reason}") from None
+        raise BusAddressError(f"`{authority}` holds no certificates of who signs the broker's: {reason}") from None
 
 
 def _credentials(file: str) -> Any:
     try:
         name, separator, password = Path(file).read_text("utf-8").strip().partition(":")
     except (OSError, UnicodeDecodeError) as error:
-        raise BusError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names can't be read: {error}") from None
+        raise BusAddressError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names can't be read: {error}") from None
     if not separator or not name or "\n" in password:
-        raise BusError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names holds no line `NAME:PASSWORD`")
+        raise BusAddressError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names holds no line `NAME:PASSWORD`")
     if os.name == "posix" and Path(file).stat().st_mode & 0o077:
         logging.getLogger(__name__).warning("others can read the password in `%s`: type `chmod 600 %s`", file, file)
     return pika.PlainCredentials(name, password)

@@ -14,7 +14,7 @@ from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.declarer import QueueDeclarer
 from lumen.buses.queues import UNROUTED, queue_of
 from lumen.buses.subscriptions import Delivery, Subscription, Subscriptions
-from lumen.errors import BusError
+from lumen.errors import BusRefusedError
 from lumen.language.routes import Route
 from lumen.ports import MessageHandler
 
@@ -127,7 +127,7 @@ class Consumer(BrokerConnection):
             )
         if subscription.refusal:
             what = f"refuses to let us read `{subscription.pattern}`"
-            raise BusError(f"the broker at {self.address} {what}: {subscription.refusal}")
+            raise BusRefusedError(f"the broker at {self.address} {what}: {subscription.refusal}")
 
     def handled(self, delivery: Delivery) -> None:
         """This and all before it are done: the broker may send on."""

@@ -11,7 +11,8 @@ from lumen.buses.bodies import JSON, decode
 from lumen.buses.queues import UNROUTED
 from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery, Subscription
-from lumen.ports import Message, Refused
+from lumen.errors import Refused
+from lumen.ports import Message
 
 FLUSH_MARK = "lumen.mark"
 """The type of a message that only says that everything published before it has arrived."""

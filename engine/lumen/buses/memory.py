@@ -16,10 +16,10 @@ from typing import Any
 from weakref import WeakValueDictionary
 
 from lumen.buses.bodies import check_key, copied
-from lumen.errors import BusError
+from lumen.errors import BusClosedError, Refused
 from lumen.interpreters.routing import matches
 from lumen.language.routes import Route
-from lumen.ports import Message, MessageHandler, Refused
+from lumen.ports import Message, MessageHandler
 
 CLOSE_TIMEOUT = 5.0
 """How long closing waits for a subscriber that still works [s]."""
@@ -152,7 +152,7 @@ class MemoryBus:
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
-            raise BusError("the bus is closed: nobody can subscribe any more")
+            raise BusClosedError("the bus is closed: nobody can subscribe any more")
         subscription = _Subscription(pattern, handler)
         self._mine[subscription] = None
         self._hub.change(add=subscription)
@@ -168,7 +168,7 @@ class MemoryBus:
         self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
     ) -> None:
         if self._closed:
-            raise BusError("the bus is closed: nothing can be published any more")
+            raise BusClosedError("the bus is closed: nothing can be published any more")
         own = copied(body)
         hub = self._hub
         listeners = hub.listeners.get(key)

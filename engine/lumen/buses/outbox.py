@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from lumen.errors import BusError
+from lumen.errors import BusFullError
 
 MAX_PENDING_MESSAGES = 50_000
 """Messages that may be lost; then the oldest give way."""
@@ -144,7 +144,9 @@ class Outbox:
         now = time.monotonic()
         late = [p for p in self._must if p.deadline is not None and p.deadline <= now]
         if not late:
-            raise BusError(f"the broker takes nothing, and {len(self._must):,} messages that must arrive wait already")
+            raise BusFullError(
+                f"the broker takes nothing, and {len(self._must):,} messages that must arrive wait already"
+            )
         self.late += len(late)
         self._must = deque(p for p in self._must if p.deadline is None or p.deadline > now)
         self._bytes[True] = sum(len(p.body) for p in self._must)

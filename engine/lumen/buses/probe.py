@@ -10,7 +10,7 @@ from pika.exceptions import AMQPError, ChannelClosedByBroker
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.polled import PolledConnection
 from lumen.buses.queues import EXCHANGE, queue_of
-from lumen.errors import BusError
+from lumen.errors import BusUnreachableError
 from lumen.language.routes import Route
 
 FORGED_USER = "lumen doctor"
@@ -65,7 +65,7 @@ class BrokerProbe:
                 channel.basic_publish(EXCHANGE, key, b"", properties)
         except ChannelClosedByBroker as error:
             return str(error.reply_text) if error.reply_code == ACCESS_REFUSED else ""
-        raise BusError(f"the broker at {self.address} took a message that claims to be from `{FORGED_USER}`")
+        raise BusUnreachableError(f"the broker at {self.address} took a message that claims to be from `{FORGED_USER}`")
 
     def served(self, key: str, route: Route) -> QueueStatus:
         """How many wait and read in the queue of a route whose messages must arrive."""

@@ -6,10 +6,10 @@ from typing import Any
 
 from lumen.buses.bodies import KEY_PREFIXES
 from lumen.buses.checking import BodyCheck, body_checks
-from lumen.errors import BusError
+from lumen.errors import BadMessageError, Refused
 from lumen.language.projects import Project
 from lumen.language.routes import Route
-from lumen.ports import Bus, Message, MessageHandler, Refused
+from lumen.ports import Bus, Message, MessageHandler
 
 OnRefused = Callable[[str, str], None]
 """Called for a message that was not handed on, with its key and the reason."""
@@ -60,7 +60,7 @@ class ValidatedBus:
         self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
     ) -> None:
         if reason := self._wrong(key, body):
-            raise BusError(f"a message on `{key}` can't be sent: {reason}")
+            raise BadMessageError(f"a message on `{key}` can't be sent: {reason}")
         self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl)
 
     def reply(self, message: Message, body: Any) -> None:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from lumen.bus import connect
 from lumen.buses.local import LocalAddress, LocalBusClient
-from lumen.errors import BusError
+from lumen.errors import BusUnreachableError
 from lumen.loading.packaged import find_project
 from lumen.loading.project import draft, read_files
 from lumen.ports import Bus
@@ -42,7 +42,9 @@ def reach(options: argparse.Namespace) -> Reached:
         settings = draft(read_files(root)).settings
         if settings and not settings.bus.startswith("memory:"):
             return Reached(connect(settings.bus), _command(root, None), settings.bus)
-        raise BusError(f"no exhibition of {root} runs on this machine: start it with `lumen run`, or say --bus URL")
+        raise BusUnreachableError(
+            f"no exhibition of {root} runs on this machine: start it with `lumen run`, or say --bus URL"
+        )
     return Reached(LocalBusClient(LocalAddress.of(found)), _command(root, found))
 
 

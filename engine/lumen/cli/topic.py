@@ -14,7 +14,7 @@ from lumen.buses.bodies import encode
 from lumen.buses.validated import by_key, validated
 from lumen.cli.reach import reach
 from lumen.cli.tables import table
-from lumen.errors import BusError, UsageError
+from lumen.errors import BusClosedError, BusRefusedError, UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
@@ -84,7 +84,7 @@ def _check_right(broker: str, key: str) -> None:
 
     with closing(BrokerProbe(broker)) as probe:
         if reason := probe.writing(key):
-            raise BusError(f"the broker at {probe.address} refuses to let us send `{key}`: {reason}")
+            raise BusRefusedError(f"the broker at {probe.address} refuses to let us send `{key}`: {reason}")
 
 
 def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
@@ -192,7 +192,7 @@ def _listen(bus: Bus, pattern: str, span: float | None) -> Iterator[Heard]:
                 yield came.get(timeout=LOOK if end is None else max(0.0, min(LOOK, end - time.monotonic())))
             except queue.Empty:
                 if gone is not None and gone.is_set():
-                    raise BusError("the exhibition has ended") from None
+                    raise BusClosedError("the exhibition has ended") from None
     except KeyboardInterrupt:
         pass
     finally:

@@ -9,7 +9,7 @@ are `stop`, `look` and `perform`, which brings its motion along.
 from collections.abc import Callable, Mapping
 from typing import Any, get_args
 
-from lumen.errors import RobotError
+from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.language.commands import Channel, Language, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
@@ -40,7 +40,7 @@ def command_from(body: Any, project: Project, angles: PoseSource = dict) -> Robo
     order = _lowered(body, "a command")
     method = order.get("method")
     if not isinstance(method, str):
-        raise RobotError("a command needs a `method`, like `say` or `goodbye`")
+        raise BadCommandError("a command needs a `method`, like `say` or `goodbye`")
     return _Order(method.strip().lower(), order.get("parameter"), project, angles).command()
 
 
@@ -84,9 +84,9 @@ class _Order:
         if motion := motions.get(self.method) or motions.get(MOTION_NAMES_2015.get(self.method, "")):
             return Perform(motion)
         if self.method in UNSUPPORTED_METHODS:
-            raise RobotError(f"`{self.method}` can't be done with this robot")
+            raise BadCommandError(f"`{self.method}` can't be done with this robot")
         known = [*_METHODS, *MOTION_NAMES_2015, *self.project.motions]
-        raise RobotError(f"there is no method `{_shown(self.method)}`: {did_you_mean(_shown(self.method), known)}")
+        raise BadCommandError(f"there is no method `{_shown(self.method)}`: {did_you_mean(_shown(self.method), known)}")
 
     def number(self, name: str, default: float | None = None) -> float:
         value = self.parameter.get(name)
@@ -103,7 +103,7 @@ class _Order:
         if value is None and default is not None:
             return default
         if not isinstance(value, str):
-            raise RobotError(f"the parameter `{name}` of `{self.method}` has to be a text")
+            raise BadCommandError(f"the parameter `{name}` of `{self.method}` has to be a text")
         return value.strip()
 
     def language(self, name: str) -> str:
@@ -111,14 +111,14 @@ class _Order:
         given = self.text(name, "").lower()
         code = LANGUAGES_2015.get(given, given)
         if code and code not in self.project.languages:
-            raise RobotError(
+            raise BadCommandError(
                 f"the language `{_shown(given)}` is not spoken here: {did_you_mean(code, self.project.languages)}"
             )
         return code
 
     def set_language(self) -> Language:
         if not self.text("language"):
-            raise RobotError("`setlanguage` needs a `language`")
+            raise BadCommandError("`setlanguage` needs a `language`")
         return Language(self.language("language"))
 
     def turn(self) -> float:
@@ -129,7 +129,7 @@ class _Order:
         """`angles` by `jointNames`; one of either may stand without a list."""
         names, values = _listed(self.parameter.get("jointnames")), _listed(self.parameter.get("angles"))
         if not names or len(names) != len(values):
-            raise RobotError(f"`{self.method}` needs as many `angles` as `jointNames`, and at least one")
+            raise BadCommandError(f"`{self.method}` needs as many `angles` as `jointNames`, and at least one")
         joints = [self.joint(name) for name in names]
         return {n: _number(v, f"the angle of `{n}`") for n, v in zip(joints, values, strict=True)}
 
@@ -137,7 +137,7 @@ class _Order:
         """The joint that is meant: `"LHipPitch "` and `LAngklePitch` were how they were spelt."""
         meant = str(name).strip().replace("Angkle", "Ankle")
         if meant not in self.project.body.joints:
-            raise RobotError(
+            raise BadCommandError(
                 f"there is no joint `{_shown(meant)}`: {did_you_mean(_shown(meant), self.project.body.joints)}"
             )
         return meant
@@ -155,7 +155,7 @@ class _Order:
         changes = self.joints()
         angles = self.angles()
         if missing := [name for name in changes if name not in angles]:
-            raise RobotError(f"nobody knows where `{missing[0]}` stands")
+            raise RobotRefusedError(f"nobody knows where `{missing[0]}` stands")
         return self.aim({name: angles[name] + change for name, change in changes.items()})
 
     def hand(self, opening: float) -> Aim:
@@ -174,7 +174,7 @@ class _Order:
         what = self.text("what", "all").lower()
         known: dict[str, Channel] = {channel: channel for channel in get_args(Channel)}
         if what not in known:
-            raise RobotError(f"`stop` can't end `{_shown(what)}`: {did_you_mean(_shown(what), known)}")
+            raise BadCommandError(f"`stop` can't end `{_shown(what)}`: {did_you_mean(_shown(what), known)}")
         return Stop(known[what])
 
     def perform(self) -> Perform:
@@ -185,7 +185,7 @@ class _Order:
         """`duration` [s] is ours."""
         duration = self.number("duration", RECORDING_DURATION)
         if not 0.1 <= duration <= MAX_RECORDING_DURATION:
-            raise RobotError(
+            raise BadCommandError(
                 f"the `duration` of `record` lies between 0.1 and {MAX_RECORDING_DURATION:g} s, not at {duration:g}"
             )
         return Record(_shown(self.text("recordingname", "recording")), duration)
@@ -194,7 +194,9 @@ class _Order:
         name = self.text("posturename")
         postures = {p.lower(): p for p in self.project.body.postures}
         if name.lower() not in postures:
-            raise RobotError(f"there is no posture `{_shown(name)}`: {did_you_mean(_shown(name), postures.values())}")
+            raise BadCommandError(
+                f"there is no posture `{_shown(name)}`: {did_you_mean(_shown(name), postures.values())}"
+            )
         return Posture(postures[name.lower()], self.fraction("speed", POSTURE_SPEED))
 
 
@@ -222,7 +224,7 @@ _METHODS: Mapping[str, Callable[[_Order], RobotCommand | Language]] = {
 
 def _lowered(data: Any, what: str) -> dict[str, Any]:
     if not isinstance(data, Mapping):
-        raise RobotError(f"{what} has to be an object with names and values")
+        raise BadCommandError(f"{what} has to be an object with names and values")
     return {str(key).lower(): value for key, value in data.items()}
 
 
@@ -237,5 +239,5 @@ def _listed(value: Any) -> list[Any]:
 
 def _number(value: Any, what: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= MAX_MAGNITUDE:
-        raise RobotError(f"{what} has to be a number")
+        raise BadCommandError(f"{what} has to be a number")
     return float(value)

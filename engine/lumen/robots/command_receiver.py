@@ -10,7 +10,7 @@ from functools import partial
 from itertools import count
 from typing import Any, NamedTuple
 
-from lumen.errors import BusError, RobotError
+from lumen.errors import BusError, RobotError, RobotRefusedError
 from lumen.language.commands import Language, Rest, Say, Stop
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -216,7 +216,7 @@ class CommandReceiver:
     def _check_age(self, arrival: _Arrival) -> None:
         route = self._project.routes.get(COMMAND)
         if route and route.ttl and self._clock() - arrival.at > route.ttl and not stops(arrival.message.body):
-            raise RobotError("it came too late")
+            raise RobotRefusedError("it came too late")
 
     def _perform(self, record: CommandRecord, command: RobotCommand | Language) -> None:
         if isinstance(command, Language):
@@ -226,7 +226,7 @@ class CommandReceiver:
         if isinstance(command, Say) and not command.language:
             command = replace(command, language=self._language)
         if self._reports.running >= MAX_RUNNING_COMMANDS and not isinstance(command, Rest | Stop):
-            raise RobotError(f"{MAX_RUNNING_COMMANDS} commands are waiting already")
+            raise RobotRefusedError(f"{MAX_RUNNING_COMMANDS} commands are waiting already")
         if record.id and not isinstance(command, Rest | Stop):
             self._log_of_begun.note(record.id)
         if isinstance(command, Aim):

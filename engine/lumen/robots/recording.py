@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, inf, isfinite
 
-from lumen.errors import RobotError, UsageError
+from lumen.errors import BadCommandError, RobotFailedError, UsageError
 from lumen.interpreters.projection import seen
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
@@ -152,10 +152,10 @@ class RecordingRobot:
         self.performed.append((now, command))
         behaves = self._behaves.get(_VERBS[type(command)])
         if behaves == "fails":
-            raise RobotError(f"{_VERBS[type(command)]} fails in this story")
+            raise RobotFailedError(f"{_VERBS[type(command)]} fails in this story")
         if isinstance(command, Posture):
             if command.name not in self.body.postures:
-                raise RobotError(f"no posture `{command.name}`")
+                raise BadCommandError(f"no posture `{command.name}`")
             self._angles.update(self.body.postures[command.name])
         elif isinstance(command, Look):
             self._turn({"HeadYaw": command.yaw, "HeadPitch": command.pitch})

@@ -12,7 +12,7 @@ from lumen.app.reload.reloader import Reloader
 from lumen.app.setup import Setup
 from lumen.buses.validated import ValidatedBus
 from lumen.cli.transcript import Transcript
-from lumen.errors import BusError
+from lumen.errors import BusRefusedError
 from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -165,7 +165,7 @@ class BrainPart:
         self._session = robot.session
         other = self._presence.get(str(robot.said.get("follows", "")))
         if other and self._presence.alive(other) and BRAIN in other.parts and other.state == HERE:
-            raise BusError(f"the robot follows another brain by now, {told(other)}: this one ends")
+            raise BusRefusedError(f"the robot follows another brain by now, {told(other)}: this one ends")
 
     def _motion(self) -> str:
         """The motion module that has the files that run here."""

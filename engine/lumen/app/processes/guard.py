@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from lumen.errors import BusError
+from lumen.errors import BusRefusedError
 from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.ports import Robot
@@ -43,7 +43,7 @@ class Guard:
             self._wake(at)
         self._ticked = at
         if self._woke and (other := self._presence.find(ROBOT)):
-            raise BusError(f"this robot stood still, and by now {told(other)} is it: this one ends")
+            raise BusRefusedError(f"this robot stood still, and by now {told(other)} is it: this one ends")
         followed = self._presence.get(self.follows) if self.follows else None
         if followed:
             self._last = followed.heard

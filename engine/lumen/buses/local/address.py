@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lumen.errors import BusError
+from lumen.errors import BusAddressError
 
 MAX_SOCKET_PATH_BYTES = 100
 """How long the path of a socket may be [bytes]: systems allow 104 to 108."""
@@ -35,7 +35,7 @@ class LocalAddress:
         try:
             return LocalAddress(str(data["path"]), int(data["port"]), str(data["key"]))
         except (KeyError, TypeError, ValueError) as error:
-            raise BusError(f"this is no address: {error!r}") from None
+            raise BusAddressError(f"this is no address: {error!r}") from None
 
     def connect(self) -> socket.socket:
         """A connection to whoever listens there; raises OSError where nobody does."""

@@ -26,9 +26,9 @@ from lumen.buses.local.frames import (
     unframed,
 )
 from lumen.buses.local.sendbuffer import SendBuffer
-from lumen.errors import BusError
+from lumen.errors import BusClosedError, BusError, BusRefusedError, BusUnreachableError, Refused
 from lumen.language.routes import Route
-from lumen.ports import Message, MessageHandler, Refused
+from lumen.ports import Message, MessageHandler
 
 CLOSE_TIMEOUT = 5.0
 """How long closing may take [s]."""
@@ -69,7 +69,7 @@ class LocalBusClient:
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
-            raise BusError("the bus is closed: nobody can subscribe any more")
+            raise BusClosedError("the bus is closed: nobody can subscribe any more")
         check_key(pattern)
         number = next(self._numbers)
         answered, reason = self._answers[number] = (threading.Event(), [])
@@ -77,7 +77,8 @@ class LocalBusClient:
         self._put(frame("subscribe", number, pattern))
         if not answered.wait(ANSWER_TIMEOUT) or reason != [""]:
             del self._handlers[number]
-            raise BusError(reason[0] if reason else f"the exhibition does not let us read `{pattern}`")
+            kind = BusClosedError if self.gone.is_set() else BusRefusedError
+            raise kind(reason[0] if reason else f"the exhibition does not let us read `{pattern}`")
 
         def undo() -> None:
             if self._handlers.pop(number, None) and not self._closed:
@@ -89,11 +90,11 @@ class LocalBusClient:
         self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
     ) -> None:
         if self._closed:
-            raise BusError("the bus is closed: nothing can be published any more")
+            raise BusClosedError("the bus is closed: nothing can be published any more")
         for name in (key, reply_to, correlation_id):
             check_key(name)
         if self.gone.is_set():
-            raise BusError("the exhibition is gone")
+            raise BusClosedError("the exhibition is gone")
         self._put(framed(["publish", key, reply_to, correlation_id, ttl], encode(body)))
 
     def reply(self, message: Message, body: Any) -> None:
@@ -192,7 +193,7 @@ def _connect(address: LocalAddress) -> tuple[socket.socket, bytearray]:
     try:
         wire = address.connect()
     except OSError as error:
-        raise BusError(f"nobody opens: {error.strerror or error}") from None
+        raise BusUnreachableError(f"nobody opens: {error.strerror or error}") from None
     try:
         question = nonce()
         match _next(wire, buffer):
@@ -207,7 +208,7 @@ def _connect(address: LocalAddress) -> tuple[socket.socket, bytearray]:
         raise BadFrameError("it does not know the key")
     except (OSError, BadFrameError, json.JSONDecodeError) as error:
         wire.close()
-        raise BusError(f"what listens there is not the exhibition: {error}") from None
+        raise BusRefusedError(f"what listens there is not the exhibition: {error}") from None
 
 
 def _next(wire: socket.socket, buffer: bytearray) -> list[Any]:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from lumen.errors import RobotError
+from lumen.errors import RobotFailedError, SenseError
 from lumen.language.events import RECORDED, Event
 from lumen.ports import Record
 from lumen.robots.cues import EventSink
@@ -28,7 +28,7 @@ class Microphones:
     def begin(self, command: Record) -> CallSequence:
         """The recording under way. Raises RobotError where there is no microphone."""
         if not self._session.has(AUDIO_DEVICE):
-            raise RobotError(f"this robot has no {AUDIO_DEVICE}")
+            raise SenseError(f"this robot has no {AUDIO_DEVICE}")
         return CallSequence(self._listen(command), self._hush)
 
     def _listen(self, command: Record) -> CallSteps:
@@ -43,7 +43,7 @@ class Microphones:
         while len(self._heard) < self._wanted:
             if self._clock() > until:
                 self._hush()
-                raise RobotError(
+                raise RobotFailedError(
                     f"{len(self._heard) / (2 * RECORDING_RATE):.1f} of {command.duration:g} s came from the "
                     "microphones: can the robot reach this machine, or is there a firewall?"
                 )

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 
-from lumen.errors import RobotError
+from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.choreography import joined
 from lumen.interpreters.limits import TOLERANCE
 from lumen.interpreters.postures import UPRIGHT
@@ -34,11 +34,11 @@ def fitted(motion: MotionDefinition, body: Body, start: Mapping[str, float]) -> 
     """
     for joint, keys in motion.tracks.items():
         if joint not in body.joints:
-            raise RobotError(f"`{joint}` is not a joint of this robot: {did_you_mean(joint, body.joints)}")
+            raise BadCommandError(f"`{joint}` is not a joint of this robot: {did_you_mean(joint, body.joints)}")
         if not all(isfinite(x) for key in keys for x in (key.time, key.angle, *key.handle_in, *key.handle_out)):
-            raise RobotError(f"`{motion.name}` holds an angle or a time that is no number")
+            raise BadCommandError(f"`{motion.name}` holds an angle or a time that is no number")
     if not isfinite(motion.duration):
-        raise RobotError(f"`{motion.name}` has no duration")
+        raise BadCommandError(f"`{motion.name}` has no duration")
     late = max((_late(track, motion, body) for track in Trajectory(motion, start).tracks), default=0.0)
     if not late:
         return motion
@@ -52,13 +52,15 @@ def _late(track: JointTrack, motion: MotionDefinition, body: Body) -> float:
     for i, segment in enumerate(track.segments):
         low, high = segment.extremes()
         if low < limit.minimum - TOLERANCE or high > limit.maximum + TOLERANCE:
-            raise RobotError(
+            raise BadCommandError(
                 f"`{motion.name}` takes {track.joint} to {low if low < limit.minimum else high:.3f} rad,"
                 f" which reaches from {limit.minimum:.3f} to {limit.maximum:.3f} rad"
             )
         if (speed := segment.peak_speed()) > limit.speed * (1 + TOLERANCE):
             if i:
-                raise RobotError(f"`{motion.name}` turns {track.joint} at {speed:.1f} rad/s, {limit.speed:.1f} at most")
+                raise BadCommandError(
+                    f"`{motion.name}` turns {track.joint} at {speed:.1f} rad/s, {limit.speed:.1f} at most"
+                )
             late = segment.duration * (speed / (APPROACH_SPEED * limit.speed) - 1.0)
     return late
 
@@ -112,11 +114,11 @@ class MotionPlayer:
     def _ready(self, motion: MotionDefinition) -> CallSteps:
         """Raises RobotError where the robot is not in a posture to begin in."""
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
-            raise RobotError("the motors are off: `wake` first")
+            raise RobotRefusedError("the motors are off: `wake` first")
         if motion.start in UPRIGHT:
             family = yield self._post("ALRobotPosture", "getPostureFamily")
             if grounded(family):
-                raise RobotError(
+                raise RobotRefusedError(
                     f"`{motion.name}` begins in {motion.start}; the robot is {family}: send it there first"
                 )
 

@@ -4,7 +4,7 @@ import logging
 import re
 from collections.abc import Sequence
 
-from lumen.errors import RobotError
+from lumen.errors import RobotError, RobotModelError, RobotUnreachableError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
 from lumen.robots.naoqi.session import NaoqiSession
@@ -53,7 +53,7 @@ def halt(session: NaoqiSession, joints: Sequence[str]) -> None:
 
 def _find(session: NaoqiSession) -> None:
     if missing := session.find(REQUIRED_SERVICES):
-        raise RobotError(f"at {session.url} there is no {missing[0]}: is NAOqi up yet, and is it a NAO?")
+        raise RobotUnreachableError(f"at {session.url} there is no {missing[0]}: is NAOqi up yet, and is it a NAO?")
     for name in session.find(OPTIONAL_SERVICES):
         _log.warning("this robot has no %s: %s", name, OPTIONAL_SERVICES[name])
 
@@ -68,7 +68,7 @@ def _check_version(session: NaoqiSession) -> None:
         return
     version = int(found[1]), int(found[2])
     if version < OLDEST_NAOQI:
-        raise RobotError(f"the robot has NAOqi {text}: Lumen needs 2.1 or newer")
+        raise RobotModelError(f"the robot has NAOqi {text}: Lumen needs 2.1 or newer")
     if not TESTED_NAOQI[0] <= version <= TESTED_NAOQI[1]:
         _log.warning("the robot has NAOqi %s: Lumen was written for 2.1 to 2.8", text)
 
@@ -78,7 +78,9 @@ def _check_joints(session: NaoqiSession, body: Body) -> None:
     names = list(map(str, session.ask("ALMotion", "getBodyNames", "Body")))
     for joint in body.joints:
         if joint not in names:
-            raise RobotError(f"this robot has no {joint}, and models/{body.name} has: {did_you_mean(joint, names)}")
+            raise RobotModelError(
+                f"this robot has no {joint}, and models/{body.name} has: {did_you_mean(joint, names)}"
+            )
 
 
 def _protect(session: NaoqiSession) -> None:

@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Callable, Sequence
 
-from lumen.errors import RobotError
+from lumen.errors import RobotError, RobotLostError
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
@@ -103,7 +103,7 @@ class NaoqiRobot:
 
     def _begin(self, command: RobotCommand, now: float) -> CallSequence:
         if not self._session.ready:
-            raise RobotError(CONNECTION_LOST)
+            raise RobotLostError(CONNECTION_LOST)
         return self._skills.begin(command, now)
 
     def _take_over(self, again: bool) -> None:

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from lumen.errors import RobotError
+from lumen.errors import RobotError, SenseError
 from lumen.language.robots import Body
 from lumen.language.routes import SIZES, Size
 from lumen.ports import Battery, Image, Joints, Reading, Sense, Sonar, Tactile
@@ -115,11 +115,11 @@ class NaoqiSensors:
 
     def sonar(self) -> Sonar:
         if not self._session.has("ALSonar"):
-            raise RobotError("this robot has no ALSonar")
+            raise SenseError("this robot has no ALSonar")
         now = self._clock()
         left, right = self._memory([device("US/Left"), device("US/Right")])
         if not isinstance(left, int | float) or not isinstance(right, int | float):
-            raise RobotError("ALMemory knows of no sonars")
+            raise SenseError("ALMemory knows of no sonars")
         return Sonar(now, float(left), float(right))
 
     def tactile(self) -> Tactile:
@@ -132,7 +132,7 @@ class NaoqiSensors:
         now = self._clock()
         charge, plugged, charging = self._memory([CHARGE, PLUGGED, CHARGING])
         if not isinstance(charge, int | float):
-            raise RobotError("ALMemory does not know how full the battery is")
+            raise SenseError("ALMemory does not know how full the battery is")
         percentage = round(100 * min(max(float(charge), 0.0), 1.0))
         return Battery(now, percentage, plugged=bool(plugged) or bool(charging), charging=bool(charging))
 
@@ -183,33 +183,33 @@ class NaoqiSensors:
 
     def _subscribe(self) -> str:
         if self._size not in RESOLUTIONS:
-            raise RobotError(f"NAO's camera has no images of {self._size}")
+            raise SenseError(f"NAO's camera has no images of {self._size}")
         arguments = (SUBSCRIBER_NAME, TOP_CAMERA, RESOLUTIONS[self._size], RGB_COLOUR_SPACE, CAMERA_RATE)
         self._handle = str(self._session.ask("ALVideoDevice", "subscribeCamera", *arguments) or "")
         if not self._handle:
-            raise RobotError("the camera can't be subscribed to: too many others have it")
+            raise SenseError("the camera can't be subscribed to: too many others have it")
         return self._handle
 
     def _pixels(self, found: Any) -> tuple[bytes, float]:
         """The bytes of a frame, and its time on the robot's clock [s]."""
         if not isinstance(found, Sequence) or len(found) < 7:
-            raise RobotError("the camera gave no image: somebody else has unsubscribed it, or it is not there")
+            raise SenseError("the camera gave no image: somebody else has unsubscribed it, or it is not there")
         width, height, layers, _, seconds, microseconds, pixels = found[:7]
         if (width, height, layers) != (*self._size, 3):
-            raise RobotError(f"the camera gave an image of {width} x {height} x {layers}, not of {self._size} x 3")
+            raise SenseError(f"the camera gave an image of {width} x {height} x {layers}, not of {self._size} x 3")
         if not isinstance(pixels, bytes | bytearray) or len(pixels) != width * height * layers:
-            raise RobotError(f"the camera gave {len(pixels) if pixels else 0} bytes for {width} x {height} x {layers}")
+            raise SenseError(f"the camera gave {len(pixels) if pixels else 0} bytes for {width} x {height} x {layers}")
         return bytes(pixels), float(seconds) + float(microseconds) / 1e6
 
     def _memory(self, keys: list[str]) -> list[Any]:
         found = self._session.ask("ALMemory", "getListData", keys)
         if not isinstance(found, Sequence) or len(found) != len(keys):
-            raise RobotError("ALMemory did not answer for every key")
+            raise SenseError("ALMemory did not answer for every key")
         return list(found)
 
     def _numbers(self, found: Any, method: str) -> tuple[float, ...]:
         if not isinstance(found, Sequence) or len(found) != len(self._names):
-            raise RobotError(f"ALMotion.{method} did not answer for every joint")
+            raise SenseError(f"ALMotion.{method} did not answer for every joint")
         return tuple(map(float, found))
 
 

@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from lumen.errors import RobotError
+from lumen.errors import RobotError, RobotFailedError, RobotLostError, RobotUnreachableError, SenseError
 
 NAOQI_PORT = 9559
 CALL_TIMEOUT = 2.0
@@ -30,7 +30,7 @@ def qi() -> Any:
     try:
         import qi as package
     except ImportError as error:
-        raise RobotError(QI_MISSING) from error
+        raise RobotUnreachableError(QI_MISSING) from error
     package.logging.setLevel(package.logging.FATAL)
     return package
 
@@ -43,7 +43,7 @@ def address(url: str) -> str:
     if not colon:
         host, port, whole = port, str(NAOQI_PORT), f"{whole}:{NAOQI_PORT}"
     if not host or not port.isdecimal() or not whole.startswith(("tcp://", "tcps://")):
-        raise RobotError(f"`{url}` is no address of a robot: write tcp://nao.local:{NAOQI_PORT}")
+        raise RobotUnreachableError(f"`{url}` is no address of a robot: write tcp://nao.local:{NAOQI_PORT}")
     return whole
 
 
@@ -53,6 +53,11 @@ def plain(error: object) -> str:
     if text in _QI_CONNECTION_LOST:
         return CONNECTION_LOST
     return text.removeprefix("RuntimeError: ")[:MAX_ERROR_LENGTH] or "it said nothing about it"
+
+
+def _error_of(reason: str) -> RobotError:
+    """The error of a call that ended with this reason."""
+    return RobotLostError(reason) if reason == CONNECTION_LOST else RobotFailedError(reason)
 
 
 class NaoqiCall:
@@ -78,11 +83,11 @@ class NaoqiCall:
 
     def result(self) -> Any:
         if self._error:
-            raise RobotError(self._error)
+            raise _error_of(self._error)
         if self._future is None:
             return self._value
         if self._future.hasError():
-            raise RobotError(plain(self._future.error()))
+            raise _error_of(plain(self._future.error()))
         return self._future.value()
 
 
@@ -113,9 +118,9 @@ class NaoqiSession:
         future = session.connect(self.url, _async=True)
         future.wait(int(1000 * max(CONNECT_TIMEOUT, self._patience)))
         if not future.isFinished():
-            raise RobotError(f"no robot answers at {self.url}: is it switched on, and on this network?")
+            raise RobotUnreachableError(f"no robot answers at {self.url}: is it switched on, and on this network?")
         if future.hasError():
-            raise RobotError(
+            raise RobotUnreachableError(
                 f"no robot at {self.url} ({plain(future.error())}): is it switched on, and on this network?"
             )
         session.disconnected.connect(lambda *_: self._broken(session, "the connection was closed"))
@@ -169,7 +174,7 @@ class NaoqiSession:
         if not call.wait(patience):
             reason = f"the robot has not answered for {patience:g} s"
             self._broken(session, reason)
-            raise RobotError(reason)
+            raise RobotLostError(reason)
         return call.result()
 
     def subscribe(self, event: str, heard: Callable[[Any], None]) -> Any:
@@ -181,7 +186,7 @@ class NaoqiSession:
         try:
             subscriber.signal.connect(heard)
         except (AttributeError, RuntimeError) as error:
-            raise RobotError(f"`{event}` can't be heard: {plain(error)}") from error
+            raise SenseError(f"`{event}` can't be heard: {plain(error)}") from error
         return subscriber
 
     def close(self) -> None:

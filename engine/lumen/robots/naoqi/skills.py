@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from math import inf, isfinite
 from typing import assert_never
 
-from lumen.errors import RobotError
+from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
@@ -60,9 +60,9 @@ class NaoqiSkills:
             case Wake():
                 return CallSequence(self._wake(), lambda: [self._post("ALRobotPosture", "stopMove")])
             case Stop() | Aim():
-                raise RobotError(f"{type(command).__name__} does not last")
+                raise BadCommandError(f"{type(command).__name__} does not last")
         if self.fallen:
-            raise RobotError("the robot has fallen: `wake` it first")
+            raise RobotRefusedError("the robot has fallen: `wake` it first")
         match command:
             case Perform(motion):
                 owned = parts(command, self._body)
@@ -79,9 +79,9 @@ class NaoqiSkills:
         found = {}
         for name, angle in angles.items():
             if name not in self._body.joints:
-                raise RobotError(f"`{name}` is not a joint of this robot: {did_you_mean(name, self._body.joints)}")
+                raise BadCommandError(f"`{name}` is not a joint of this robot: {did_you_mean(name, self._body.joints)}")
             if not isfinite(angle):
-                raise RobotError(f"`{name}` can't be moved to {angle}")
+                raise BadCommandError(f"`{name}` can't be moved to {angle}")
             joint = self._body.joints[name]
             found[name] = float(min(max(angle, joint.minimum), joint.maximum))
         return found
@@ -100,24 +100,24 @@ class NaoqiSkills:
 
     def _posture(self, name: str, speed: float) -> CallSequence:
         if not 0 < speed <= 1:
-            raise RobotError(f"a speed lies above 0 and up to 1, not at {speed}")
+            raise BadCommandError(f"a speed lies above 0 and up to 1, not at {speed}")
         if name not in self._body.postures:
-            raise RobotError(f"no posture `{name}`: {did_you_mean(name, self._body.postures, 'it knows')}")
+            raise BadCommandError(f"no posture `{name}`: {did_you_mean(name, self._body.postures, 'it knows')}")
         return CallSequence(self._go(name, speed), lambda: [self._post("ALRobotPosture", "stopMove")])
 
     def _go(self, name: str, speed: float) -> CallSteps:
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
             if not self.fallen:
-                raise RobotError("the motors are off: `wake` first")
+                raise RobotRefusedError("the motors are off: `wake` first")
             yield self._post("ALMotion", "setStiffnesses", "Body", 1.0)  # the fall manager had let go of the motors
         if not (yield self._post("ALRobotPosture", "goToPosture", name, float(speed))):
-            raise RobotError(f"the robot could not get into the posture {name}")
+            raise RobotFailedError(f"the robot could not get into the posture {name}")
         self.fallen = False
 
     def _wake(self) -> CallSteps:
         yield self._post("ALMotion", "wakeUp")
         if not (yield self._post("ALRobotPosture", "goToPosture", "Stand", WAKE_SPEED)):
-            raise RobotError("the robot could not stand up")
+            raise RobotFailedError("the robot could not stand up")
         self.fallen = False
 
     def _rest(self) -> CallSteps:
@@ -130,7 +130,7 @@ class NaoqiSkills:
     def _turn(self, target: Mapping[str, float]) -> CallSteps:
         names, goal = list(target), list(target.values())
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
-            raise RobotError("the motors are off: `wake` first")
+            raise RobotRefusedError("the motors are off: `wake` first")
         here = yield self._post("ALMotion", "getAngles", names, True)
         way = max(abs(a - b) for a, b in zip(here, goal, strict=True))
         slowest = min(self._body.joints[name].speed for name in names)
@@ -141,4 +141,4 @@ class NaoqiSkills:
             if all(abs(a - b) < LOOK_TOLERANCE for a, b in zip(here, goal, strict=True)):
                 return
             yield None
-        raise RobotError("the head did not get there: something holds it, or its motors are off")
+        raise RobotFailedError("the head did not get there: something holds it, or its motors are off")

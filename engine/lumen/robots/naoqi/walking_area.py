@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from math import cos, sin
 
-from lumen.errors import RobotError
+from lumen.errors import RobotRefusedError
 from lumen.language.projects import Stage
 from lumen.ports import Sonar
 
@@ -59,7 +59,7 @@ class WalkingArea:
         x, y, theta = here
         ahead = x + way[0] * cos(theta) - way[1] * sin(theta), y + way[0] * sin(theta) + way[1] * cos(theta)
         if reason := self.outside((*ahead, theta), here):
-            raise RobotError(f"{reason}: the robot did not set out")
+            raise RobotRefusedError(f"{reason}: the robot did not set out")
 
     def outside(self, there: GroundPose, before: GroundPose, drift: float = 0.0) -> str:
         """Why it must not be `there`; empty where the stage has room, or it is no farther out than it was `before`."""

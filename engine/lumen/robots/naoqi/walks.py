@@ -4,7 +4,7 @@ from collections.abc import Callable
 from math import hypot, isfinite
 from typing import Any
 
-from lumen.errors import RobotError
+from lumen.errors import BadCommandError, RobotError, RobotFailedError, RobotRefusedError
 from lumen.language.commands import Move, Walk
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
 from lumen.robots.naoqi.session import NaoqiCall
@@ -69,11 +69,13 @@ class NaoqiWalks:
         numbers = (command.x, command.y, command.theta) if isinstance(command, Walk) else (
             command.vx, command.vy, command.vtheta)  # fmt: skip
         if not all(map(isfinite, numbers)):
-            raise RobotError(f"there is no way to {numbers}")
+            raise BadCommandError(f"there is no way to {numbers}")
         if isinstance(command, Walk) and hypot(command.x, command.y) > MAX_WALK_DISTANCE:
-            raise RobotError(f"({command.x:g}, {command.y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most")
+            raise BadCommandError(
+                f"({command.x:g}, {command.y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most"
+            )
         if reason := self._area.danger():
-            raise RobotError(f"{reason}: the robot did not set out")
+            raise RobotRefusedError(f"{reason}: the robot did not set out")
         doing = self._walk(numbers) if isinstance(command, Walk) else self._move(numbers)
         return CallSequence(doing, lambda: [self._post("ALMotion", "stopMove")])
 
@@ -81,9 +83,9 @@ class NaoqiWalks:
         """Where the robot stands; raises RobotError where it does not."""
         family = yield self._post("ALRobotPosture", "getPostureFamily")
         if grounded(family):
-            raise RobotError(f"the robot is {family}: send it to Stand first")
+            raise RobotRefusedError(f"the robot is {family}: send it to Stand first")
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
-            raise RobotError("the motors are off: `wake` first")
+            raise RobotRefusedError("the motors are off: `wake` first")
         here = yield self._post("ALMotion", "getRobotPosition", True)
         self._area.meet(here)
         return here
@@ -94,11 +96,11 @@ class NaoqiWalks:
         watch = WalkMonitor(self._post, self._area, here)
         arrived = yield WhileWaiting(self._post("ALMotion", "moveTo", *map(float, way)), watch)
         if watch.reason:
-            raise RobotError(f"{watch.reason}: the walk was ended")
+            raise RobotFailedError(f"{watch.reason}: the walk was ended")
         if arrived is None:
             arrived = yield from self._arrived(here, way)
         if not arrived:
-            raise RobotError("the robot stopped before it was there: something is in its way")
+            raise RobotFailedError("the robot stopped before it was there: something is in its way")
 
     def _arrived(self, here: GroundPose, way: tuple[float, float, float]) -> CallSteps:
         """Whether it is where it should be, by its odometry: `moveTo` of NAOqi 2.1 does not say."""
@@ -115,4 +117,4 @@ class NaoqiWalks:
             watch(now)
             if watch.reason:
                 yield self._post("ALMotion", "stopMove")
-                raise RobotError(f"{watch.reason}: the walk was ended")
+                raise RobotFailedError(f"{watch.reason}: the walk was ended")

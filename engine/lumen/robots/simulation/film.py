@@ -5,7 +5,7 @@ from pathlib import Path
 
 import mujoco
 
-from lumen.errors import RobotError
+from lumen.errors import RobotModelError
 from lumen.robots.simulation.rendering import FILM_QUALITY, RenderState, SceneRenderer, available
 from lumen.robots.simulation.robot import SimulatedRobot
 
@@ -21,9 +21,9 @@ class Film:
 
     def __init__(self, path: Path, robot: SimulatedRobot, camera: str = "observer") -> None:
         if reason := available():
-            raise RobotError(reason)
+            raise RobotModelError(reason)
         if mujoco.mj_name2id(robot.world.model, mujoco.mjtObj.mjOBJ_CAMERA, camera) < 0:
-            raise RobotError(f"the hall has no camera `{camera}` to film with")
+            raise RobotModelError(f"the hall has no camera `{camera}` to film with")
         self._robot, self._camera = robot, camera
         self._renderer = SceneRenderer(robot.world.model, FILM_QUALITY)
         self._writer = _writer(path)

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.errors import RobotError
+from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 
 
@@ -23,7 +23,7 @@ class MassModel:
                 differs.mass, differs.ipos, differs.fullinertia = link.mass, link.centre, link.inertia
             self._model: mujoco.MjModel = spec.compile()
         except ValueError as error:
-            raise RobotError(f"{body.mjcf} is not MJCF: {' '.join(str(error).split())}") from error
+            raise RobotModelError(f"{body.mjcf} is not MJCF: {' '.join(str(error).split())}") from error
         self._data = mujoco.MjData(self._model)
         self._places = {name: self._model.joint(name).qposadr[0] for name in body.joints}
         self._torso = self._model.body("Torso").id

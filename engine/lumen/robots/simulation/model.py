@@ -7,7 +7,7 @@ from pathlib import Path
 
 from dm_control import mjcf
 
-from lumen.errors import RobotError
+from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.robots.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 
@@ -59,7 +59,7 @@ def compiled(world: mjcf.RootElement) -> mjcf.Physics:
     try:
         return mjcf.Physics.from_mjcf_model(world)
     except Exception as error:  # the compiler raises whatever it stumbles over
-        raise RobotError(f"MuJoCo can't build the robot in its hall: {_plain(error)}") from error
+        raise RobotModelError(f"MuJoCo can't build the robot in its hall: {_plain(error)}") from error
 
 
 def _plain(error: Exception) -> str:
@@ -70,17 +70,17 @@ def _plain(error: Exception) -> str:
 
 def _complain(what: str, lacks: list[str]) -> None:
     if lacks:
-        raise RobotError(f"{what} lacks what the simulation needs: {', '.join(lacks)}")
+        raise RobotModelError(f"{what} lacks what the simulation needs: {', '.join(lacks)}")
 
 
 def _read(path: Path) -> mjcf.RootElement:
     if not path.is_file():
-        raise RobotError(f"there is no model {path.name} in {path.parent.name}/")
+        raise RobotModelError(f"there is no model {path.name} in {path.parent.name}/")
     try:
         return mjcf.from_path(str(path))
     except Exception as error:  # the parser raises whatever it stumbles over
         reason = " ".join(str(error).split())
-        raise RobotError(f"{path.name} is not MJCF: {reason}") from error
+        raise RobotModelError(f"{path.name} is not MJCF: {reason}") from error
 
 
 def _differ(robot: mjcf.RootElement, body: Body) -> None:

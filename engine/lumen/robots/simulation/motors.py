@@ -5,7 +5,7 @@ from math import isfinite
 
 import numpy as np
 
-from lumen.errors import RobotError
+from lumen.errors import BadCommandError
 from lumen.robots.simulation.joint_envelope import JointEnvelope, JointVector
 from lumen.robots.simulation.world import World
 
@@ -54,9 +54,9 @@ class Motors:
         """Raises RobotError where these are no goals for this body."""
         for name, angle in targets.items():
             if name not in self.index:
-                raise RobotError(f"`{name}` is not a joint of this robot")
+                raise BadCommandError(f"`{name}` is not a joint of this robot")
             if not isfinite(angle):
-                raise RobotError(f"`{name}` can't be moved to {angle}")
+                raise BadCommandError(f"`{name}` can't be moved to {angle}")
 
     def inside(self, name: str, angle: float) -> float:
         """The nearest angle inside that joint's limits."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
-from lumen.errors import RobotError
+from lumen.errors import RobotRefusedError
 from lumen.interpreters.gait import Feet, Footstep, Pose, corners, foot_from, middle
 from lumen.interpreters.gait.poses import wrap
 from lumen.interpreters.postures import lies
@@ -75,7 +75,7 @@ class Odometry:
                 least, most = low + self.doubt, high - self.doubt
                 if min(after) < min(least, *before) - drift or max(after) > max(most, *before) + drift:
                     farthest = min(after) if min(after) < least else max(after)
-                    raise RobotError(
+                    raise RobotRefusedError(
                         f"the {_FEET[step.side]} foot {'might' if self.doubt else 'would'} leave the stage: "
                         f"it would reach {axis} = {farthest:.2f} m, and the stage is {low:g} to {high:g} m{self._but()}"
                     )

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from math import isfinite
 
-from lumen.errors import RobotError
+from lumen.errors import BadCommandError
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import Cue, MotionDefinition
 from lumen.robots.cues import CueNotifier, EventSink
@@ -112,5 +112,5 @@ class SpeechActivity:
 def _check(motors: Motors, motion: MotionDefinition) -> None:
     numbers = (x for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle))
     if not (isfinite(motion.duration) and all(map(isfinite, numbers))):
-        raise RobotError(f"`{motion.name}` holds an angle or a time that is no number")
+        raise BadCommandError(f"`{motion.name}` holds an angle or a time that is no number")
     motors.check(dict.fromkeys(motion.tracks, 0.0))

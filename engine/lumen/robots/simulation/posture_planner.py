@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import cos, pi
 from typing import Protocol
 
-from lumen.errors import RobotError
+from lumen.errors import RobotFailedError, RobotRefusedError
 from lumen.interpreters.postures import UPRIGHT, lies, passage, route
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import MotionDefinition
@@ -113,7 +113,7 @@ class PosturePlanner:
             return True
         self._left -= 1
         if not self._left or not down:
-            raise RobotError(f"the robot did not come to {state.posture}" + (": it lies" if down else ""))
+            raise RobotFailedError(f"the robot did not come to {state.posture}" + (": it lies" if down else ""))
         state.posture = down
         return False
 
@@ -123,7 +123,7 @@ class PosturePlanner:
             return _Passing(self._motors, state.passage, now, state.reached)
         path = route(self._body, state.posture, *self._goals)
         if path is None:
-            raise RobotError(f"no way leads from {state.posture} to {' or '.join(self._goals)}")
+            raise RobotRefusedError(f"no way leads from {state.posture} to {' or '.join(self._goals)}")
         if not path:
             return None
         motion = passage(self._body, state.posture, path[0])

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from math import degrees
 from pathlib import Path
 
-from lumen.errors import RobotError, UsageError
+from lumen.errors import RobotError, RobotRefusedError, UsageError
 from lumen.language.commands import Rest
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
@@ -198,7 +198,7 @@ class SimulatedRobot:
 
     def _begin(self, command: RobotCommand, now: float) -> Activity:
         if self.condition.empty and not isinstance(command, Rest):
-            raise RobotError("the battery is empty: plug the robot in")
+            raise RobotRefusedError("the battery is empty: plug the robot in")
         return self._skills.begin(command, now)
 
     def _tick(self) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from math import pi
 from typing import assert_never
 
-from lumen.errors import RobotError
+from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.postures import RESTFUL, UPRIGHT
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
@@ -96,12 +96,12 @@ class SimulatedSkills:
                 return self._wake(now)
             case Walk() | Move():
                 if not self.upright:
-                    raise RobotError(f"the robot is in {self._posture_state.posture}: send it to Stand first")
+                    raise RobotRefusedError(f"the robot is in {self._posture_state.posture}: send it to Stand first")
                 return (
                     self._walker.begin(command, now) if isinstance(command, Walk) else self._walker.move(command, now)
                 )
             case Stop() | Aim():
-                raise RobotError(f"{type(command).__name__} does not last")
+                raise BadCommandError(f"{type(command).__name__} does not last")
             case _:
                 assert_never(command)
 
@@ -113,9 +113,9 @@ class SimulatedSkills:
 
     def _ready(self) -> None:
         if self.fallen:
-            raise RobotError("the robot has fallen: `wake` it first")
+            raise RobotRefusedError("the robot has fallen: `wake` it first")
         if not self.awake:
-            raise RobotError("the motors are off: `wake` first")
+            raise RobotRefusedError("the motors are off: `wake` first")
 
     def _perform(self, command: Perform, now: float) -> Activity:
         motion, owned = command.motion, self.parts(command)
@@ -123,17 +123,19 @@ class SimulatedSkills:
         home = {name: angle for name, angle in start.items() if self._part[name] in owned}
         here = self._posture_state.posture
         if motion.start and motion.start != here and not (self.upright and motion.start in UPRIGHT):
-            raise RobotError(f"`{motion.name}` begins in {motion.start}; the robot is in {here}: send it there first")
+            raise RobotRefusedError(
+                f"`{motion.name}` begins in {motion.start}; the robot is in {here}: send it there first"
+            )
         self.playing = MotionPlayback(self._motors, self._lights, motion, home, now, self._notice)
         return self.playing
 
     def _posture(self, name: str, speed: float, now: float) -> Activity:
         if not 0 < speed <= 1:
-            raise RobotError(f"a speed lies above 0 and up to 1, not at {speed}")
+            raise BadCommandError(f"a speed lies above 0 and up to 1, not at {speed}")
         if name not in self._postures:
-            raise RobotError(f"no posture `{name}`: {did_you_mean(name, self._postures, 'it knows')}")
+            raise BadCommandError(f"no posture `{name}`: {did_you_mean(name, self._postures, 'it knows')}")
         if not self.awake and not self.fallen:
-            raise RobotError("the motors are off: `wake` first")
+            raise RobotRefusedError("the motors are off: `wake` first")
         return self._go((name,), now, speed)
 
     def _go(
@@ -145,7 +147,7 @@ class SimulatedSkills:
             self._posture_state = PostureState(down)
         elif self.fallen:
             if self._world.tilt > _UPRIGHT:
-                raise RobotError("the robot has fallen, but does not lie: put it on its feet first")
+                raise RobotRefusedError("the robot has fallen, but does not lie: put it on its feet first")
             self._posture_state = PostureState(UPRIGHT[0])
         if limp:
             self._motors.stiffen(1.0)

@@ -6,7 +6,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.errors import RobotError
+from lumen.errors import BadCommandError, RobotError, RobotFailedError, RobotRefusedError
 from lumen.interpreters.gait import GENTLE_GAIT, JOINTS, SIDES, Gait, Pose, Velocity, middle
 from lumen.language.commands import Move, Walk
 from lumen.robots.simulation.balance import BalanceController
@@ -65,9 +65,9 @@ class WalkController:
         """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""
         x, y, theta = command.x, command.y, command.theta
         if not all(map(isfinite, (x, y, theta))):
-            raise RobotError(f"there is no way to ({x}, {y}, {theta})")
+            raise BadCommandError(f"there is no way to ({x}, {y}, {theta})")
         if abs(complex(x, y)) > MAX_WALK_DISTANCE:
-            raise RobotError(f"({x:g}, {y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most")
+            raise BadCommandError(f"({x:g}, {y:g}) is too far: a walk goes {MAX_WALK_DISTANCE:g} m at most")
         return self._set_out(Pose(x, y, theta), now)
 
     def move(self, command: Move, now: float) -> "WalkActivity":
@@ -77,14 +77,14 @@ class WalkController:
         """
         velocity = Velocity(command.vx, command.vy, command.vtheta)
         if not all(map(isfinite, velocity)):
-            raise RobotError(f"there is no walking at ({velocity.x}, {velocity.y}, {velocity.theta})")
+            raise BadCommandError(f"there is no walking at ({velocity.x}, {velocity.y}, {velocity.theta})")
         if self._walking and self._walking.steer(velocity, now):
             return self._walking
         return self._set_out(velocity, now)
 
     def _set_out(self, way: Pose | Velocity, now: float) -> "WalkActivity":
         if reason := self.hazards.danger():
-            raise RobotError(f"{reason}: the robot did not set out")
+            raise RobotRefusedError(f"{reason}: the robot did not set out")
         feet = self.odometry.feel(self.measured())
         goal = way if isinstance(way, Velocity) else middle(feet).then(way)
         gait = Gait(feet, goal, self._centre_of_mass, GENTLE_GAIT if self._hot() else None)
@@ -185,8 +185,8 @@ class WalkActivity:
         self._over = True
         self._walker.odometry.land(self._gait.feet)
         if self._reason:
-            raise RobotError(f"{self._reason}: the walk was ended")
+            raise RobotFailedError(f"{self._reason}: the walk was ended")
         far, turned = self._gait.left
         if not self._cancelled and (far > ARRIVAL_TOLERANCE or turned > HEADING_TOLERANCE):
-            raise RobotError(f"the robot did not get there: {100 * far:.0f} cm and {turned:.2f} rad are left")
+            raise RobotFailedError(f"the robot did not get there: {100 * far:.0f} cm and {turned:.2f} rad are left")
         return True

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.errors import RobotError
+from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.model import ROBOT, Variation, compiled, load
@@ -59,7 +59,7 @@ class World:
     def check(self) -> None:
         """Raises RobotError where MuJoCo has met numbers that are none, or too large to be true."""
         if self._warnings[_UNSTABLE].any():
-            raise RobotError("the simulation has become unstable: look at the places, sizes and forces in models/")
+            raise RobotModelError("the simulation has become unstable: look at the places, sizes and forces in models/")
 
     @property
     def angles(self) -> JointVector:
@@ -123,7 +123,7 @@ class World:
         self.physics.forward()
         lost = [self.model.geom(i).name or "one without a name" for i in _nowhere(data.geom_xpos)]
         if lost:
-            raise RobotError(f"these geoms in models/ stand at no place that is a number: {', '.join(lost)}")
+            raise RobotModelError(f"these geoms in models/ stand at no place that is a number: {', '.join(lost)}")
 
 
 def _nowhere(places: NDArray[np.float64]) -> NDArray[np.intp]:
