@@ -1,12 +1,17 @@
 """The MJCF against the published robot, and its physics against cheating."""
 
+import shutil
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from lumen.language.commands import Look
 from lumen.language.robots import Body
 from lumen.robots.simulation import SimulatedRobot
+from tests.simulation.conftest import MODELS
 from tests.simulation.published import JOINTS, LINKS, TOTAL_MASS
 
 FINGERS = ("Fingers", "Thumb")
@@ -113,3 +118,23 @@ def test_one_motor_turns_both_hip_yaw_pitch_joints(robot: SimulatedRobot, body: 
     angles = dict(zip(body.joints, robot.world.angles, strict=True))
     assert angles["LHipYawPitch"] == pytest.approx(-0.3, abs=0.02)
     assert angles["RHipYawPitch"] == pytest.approx(angles["LHipYawPitch"], abs=0.002)
+
+
+def test_a_robot_of_the_same_files_is_a_copy_which_moves_alike_and_shares_nothing(body: Body, tmp_path: Path) -> None:
+    models = Path(shutil.copytree(MODELS, tmp_path / "models"))
+    compiled, copied = (SimulatedRobot(body, models, "hall.xml") for _ in range(2))
+    for robot in (compiled, copied):
+        robot.start("x", Look(0.5, 0.2))
+        robot.advance(2.0)
+    assert np.array_equal(compiled.world.data.qpos, copied.world.data.qpos)
+    copied.world.model.opt.timestep = 0.5
+    assert compiled.world.model.opt.timestep == 0.002
+    assert SimulatedRobot(body, models, "hall.xml").world.model.opt.timestep == 0.002
+
+
+def test_a_file_that_has_changed_makes_another_robot(body: Body, tmp_path: Path) -> None:
+    models = Path(shutil.copytree(MODELS, tmp_path / "models"))
+    assert SimulatedRobot(body, models, "hall.xml").world.model.opt.timestep == 0.002
+    hall = models / "hall.xml"
+    hall.write_text(hall.read_text().replace('timestep="0.002"', 'timestep="0.001"'))
+    assert SimulatedRobot(body, models, "hall.xml").world.model.opt.timestep == 0.001

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.robots.simulation.joint_envelope import JointVector
-from lumen.robots.simulation.model import ROBOT, Variation, compiled, load
+from lumen.robots.simulation.model import ROBOT, Variation, physics
 
 CONTROL_PERIOD = 0.01
 """Time between two commands to the joints [s]."""
@@ -31,7 +31,7 @@ class World:
 
     def __init__(self, body: Body, models: Path, hall: str, variation: Variation | None = None) -> None:
         self.body = body
-        self.physics = compiled(load(body, models, hall, variation))
+        self.physics = physics(body, models, hall, variation)
         self.model: mujoco.MjModel = self.physics.model.ptr
         self.data: mujoco.MjData = self.physics.data.ptr
         joints = [self.model.joint(f"{ROBOT}/{name}") for name in body.joints]
