@@ -89,12 +89,12 @@ def test_without_opengl_there_are_no_images_and_a_remedy() -> None:
     script = f"""
 import pathlib
 from lumen.loading.bodies import build_body
-from lumen.loading.source import Report, parse
+from lumen.loading.source import DocumentReport, parse
 from lumen.ports import Sense
 from lumen.robots.simulation import SimulatedRobot, available
 models = pathlib.Path({str(MODELS)!r})
 document, _ = parse("models/nao.yaml", (models / "nao.yaml").read_bytes())
-robot = SimulatedRobot(build_body(document.data, Report(document), name="nao"), models, "hall.xml")
+robot = SimulatedRobot(build_body(document.data, DocumentReport(document), name="nao"), models, "hall.xml")
 robot.advance(0.1)
 print(robot.read(Sense.IMAGE), available())
 """
