@@ -12,7 +12,7 @@ from dm_control.mujoco import wrapper
 
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
-from lumen.loading.recollection import memoize
+from lumen.loading.memoization import memoize
 from lumen.robots.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 
 ROBOT = "nao"
