@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import MotorCommand, Say
 from lumen.language.events import Event
 from lumen.language.motions import MotionDefinition
 from lumen.language.routes import Route, Size
@@ -89,7 +89,8 @@ class Battery:
     charging: bool
 
 
-Reading = Image | Joints | Sonar | Tactile | Battery
+NumericReading = Joints | Sonar | Tactile | Battery
+Reading = Image | NumericReading
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +116,7 @@ class Record:
     duration: float
 
 
-RobotCommand = Say | Perform | Posture | Walk | Move | Look | Aim | Record | Stop | Rest | Wake
+RobotCommand = MotorCommand | Say | Perform | Aim | Record
 """What a robot understands."""
 
 

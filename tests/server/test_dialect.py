@@ -10,7 +10,7 @@ from lumen.errors import RobotError
 from lumen.language.commands import Language, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.motions import MotionDefinition
 from lumen.ports import Aim, Perform, Record
-from lumen.robots.command_codec import command_from
+from lumen.robots.command_codec import decode_command
 from tests.exhibits import project
 
 PROJECT = project()
@@ -51,7 +51,7 @@ def order(method: str, /, **parameter: Any) -> dict[str, Any]:
     ],
 )  # fmt: skip
 def test_methods(body: dict[str, Any], command: object) -> None:
-    assert command_from(body, PROJECT, lambda: {"HeadYaw": 0.5}) == command
+    assert decode_command(body, PROJECT, lambda: {"HeadYaw": 0.5}) == command
 
 
 @pytest.mark.parametrize(
@@ -60,27 +60,27 @@ def test_methods(body: dict[str, Any], command: object) -> None:
      ("photopose", "photo")],
 )  # fmt: skip
 def test_the_papers_names_and_the_sources_names_play_the_motion(method: str, motion: str) -> None:
-    assert command_from({"method": method}, PROJECT) == Perform(PROJECT.motions[motion])
+    assert decode_command({"method": method}, PROJECT) == Perform(PROJECT.motions[motion])
 
 
 def test_a_motion_hides_no_method_and_an_alias_hides_no_motion() -> None:
     names = ("rest", "StopMove", "dancing", "dance", "Wave", "PhotoPose")
     motions = {name: MotionDefinition(name, 1.0, {}) for name in names}
     other = project(motions=motions)
-    assert command_from({"method": "rest"}, other) == Rest()
-    assert command_from({"method": "stopmove"}, other) == Stop()
-    assert command_from({"method": "dancing"}, other) == Perform(motions["dancing"])
-    assert command_from({"method": "dance"}, other) == Perform(motions["dance"])
-    assert command_from({"method": "photopose"}, other) == Perform(motions["PhotoPose"])
+    assert decode_command({"method": "rest"}, other) == Rest()
+    assert decode_command({"method": "stopmove"}, other) == Stop()
+    assert decode_command({"method": "dancing"}, other) == Perform(motions["dancing"])
+    assert decode_command({"method": "dance"}, other) == Perform(motions["dance"])
+    assert decode_command({"method": "photopose"}, other) == Perform(motions["PhotoPose"])
     for method in ("Wave", "wave", " WAVE "):
-        assert command_from({"method": method}, other) == Perform(motions["Wave"])
+        assert decode_command({"method": method}, other) == Perform(motions["Wave"])
 
 
 @pytest.mark.parametrize("number", [10**400, float("inf"), float("nan"), -(2**64)])
 def test_a_number_beyond_all_bounds_is_refused(number: float) -> None:
     for body in (order("moveto", x=number), order("setangles", jointNames="HeadYaw", angles=number)):
         with pytest.raises(RobotError, match="has to be a number"):
-            command_from(body, PROJECT)
+            decode_command(body, PROJECT)
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,7 @@ def test_a_number_beyond_all_bounds_is_refused(number: float) -> None:
 )
 def test_what_a_stranger_wrote_stays_in_one_line(body: Any) -> None:
     with pytest.raises(RobotError) as caught:
-        command_from(body, PROJECT)
+        decode_command(body, PROJECT)
     assert "\n" not in str(caught.value)
 
 
@@ -127,7 +127,7 @@ def test_what_a_stranger_wrote_stays_in_one_line(body: Any) -> None:
 )
 def test_what_cant_be_done_is_said(body: Any, says: str) -> None:
     with pytest.raises(RobotError) as caught:
-        command_from(body, PROJECT)
+        decode_command(body, PROJECT)
     assert says in str(caught.value)
     assert len(str(caught.value)) < 300
 
@@ -144,6 +144,6 @@ NAMES = st.sampled_from(["x", "speed", "jointNames", "angles", "handName", "text
 @given(method=METHODS, parameter=st.dictionaries(NAMES, VALUES) | VALUES)
 def test_whatever_comes_is_a_command_or_a_refusal(method: str, parameter: Any) -> None:
     try:
-        command_from({"method": method, "parameter": parameter}, PROJECT)
+        decode_command({"method": method, "parameter": parameter}, PROJECT)
     except RobotError as error:
         assert "\n" not in str(error)  # noqa: PT017

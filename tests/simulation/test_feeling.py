@@ -7,8 +7,7 @@ import pytest
 from lumen.language.commands import Posture, Walk
 from lumen.ports import Joints, Sense
 from lumen.robots.recording import RecordingRobot
-from lumen.robots.remote.bodies import reading_of
-from lumen.robots.sense_codec import body_of
+from lumen.robots.sense_codec import decode_reading, encode_reading
 from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import until_answered
 
@@ -83,15 +82,15 @@ def test_motors_that_hold_get_warm(robot: SimulatedRobot) -> None:
 
 def test_it_crosses_the_bus_whole_and_robots_that_feel_nothing_say_nothing(robot: SimulatedRobot) -> None:
     joints = felt(robot)
-    body = body_of(joints)
-    assert reading_of(Sense.JOINT, body, joints.names) == joints
+    body = encode_reading(joints)
+    assert decode_reading(Sense.JOINT, body, joints.names) == joints
     plain = RecordingRobot(robot.body).read(Sense.JOINT)
     assert isinstance(plain, Joints)
-    assert sorted(body_of(plain)) == ["angle", "name", "stiffness", "time"]
-    assert reading_of(Sense.JOINT, body_of(plain), plain.names) == plain
+    assert sorted(encode_reading(plain)) == ["angle", "name", "stiffness", "time"]
+    assert decode_reading(Sense.JOINT, encode_reading(plain), plain.names) == plain
 
 
 @pytest.mark.parametrize("broken", [{"fsr": 3}, {"inertial": {"AngleX": "much"}}, {"temperature": ["hot"]}])
 def test_what_is_no_number_is_no_reading(robot: SimulatedRobot, broken: dict[str, object]) -> None:
     joints = felt(robot)
-    assert reading_of(Sense.JOINT, {**body_of(joints), **broken}, joints.names) is None
+    assert decode_reading(Sense.JOINT, {**encode_reading(joints), **broken}, joints.names) is None

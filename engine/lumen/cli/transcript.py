@@ -10,26 +10,11 @@ from lumen.app.causes import innermost, reason_of, why
 from lumen.cli.terminal import coloured, paint
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.inside import unfolded
-from lumen.language.commands import (
-    Command,
-    Language,
-    Log,
-    Look,
-    Move,
-    Play,
-    Posture,
-    Publish,
-    Rest,
-    Say,
-    Start,
-    Stop,
-    Track,
-    Wake,
-    Walk,
-)
+from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Arrive, Happen, Leave, SendMessage, Speak, TouchSensor, VisitorAction
+from lumen.language.verbs import verb_of
 from lumen.runtime.loop import Observer
 
 INDENT = 18
@@ -70,18 +55,23 @@ class Transcript(Observer):
 
     def performing(self, command: Command, now: float) -> None:
         match command:
-            case Start(id, Say(text)):
-                self.said += 1
-                self.line("robot", f"“{text}”")
-            case Start(id, body_command):
-                if words := _words(body_command):
-                    self.line("robot", words)
-                    if not isinstance(body_command, Track | Language):
-                        self._running[id] = words
+            case Start(id, wanted):
+                self._started(id, wanted)
             case Publish(route):
                 self.line("robot", f"publishes on {route}")
             case Log(text):
                 self.line("log", text)
+
+    def _started(self, id: str, command: BodyCommand) -> None:
+        if isinstance(command, Say):
+            self.said += 1
+            self.line("robot", f"“{command.text}”")
+            return
+        verb = verb_of(command)
+        words = verb.transcript(command)
+        self.line("robot", words)
+        if not verb.instant:
+            self._running[id] = words
 
     def answered(self, event: Event) -> None:
         kind, _, id = event.name.partition(".command.")
@@ -125,31 +115,6 @@ def _wrapped(text: str) -> str:
     width = max(shutil.get_terminal_size((120, 24)).columns - INDENT, 30)
     lines = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
     return ("\n" + " " * INDENT).join(lines)
-
-
-def _words(command: object) -> str:
-    match command:
-        case Play(motion):
-            return f"plays {motion}"
-        case Posture(name):
-            return f"takes the posture {name}"
-        case Walk(x, y, theta):
-            return f"walks {x:g} m, {y:g} m, {theta:.2f} rad"
-        case Move(vx, vy, vtheta):
-            return f"walks on at {vx:g} m/s, {vy:g} m/s, {vtheta:.2f} rad/s"
-        case Look():
-            return "turns its head"
-        case Track(controller, on):
-            return f"{'follows the face with' if on else 'lets go of'} {controller}"
-        case Stop(what):
-            return f"stops {what}"
-        case Rest():
-            return "rests"
-        case Wake():
-            return "wakes"
-        case Language(language):
-            return f"speaks {language} from now on"
-    return ""
 
 
 def _base(words: str) -> str:

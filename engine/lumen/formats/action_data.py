@@ -20,7 +20,7 @@ from lumen.language.actions import (
     Send,
     Wait,
 )
-from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
+from lumen.language.verbs import Quantity, verb_of
 
 
 def plain_block(steps: Iterable[PlacedAction]) -> list[dict[str, Any]]:
@@ -66,23 +66,19 @@ def plain_action(action: Action) -> dict[str, Any]:
             return block | ({"else": plain_block(otherwise)} if otherwise else {})
         case Parallel(branches):
             return {"parallel": plain_block(branches)}
-        case Play(name) | Language(name):
-            return {"play" if isinstance(action, Play) else "language": name}
-        case Posture(name, speed):
-            return {"posture": {"name": name, "speed": speed}}
-        case Walk(x, y, theta):
-            return {"walk": {"x": x, "y": y, "theta": theta}}
-        case Move(vx, vy, vtheta):
-            return {"walk": {"vx": vx, "vy": vy, "vtheta": vtheta}}
-        case Look(yaw, pitch):
-            return {"look": {"yaw": yaw, "pitch": pitch}}
-        case Track(controller, on):
-            return {"track": {controller: on}}
-        case Stop(what):
-            return {"stop": what}
-        case Rest() | Wake():
-            return {"rest" if isinstance(action, Rest) else "wake": True}
-    assert_never(action)
+        case _:
+            verb = verb_of(action)
+            return {verb.name: verb.data(action, _written)}
+
+
+def _written(quantity: Quantity, value: Any) -> Any:
+    match quantity:
+        case Quantity.PLAIN | Quantity.LENGTH | Quantity.ANGLE:
+            return value
+        case Quantity.DURATION:
+            return duration(value * 1000)
+        case _:
+            assert_never(quantity)
 
 
 def _event(event: str, data: ComputedValue) -> Any:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Union  # a recursive alias needs it: `|` does not take names in quotes
 
-from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
+from lumen.language.commands import VerbCommand
 from lumen.language.diagnostics import NodePath
 
 
@@ -109,10 +109,10 @@ class Parallel:
     branches: tuple["PlacedAction", ...]
 
 
-Action = (
-    SayText | PublishBody | Assign | Raise | Send | CancelSend | Wait | LogText | If | Parallel
-    | Play | Posture | Walk | Move | Look | Track | Stop | Rest | Wake | Language
-)  # fmt: skip
+ComputedAction = SayText | PublishBody | Assign | Raise | Send | CancelSend | Wait | LogText | If | Parallel
+"""What a step has to evaluate, or to decide."""
+
+Action = ComputedAction | VerbCommand
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ class Posture:
 class Walk:
     """Walk to a pose relative to the robot: `x` forward, `y` left [m], `theta` to the left [rad]."""
 
-    x: float
+    x: float = 0.0
     y: float = 0.0
     theta: float = 0.0
 
@@ -58,8 +58,8 @@ class Move:
 class Look:
     """Turn the head: `yaw` to the left, `pitch` down [rad], as NAO counts them."""
 
-    yaw: float
-    pitch: float
+    yaw: float = 0.0
+    pitch: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,13 @@ class Log:
     text: str
 
 
-BodyCommand = Say | Play | Posture | Walk | Move | Look | Track | Stop | Rest | Wake | Language
+MotorCommand = Posture | Walk | Move | Look | Stop | Rest | Wake
+"""What stands in the YAML as the robot performs it. A new one goes here, and into `verbs.py`."""
+
+VerbCommand = MotorCommand | Play | Track | Language
+"""Verbs of the YAML that are their own commands, for they hold no expressions."""
+
+BodyCommand = VerbCommand | Say
 """What a robot performs, or the parts of the runtime that move it."""
 
 

@@ -1,7 +1,7 @@
 """Actions of a behaviour: what stands in `entry`, `do`, `exit` and `actions`, one verb each."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, assert_never
 
 from lumen.language.actions import (
     Action,
@@ -18,8 +18,9 @@ from lumen.language.actions import (
     Template,
     Wait,
 )
-from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
+from lumen.language.commands import VerbCommand
 from lumen.language.diagnostics import NodePath
+from lumen.language.verbs import Quantity, Verb, verb_named
 from lumen.loading.expressions import Expressions
 from lumen.loading.numbers import finite
 from lumen.loading.source import DocumentReport
@@ -65,64 +66,56 @@ class Actions:
             self.report("bad-duration", where, f"`{text}` is not a duration", hint=DURATION_HINT, key=key)
         return length
 
-    def _verb(self, verb: str, body: Any, where: NodePath) -> Action | None:
-        match verb:
-            case "say":
-                return self._say(body, where)
-            case "assign":
-                return self._assign(body, where)
-            case "publish":
-                route, value = (body, None) if isinstance(body, str) else (body["route"], body.get("body"))
-                return PublishBody(route, self.expressions.value(value, (*where, "body")))
-            case "raise":
-                event, data = _event(body)
-                return Raise(event, self.expressions.value(data, (*where, "data")))
-            case "send":
-                return self._send(body, where)
-            case "cancel":
-                return CancelSend(body)
-            case "log":
-                text = self.expressions.template(body, where)
-                return LogText(text) if text else None
-            case "wait":
-                length = self.duration(body, where)
-                return None if length is None else Wait(length)
-            case "parallel":
-                return Parallel(self.block(body, where, do=True))
-        return self._motor(verb, body, where)
+    def _verb(self, verb: str, data: Any, where: NodePath) -> Action | None:
+        if read := COMPUTED_READERS.get(verb):
+            return read(self, data, where)
+        row = verb_named(verb, data)
+        return self._command(row, data, where) if row else None
 
-    def _motor(self, verb: str, body: Any, where: NodePath) -> Action | None:
-        if not self._finite(body, where):
+    def _command(self, row: Verb[Any], data: Any, where: NodePath) -> VerbCommand | None:
+        """The command of this row, None (and reported) where a number or a duration can't be read."""
+        values = {}
+        for field, below, value in row.arguments(data):
+            values[field.name] = self._value(field.quantity, value, (*where, *below))
+        return None if None in values.values() else row.command(**values)
+
+    def _value(self, quantity: Quantity, value: Any, where: NodePath) -> Any:
+        """The value in the command's units, None (and reported) where it is none."""
+        if isinstance(value, int | float) and not finite(value, self.report, where):
             return None
-        match verb:
-            case "play":
-                return Play(body)
-            case "posture":
-                return Posture(body) if isinstance(body, str) else Posture(body["name"], body.get("speed", 0.5))
-            case "walk" if body.keys() & {"vx", "vy", "vtheta"}:
-                vx, vy = (body.get(k, 0.0) * self.length for k in ("vx", "vy"))
-                return Move(vx, vy, body.get("vtheta", 0.0) * self.angle)
-            case "walk":
-                x, y = (body.get(k, 0.0) * self.length for k in ("x", "y"))
-                return Walk(x, y, body.get("theta", 0.0) * self.angle)
-            case "look":
-                return Look(*(body.get(k, 0.0) * self.angle for k in ("yaw", "pitch")))
-            case "track":
-                return Track(body) if isinstance(body, str) else Track(*next(iter(body.items())))
-            case "stop":
-                return Stop(body)
-            case "rest":
-                return Rest()
-            case "wake":
-                return Wake()
-            case "language":
-                return Language(body)
-        return None
+        match quantity:
+            case Quantity.PLAIN:
+                return value
+            case Quantity.LENGTH:
+                return value * self.length
+            case Quantity.ANGLE:
+                return value * self.angle
+            case Quantity.DURATION:
+                return self.duration(value, where)
+            case _:
+                assert_never(quantity)
 
-    def _finite(self, body: Any, where: NodePath) -> bool:
-        """Whether every number of a motor's action can be gone to; reported where not."""
-        numbers = body.items() if isinstance(body, Mapping) else ()
-        return all(finite(n, self.report, (*where, k)) for k, n in numbers if isinstance(n, int | float))
+    def _publish(self, data: Any, where: NodePath) -> PublishBody:
+        route, value = (data, None) if isinstance(data, str) else (data["route"], data.get("body"))
+        return PublishBody(route, self.expressions.value(value, (*where, "body")))
+
+    def _raise(self, data: Any, where: NodePath) -> Raise:
+        event, value = _event(data)
+        return Raise(event, self.expressions.value(value, (*where, "data")))
+
+    def _cancel(self, data: str, where: NodePath) -> CancelSend:
+        return CancelSend(data)
+
+    def _log(self, data: str, where: NodePath) -> LogText | None:
+        text = self.expressions.template(data, where)
+        return LogText(text) if text else None
+
+    def _wait(self, data: Any, where: NodePath) -> Wait | None:
+        length = self.duration(data, where)
+        return None if length is None else Wait(length)
+
+    def _parallel(self, data: Any, where: NodePath) -> Parallel:
+        return Parallel(self.block(data, where, do=True))
 
     def _say(self, body: Any, where: NodePath) -> SayText | None:
         table = {"any": body} if isinstance(body, str) else body
@@ -157,3 +150,17 @@ class Actions:
 
 def _event(body: Any) -> tuple[str, Any]:
     return (body, None) if isinstance(body, str) else (body["event"], body.get("data"))
+
+
+COMPUTED_READERS: Mapping[str, Callable[[Actions, Any, NodePath], Action | None]] = {
+    "say": Actions._say,
+    "assign": Actions._assign,
+    "publish": Actions._publish,
+    "raise": Actions._raise,
+    "send": Actions._send,
+    "cancel": Actions._cancel,
+    "log": Actions._log,
+    "wait": Actions._wait,
+    "parallel": Actions._parallel,
+}
+"""What reads the verbs that a step evaluates, by their names; `if` has keys beside it, and is read before."""

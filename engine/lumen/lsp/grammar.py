@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 
 from lumen.language.diagnostics import NodePath
+from lumen.language.verbs import VERBS
 from lumen.loading.packaged import MAIN_FILE
 from lumen.lsp.names import NameKind
 
@@ -21,13 +22,31 @@ FILES: Mapping[str, str] = {
 Table = Mapping[tuple[str, ...], NameKind]
 """The ends of paths, `*` for any step; the indices of lists are left out."""
 
+
+def _pair_names() -> Table:
+    """What the key behind a verb names, as in `track: {head: false}`."""
+    return {(verb.name, "*"): NameKind(verb.fields[0].names) for verb in VERBS if verb.pair}
+
+
+def _field_names() -> Table:
+    """What the values of a verb's fields name; the first field's may stand alone."""
+    found: dict[tuple[str, ...], NameKind] = {}
+    for verb in VERBS:
+        for i, field in enumerate(verb.fields):
+            if field.names:
+                found[verb.name, field.name] = NameKind(field.names)
+                if i == 0:
+                    found[(verb.name,)] = NameKind(field.names)
+    return found
+
+
 _KEYS: Mapping[str, Table] = {
     "behavior": {
         ("states", "*"): NameKind.STATE,
         ("on", "*"): NameKind.EVENT,
         ("assign", "*"): NameKind.CONTEXT,
         ("say", "*"): NameKind.LANGUAGE,
-        ("track", "*"): NameKind.CONTROLLER,
+        **_pair_names(),
         ("phrases", "*", "*"): NameKind.LANGUAGE,
         ("phrases", "*"): NameKind.LANGUAGE,
         ("value", "*"): NameKind.LANGUAGE,
@@ -67,17 +86,13 @@ _VALUES: Mapping[str, Table] = {
         ("target",): NameKind.STATE,
         ("initial",): NameKind.STATE,
         ("onReload",): NameKind.STATE,
-        ("play",): NameKind.MOTION,
-        ("posture",): NameKind.POSTURE,
-        ("posture", "name"): NameKind.POSTURE,
-        ("track",): NameKind.CONTROLLER,
+        **_field_names(),
         ("publish",): NameKind.ROUTE,
         ("publish", "route"): NameKind.ROUTE,
         ("raise",): NameKind.EVENT,
         ("raise", "event"): NameKind.EVENT,
         ("send",): NameKind.EVENT,
         ("send", "event"): NameKind.EVENT,
-        ("language",): NameKind.LANGUAGE,
         ("invoke",): NameKind.BEHAVIOR,
         ("invoke", "behavior"): NameKind.BEHAVIOR,
     },

@@ -15,7 +15,7 @@ from lumen.language.commands import Language, Rest, Say, Stop
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Joints, Message, Perform, Robot, RobotCommand, Sense
-from lumen.robots.command_codec import command_from, method_of, own_id, stops, stops_all
+from lumen.robots.command_codec import decode_command, method_of, own_id, stops, stops_all
 from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, UNKNOWN, CommandRecord, CommandReports
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.robot_routes import AIM, COMMAND, KEYS, REPORT, STOP, key_of, tell
@@ -187,7 +187,7 @@ class CommandReceiver:
             if overtaken:
                 self._reports.change(record, CANCELLED)
             else:
-                self._perform(record, command_from(message.body, self._project, self._angles))
+                self._perform(record, decode_command(message.body, self._project, self._angles))
         except RobotError as error:
             _log.warning("a command was refused: %s", error)
             self._reports.change(record, FAILED, str(error))
@@ -252,7 +252,7 @@ class CommandReceiver:
         if self._clock() - arrival.at > MAX_AIM_AGE:
             return
         try:
-            command = command_from(arrival.message.body, self._project, self._angles)
+            command = decode_command(arrival.message.body, self._project, self._angles)
         except RobotError as error:
             _log.debug("an aim was refused: %s", error)
             return

@@ -11,17 +11,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from lumen.errors import RobotError
-from lumen.language.commands import Channel, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Move, Rest, Stop
 from lumen.language.events import Event
-from lumen.ports import Perform, Record, RobotCommand
-
-HEAD, ARMS, LEGS, VOICE, LEDS, EARS = PARTS = ("head", "arms", "legs", "voice", "leds", "ears")
+from lumen.ports import RobotCommand
+from lumen.robots.command_table import row_of
 
 MAX_UNREAD_STARTS = 1_000
 """Of how many commands that began it is known at most, where nobody asks."""
-
-_RANK = {Stop: 0, Rest: 0, Wake: 1, Posture: 1, Walk: 1, Perform: 2, Move: 2, Say: 2, Record: 2, Look: 3}
-_CHANNELS: dict[Channel, tuple[type, ...]] = {"walk": (Walk, Move), "play": (Perform,), "say": (Say,)}
 
 
 class Activity(Protocol):
@@ -52,7 +48,7 @@ class _Task:
 
     @property
     def rank(self) -> int:
-        return _RANK[type(self.command)]
+        return row_of(self.command).rank
 
 
 class _Ended:
@@ -86,8 +82,9 @@ class Executor:
         """Queue a command; it begins at the next `advance` for which its parts are free."""
         task = _Task(id, command, self._parts(command))
         if isinstance(command, Stop):
-            kinds = _CHANNELS.get(command.what, (object,))
-            ended = [t for t in self._tasks if isinstance(t.command, kinds) and not isinstance(t.command, Stop | Rest)]
+            what = command.what
+            meant = [t for t in self._tasks if what in ("all", row_of(t.command).channel)]
+            ended = [t for t in meant if not isinstance(t.command, Stop | Rest)]
             task.activity = _Ended(ended, self._tasks)
             self._begun.append(id)
             self._cancel(ended)

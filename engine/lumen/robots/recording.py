@@ -6,27 +6,20 @@ from math import hypot, inf, isfinite
 
 from lumen.errors import BadCommandError, RobotFailedError, UsageError
 from lumen.interpreters.projection import seen
-from lumen.language.commands import Look, Move, Posture, Rest, Say, Wake, Walk
+from lumen.language.commands import Look, Posture
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.body_parts import part_of, parts
+from lumen.robots.body_parts import part_of
+from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.cues import CueNotifier
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.silent_recording import SilentRecording
 
-_VERBS: Mapping[type, str] = {
-    Say: "say", Perform: "play", Posture: "posture", Walk: "walk", Move: "walk", Look: "look", Rest: "rest",
-    Wake: "wake", Record: "record",
-}  # fmt: skip
-
 TORSO_HEIGHT = 0.333
 """Where a standing NAO's torso is above its soles [m]."""
-
-TURNING_SPEED = 0.25
-"""How fast a walk turns [rad/s]: the simulated robot turns around by 90 degrees in 7 s."""
 
 PODIUM_HEIGHT = 0.5
 """What the robot stands on [m]."""
@@ -80,7 +73,7 @@ class RecordingRobot:
         self._plugged = False
         self._visitor: Visitor | None = None
         self._noticed: list[Event] = []
-        self._executor = Executor(self._begin, lambda command: parts(command, body))
+        self._executor = Executor(self._begin, lambda command: parts_of(command, body))
         self._part = part_of(body)
 
     def start(self, id: str, command: RobotCommand) -> None:
@@ -150,16 +143,18 @@ class RecordingRobot:
 
     def _begin(self, command: RobotCommand, now: float) -> Activity:
         self.performed.append((now, command))
-        behaves = self._behaves.get(_VERBS[type(command)])
+        row = row_of(command)
+        behaves = self._behaves.get(row.verb)
         if behaves == "fails":
-            raise RobotFailedError(f"{_VERBS[type(command)]} fails in this story")
+            raise RobotFailedError(f"{row.verb} fails in this story")
         if isinstance(command, Posture):
             if command.name not in self.body.postures:
                 raise BadCommandError(f"no posture `{command.name}`")
             self._angles.update(self.body.postures[command.name])
         elif isinstance(command, Look):
             self._turn({"HeadYaw": command.yaw, "HeadPitch": command.pitch})
-        until = float("inf") if behaves == "hangs" else now + _duration(command, behaves)
+        usual = row.duration(command)
+        until = now + (inf if behaves == "hangs" else usual if behaves is None else float(behaves))
         if isinstance(command, Perform):
             return _Playing(until, now, CueNotifier(command.motion, self._notice))
         if isinstance(command, Record):
@@ -177,23 +172,3 @@ class RecordingRobot:
         for name, angle in angles.items():
             joint = joints[name]
             self._angles[name] = min(max(angle, joint.minimum), joint.maximum)
-
-
-def _duration(command: RobotCommand, behaves: str | float | None) -> float:
-    if isinstance(behaves, float | int):
-        return float(behaves)
-    match command:
-        case Say(text):
-            return 0.4 + 0.06 * len(text)
-        case Perform(motion):
-            return motion.duration
-        case Walk(x, y, theta):
-            return hypot(x, y) / 0.1 + abs(theta) / TURNING_SPEED
-        case Move(vx, vy, vtheta):
-            return inf if any((vx, vy, vtheta)) else 1.0
-        case Look():
-            return 1.0
-        case Record(_, duration):
-            return duration
-        case _:
-            return 2.0

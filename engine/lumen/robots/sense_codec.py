@@ -1,13 +1,13 @@
-"""The five senses as the JSON bodies of 2015, and `time` [s], the robot's clock, which is ours."""
+"""Readings of the senses as the JSON bodies of 2015, and `time` [s], the robot's clock, which is ours."""
 
 import base64
 import wave
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, assert_never
 
 from lumen.language.routes import Size
-from lumen.ports import Battery, Image, Joints, Sonar, Tactile
+from lumen.ports import Battery, Image, Joints, NumericReading, Reading, Sense, Sonar, Tactile
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,7 +18,7 @@ RECORDING_RATE = 16_000
 """Samples of a recording a second."""
 
 
-def body_of(reading: Joints | Sonar | Tactile | Battery) -> dict[str, Any]:
+def encode_reading(reading: NumericReading) -> dict[str, Any]:
     """The body of a reading that is numbers already; angles in [rad], distances in [m], charge in [%]."""
     match reading:
         case Joints(time, names, angles, stiffness):
@@ -31,6 +31,50 @@ def body_of(reading: Joints | Sonar | Tactile | Battery) -> dict[str, Any]:
             return {"name": list(names), "value": list(values), "time": time}
         case Battery(time, percentage, plugged, charging):
             return {"percentage": percentage, "isPlugged": plugged, "isCharging": charging, "time": time}
+        case _:
+            assert_never(reading)
+
+
+def decode_reading(sense: Sense, body: Any, names: Sequence[str]) -> Reading | None:
+    """The reading in a body of that sense; None where it is none, or of another body than the one with these joints.
+
+    Of images it is always None: pictures are for other modules.
+    """
+    if not isinstance(body, Mapping):
+        return None
+    try:
+        time = float(body.get("time", 0.0))
+        match sense:
+            case Sense.JOINT:
+                known, angles = tuple(map(str, body["name"])), tuple(map(float, body["angle"]))
+                stiffness = tuple(map(float, body["stiffness"]))
+                whole = known == tuple(names) and len(angles) == len(stiffness) == len(known)
+                felt = _felt(body, len(known))
+                return Joints(time, known, angles, stiffness, *felt) if whole else None
+            case Sense.SONAR:
+                return Sonar(time, float(body["leftSensor"]), float(body["rightSensor"]))
+            case Sense.TACTILE:
+                return Tactile(time, tuple(map(str, body["name"])), tuple(map(int, body["value"])))
+            case Sense.BATTERY:
+                return Battery(
+                    time,
+                    int(body["percentage"]),
+                    plugged=bool(body["isPlugged"]),
+                    charging=bool(body["isCharging"]),
+                )
+            case Sense.IMAGE:
+                return None
+            case _:
+                assert_never(sense)
+    except (KeyError, TypeError, ValueError, OverflowError):
+        return None
+
+
+def _felt(body: Mapping[str, Any], count: int) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
+    """What else the robot feels of itself: motors' temperatures, inertial unit, soles; empty where nothing is said."""
+    temperature = tuple(map(float, body.get("temperature", ())))
+    inertial, fsr = ({str(k): float(v) for k, v in dict(body.get(name, {})).items()} for name in ("inertial", "fsr"))
+    return temperature if len(temperature) == count else (), inertial, fsr
 
 
 def image_body(image: Image, number: int, date: str, size: Size | None = None) -> dict[str, Any]:

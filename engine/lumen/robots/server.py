@@ -17,7 +17,7 @@ from lumen.ports import Bus, Image, Robot, RobotCommand, Sense
 from lumen.robots.command_receiver import CommandReceiver
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.robot_routes import NOTICED, RECORDING, TEXT, tell
-from lumen.robots.sense_codec import body_of, image_body
+from lumen.robots.sense_codec import encode_reading, image_body
 from lumen.robots.sense_publisher import PendingReading, PublishCounts, SensePublisher
 
 DEFAULT_SENSE_PERIOD = 0.1
@@ -171,7 +171,7 @@ class RobotServer:
         self._project = project
         self._routes = {sense: project.routes[sense] for sense in Sense if sense in project.routes}
         for sense in self._routes.keys() - self._broadcasts.keys():
-            encode = self._picture if sense is Sense.IMAGE else body_of
+            encode = self._picture if sense is Sense.IMAGE else encode_reading
             self._broadcasts[sense] = SensePublisher(sense, encode, partial(self._publish, sense))
             self._next[sense] = 0.0
 

@@ -1,9 +1,10 @@
 """Names that one file uses and another one has: behaviours, stories, motions, controllers, postures, routes."""
 
 from lumen.language.actions import PublishBody
-from lumen.language.commands import Play, Posture, Track
+from lumen.language.commands import VerbCommand
 from lumen.language.diagnostics import Diagnostic, NodePath, Related, did_you_mean
 from lumen.language.routes import Direction
+from lumen.language.verbs import verb_of
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
@@ -72,23 +73,34 @@ def _model_file(draft: ProjectDraft, report: DocumentReport, path: NodePath, nam
 
 
 def _action(draft: ProjectDraft, report: DocumentReport, references: References, site: ActionSite) -> None:
-    where = site.step.where
-    match site.step.action:
-        case Play(name):
-            references.look_up(report, (*where, "play"), "motion", name)
-        case Track(name):
-            short, long = (*where, "track"), (*where, "track", name)
-            references.look_up(
-                report, first(report, long, short), "controller", name, key=long in report.document.spans
-            )
-        case PublishBody(name):
-            path = first(report, (*where, "publish", "route"), (*where, "publish"))
-            if known_route(draft, report, path, name):
-                _published(draft, report, path, name)
-        case Posture(name) if draft.body and name not in draft.body.postures:
-            path = first(report, (*where, "posture", "name"), (*where, "posture"))
-            hint = did_you_mean(name, draft.body.postures, f"{draft.body.name} knows")
-            lost = draft.report("models", draft.settings.model).lost if draft.settings else set()
-            if name not in lost:
-                message = f"there is no posture `{name}`"
-                find(report, "unknown-posture", path, message, hint, cause=f"posture {name}")
+    where, action = site.step.where, site.step.action
+    if isinstance(action, PublishBody):
+        path = first(report, (*where, "publish", "route"), (*where, "publish"))
+        if known_route(draft, report, path, action.route):
+            _published(draft, report, path, action.route)
+    elif isinstance(action, VerbCommand):
+        _names(draft, report, references, where, action)
+
+
+def _names(
+    draft: ProjectDraft, report: DocumentReport, references: References, where: NodePath, command: VerbCommand
+) -> None:
+    """Each field of a command that names something, which stands alone behind the verb or under its key."""
+    verb = verb_of(command)
+    for field in verb.fields:
+        name = getattr(command, field.name)
+        short, long = (*where, verb.name), (*where, verb.name, name if verb.pair else field.name)
+        path = first(report, long, short)
+        if field.names == "posture":
+            _posture(draft, report, path, name)
+        elif field.names in ("motion", "controller"):
+            references.look_up(report, path, field.names, name, key=verb.pair and path == long)
+
+
+def _posture(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> None:
+    if draft.body is None or name in draft.body.postures:
+        return
+    hint = did_you_mean(name, draft.body.postures, f"{draft.body.name} knows")
+    lost = draft.report("models", draft.settings.model).lost if draft.settings else set()
+    if name not in lost:
+        find(report, "unknown-posture", path, f"there is no posture `{name}`", hint, cause=f"posture {name}")

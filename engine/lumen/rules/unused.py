@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from lumen.language.commands import Play, Track
 from lumen.language.diagnostics import NodePath, Severity, has_errors, nearest
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect
+from lumen.language.verbs import names_in
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.codes import FAMILIES as CODES_OF
@@ -88,12 +88,12 @@ def _files(draft: ProjectDraft) -> None:
     expected = {
         s.action.played for story in draft.stories.values() for s in story.steps if isinstance(s.action, Expect)
     }
-    motions = {action.motion for action in actions if isinstance(action, Play)} | expected
+    motions = {name for action in actions for name in names_in(action, "motion")} | expected
     for name in draft.motions:
         motions |= _played(draft.report("motions", name).document.data)
     behaviors = {draft.settings.behavior, *(story.behavior for story in draft.stories.values())}
     behaviors |= {i.behavior for m in draft.behaviors.values() for state in m.states.values() for i in state.invoke}
-    controllers = {action.controller for action in actions if isinstance(action, Track)}
+    controllers = {name for action in actions for name in names_in(action, "controller")}
     used: Mapping[str, tuple[str, Iterable[str], set[Any], str]] = {
         "motions": ("motion", draft.motions, motions, "`play` it somewhere, or delete the file"),
         "behaviors": ("behaviour", draft.behaviors, behaviors, "`invoke` it somewhere, or delete the file"),

@@ -2,24 +2,9 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, get_args
 
-from lumen.language.commands import (
-    Command,
-    Language,
-    Look,
-    Move,
-    Play,
-    Posture,
-    Publish,
-    Rest,
-    Say,
-    Start,
-    Stop,
-    Track,
-    Wake,
-    Walk,
-)
+from lumen.language.commands import BodyCommand, Command, Publish, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
@@ -27,9 +12,8 @@ from lumen.runtime.trace_publisher import KEY, ROUTE
 
 MAX_PENDING_TRACES = 10_000
 
-_VERBS: Mapping[str, type] = {
-    kind.__name__.lower(): kind for kind in (Say, Play, Posture, Walk, Move, Look, Track, Stop, Rest, Wake, Language)
-}
+_COMMANDS: Mapping[str, type] = {kind.__name__.lower(): kind for kind in get_args(BodyCommand)}
+"""The commands by the names that `TracePublisher` gives them."""
 
 
 class TraceListener(Protocol):
@@ -86,7 +70,7 @@ def _command(said: dict[str, Any]) -> Command | None:
     verb, id = str(fields.pop("verb", "")), str(fields.pop("id", ""))
     if verb == "publish":
         return Publish(str(fields.get("route", "")), fields.get("body"))
-    kind = _VERBS.get(verb)
+    kind = _COMMANDS.get(verb)
     try:
         return Start(id, kind(**fields)) if kind else None
     except TypeError:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
-from typing import TypeVar, assert_never
+from typing import TypeVar
 
 from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.formatting import code, names, quoted, seconds
@@ -20,7 +20,7 @@ from lumen.language.actions import (
     Send,
     Wait,
 )
-from lumen.language.commands import Language, Look, Move, Play, Posture, Rest, Stop, Track, Wake, Walk
+from lumen.language.verbs import verb_of
 
 T = TypeVar("T")
 
@@ -101,26 +101,6 @@ def told(action: Action) -> str:
     match action:
         case SayText(texts):
             return f"says {quoted(next(iter(texts.values()))[0].text)}"
-        case Play(motion):
-            return f"plays `{motion}`"
-        case Posture(name, speed):
-            return f"goes to `{name}` at speed {speed:g}"
-        case Walk(x, y, theta):
-            return f"walks to x {x:g} m, y {y:g} m, theta {theta:.3g} rad"
-        case Move(vx, vy, vtheta):
-            return f"walks on at x {vx:g} m/s, y {vy:g} m/s, theta {vtheta:.3g} rad/s"
-        case Look(yaw, pitch):
-            return f"looks to yaw {yaw:.3g} rad, pitch {pitch:.3g} rad"
-        case Track(controller, on):
-            return f"lets `{controller}` track" if on else f"no longer lets `{controller}` track"
-        case Stop(what):
-            return f"stops `{what}`"
-        case Rest():
-            return "rests"
-        case Wake():
-            return "wakes"
-        case Language(language):
-            return f"speaks `{language}` from then on"
         case PublishBody(route):
             return f"publishes on `{route}`"
         case Assign(values):
@@ -140,4 +120,4 @@ def told(action: Action) -> str:
         case Parallel(branches):
             return f"does {len(branches)} things at once"
         case _:
-            assert_never(action)
+            return verb_of(action).change(action)

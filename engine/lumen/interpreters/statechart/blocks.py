@@ -1,7 +1,7 @@
 """Actions as closures over a workbench: compiled once, so that a step does not look at their kind again."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias, assert_never
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
 from lumen.language.actions import (
@@ -20,22 +20,7 @@ from lumen.language.actions import (
     Send,
     Wait,
 )
-from lumen.language.commands import (
-    BodyCommand,
-    Language,
-    Log,
-    Look,
-    Move,
-    Play,
-    Posture,
-    Publish,
-    Rest,
-    Say,
-    Stop,
-    Track,
-    Wake,
-    Walk,
-)
+from lumen.language.commands import BodyCommand, Language, Log, Publish, Say, VerbCommand
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 
@@ -87,7 +72,7 @@ def compile_action(action: Action) -> ActionFunction:
     return begin
 
 
-def compile_command(action: Action) -> CommandFactory:
+def compile_command(action: SayText | VerbCommand) -> CommandFactory:
     """The command that a robot verb stands for."""
     match action:
         case SayText(texts):
@@ -100,12 +85,8 @@ def compile_command(action: Action) -> CommandFactory:
                 return action
 
             return speak
-        case Play() | Posture() | Walk() | Move() | Look() | Track() | Stop() | Rest() | Wake():
-            return lambda execution: action
-        case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText() | If() | Wait() | Parallel():
-            raise TypeError(f"{action} is no command")
         case _:
-            assert_never(action)
+            return lambda execution: action
 
 
 def compile_value(value: ComputedValue) -> Callable[[Scope], Any]:

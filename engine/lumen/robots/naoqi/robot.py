@@ -8,13 +8,14 @@ from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.ports import Aim, Battery, Reading, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.body_parts import part_of, parts
+from lumen.robots.body_parts import part_of
+from lumen.robots.command_table import parts_of
 from lumen.robots.executor import Executor
 from lumen.robots.naoqi.call_sequence import CallSequence
 from lumen.robots.naoqi.naoqi_events import FALLEN, FALLING, FULL, HealthAlerts, NaoqiEvents
 from lumen.robots.naoqi.preparing import halt, prepare
 from lumen.robots.naoqi.reconnector import Reconnector
-from lumen.robots.naoqi.sense_poller import SENSE_PERIODS, SensePoller
+from lumen.robots.naoqi.sense_poller import SensePoller
 from lumen.robots.naoqi.sensors import NaoqiSensors
 from lumen.robots.naoqi.session import CALL_TIMEOUT, CONNECTION_LOST, NaoqiCall, NaoqiSession
 from lumen.robots.naoqi.skills import NaoqiSkills
@@ -49,16 +50,13 @@ class NaoqiRobot:
         self._alerts = HealthAlerts()
         self._events: list[Event] = []
         self._skills = NaoqiSkills(self._session, body, self._area, self._events.append, clock)
-        self._executor = Executor(self._begin, lambda command: parts(command, body))
+        self._executor = Executor(self._begin, lambda command: parts_of(command, body))
         self._part = part_of(body)
         self._aimed: NaoqiCall = NaoqiCall()
         self._aim: Aim | None = None
         self._reconnector = Reconnector(self._session, self._take_over)
         self._reconnector.open()
-        self._senses = {
-            sense: SensePoller(sense, self._session, self._sensors.reader(sense), SENSE_PERIODS[sense])
-            for sense in Sense
-        }
+        self._senses = {sense: SensePoller(sense, self._session, *self._sensors.reader(sense)) for sense in Sense}
 
     def start(self, id: str, command: RobotCommand) -> None:
         if not isinstance(command, Aim):

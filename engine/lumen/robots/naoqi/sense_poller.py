@@ -8,8 +8,6 @@ from lumen.errors import RobotError
 from lumen.ports import Reading
 from lumen.robots.naoqi.session import CONNECTION_LOST, NaoqiSession
 
-SENSE_PERIODS = {"image": 0.066, "joint": 0.05, "sonar": 0.1, "tactile": 0.1, "battery": 1.0}
-"""How often each is acquired [s]: no later than the shipped routes publish it."""
 SENSE_RETRY_DELAY = 1.0
 """How long a sense that failed is left alone [s]."""
 

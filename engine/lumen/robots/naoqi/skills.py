@@ -10,7 +10,8 @@ from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, 
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, Record, RobotCommand
-from lumen.robots.body_parts import part_of, parts
+from lumen.robots.body_parts import part_of
+from lumen.robots.command_table import parts_of
 from lumen.robots.cues import EventSink
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
 from lumen.robots.naoqi.microphones import Microphones
@@ -65,7 +66,7 @@ class NaoqiSkills:
             raise RobotRefusedError("the robot has fallen: `wake` it first")
         match command:
             case Perform(motion):
-                owned = parts(command, self._body)
+                owned = parts_of(command, self._body)
                 return self._player.begin(motion, [j for j in self._body.joints if self._part.get(j) in owned])
             case Look(yaw, pitch):
                 return self._look(self.inside({"HeadYaw": yaw, "HeadPitch": pitch}))

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any
 
 from lumen.errors import BusError, UsageError
@@ -10,7 +11,6 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, Message
-from lumen.robots.remote.bodies import visitor_body
 from lumen.robots.robot_routes import HALL, SEEN, key_of, tell
 
 HALL_MESSAGE_TTL = 2.0
@@ -37,7 +37,7 @@ class RemoteHall:
             undo()
 
     def place(self, visitor: Visitor | None) -> None:
-        self._do(visitor_body(visitor))
+        self._do({"visitor": None if visitor is None else asdict(visitor)})
 
     def face(self) -> tuple[float, float] | None:
         return self._face

@@ -14,9 +14,10 @@ from lumen.language.commands import Rest, Stop
 from lumen.language.events import CUE, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Message, Perform, Reading, RobotCommand, Sense
+from lumen.robots.command_codec import encode_command
 from lumen.robots.command_reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN
-from lumen.robots.remote.bodies import body_of, reading_of
 from lumen.robots.robot_routes import AIM, COMMAND, NOTICED, REPORT, STOP, key_of, tell
+from lumen.robots.sense_codec import decode_reading
 
 RESEND_PERIOD = 1.0
 """How long a command may stay unanswered before it is sent again [s]: the robot performs it once all the same."""
@@ -96,7 +97,7 @@ class RemoteRobot:
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Aim):
-            self._send(AIM, body_of(command), AIM_TTL)
+            self._send(AIM, encode_command(command), AIM_TTL)
             return
         now = self._patience()
         whole = f"{self.session}.{id}"
@@ -164,7 +165,7 @@ class RemoteRobot:
         if delegable and isinstance(command, Perform) and self._delegate(whole, command):
             return
         way = STOP if isinstance(command, Rest | Stop) else COMMAND
-        self._send(way, {**body_of(command), "id": whole}, COMMAND_TTL)
+        self._send(way, {**encode_command(command), "id": whole}, COMMAND_TTL)
 
     def _stopping(self) -> bool:
         """Whether something that stops the robot is on its way to it."""
@@ -200,7 +201,7 @@ class RemoteRobot:
 
     def _sense(self, sense: Sense, message: Message) -> None:
         """On whichever thread the bus has."""
-        if reading := reading_of(sense, message.body, tuple(self._project.body.joints)):
+        if reading := decode_reading(sense, message.body, tuple(self._project.body.joints)):
             self._readings[sense] = (reading, self._clock())
 
     def _hear(self, message: Message) -> None:

@@ -9,7 +9,8 @@ from lumen.interpreters.postures import RESTFUL, UPRIGHT
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.ports import Aim, Perform, Record, RobotCommand
-from lumen.robots.body_parts import part_of, parts
+from lumen.robots.body_parts import part_of
+from lumen.robots.command_table import parts_of
 from lumen.robots.cues import EventSink
 from lumen.robots.executor import Activity
 from lumen.robots.silent_recording import SilentRecording
@@ -69,7 +70,7 @@ class SimulatedSkills:
 
     def parts(self, command: RobotCommand) -> frozenset[str]:
         """Which parts of the body a command owns."""
-        return parts(command, self._world.body)
+        return parts_of(command, self._world.body)
 
     def part(self, joint: str) -> str:
         """The part of the body that a joint belongs to."""

@@ -2,8 +2,7 @@
 
 from typing import Protocol
 
-SPEECH_PAUSE, SPEECH_PER_CHARACTER = 0.4, 0.06
-"""How long a text takes to say where nobody says it [s], and each of its characters."""
+from lumen.robots.command_table import speech_duration
 
 
 class SpeechPlayback(Protocol):
@@ -22,7 +21,7 @@ class SilentPlayback:
     """Says nothing, and takes its time for that."""
 
     def begin(self, text: str, language: str, now: float) -> float:
-        return SPEECH_PAUSE + SPEECH_PER_CHARACTER * len(text)
+        return speech_duration(text)
 
     def end(self, now: float) -> None:
         """Nothing was to be heard."""

@@ -1,0 +1,196 @@
+"""The verbs of the YAML that are commands: a row for each, with its fields and how it reads in transcripts and diffs.
+
+What is generic goes by these rows: `loading/actions.py` reads a command with them, `formats/action_data.py` writes it,
+the language server completes the names that it holds, the transcript and the diff of bundles say what it does. What a
+robot has to know of each besides stands in `robots/command_table.py`. `tests/seams/test_verbs.py` goes through both
+tables and the schemas.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, Generic, TypeVar
+
+from lumen.language.actions import (
+    Action,
+    Assign,
+    CancelSend,
+    ComputedAction,
+    If,
+    LogText,
+    Parallel,
+    PublishBody,
+    Raise,
+    SayText,
+    Send,
+    Wait,
+)
+from lumen.language.commands import (
+    Language,
+    Look,
+    Move,
+    Play,
+    Posture,
+    Rest,
+    Stop,
+    Track,
+    VerbCommand,
+    Wake,
+    Walk,
+)
+
+C = TypeVar("C")
+
+
+class Quantity(Enum):
+    """What a value of the YAML counts, and so how it becomes the command's."""
+
+    PLAIN = "as it stands: a text, a number without a unit, true or false"
+    LENGTH = "in the file's unit of length, [m] in the command; per second, [m/s]"
+    ANGLE = "in the file's unit of angles, [rad] in the command; per second, [rad/s]"
+    DURATION = "a number and its unit, `500ms`, [s] in the command"
+
+
+@dataclass(frozen=True, slots=True)
+class VerbField:
+    """A field of a command, under the name that it has in the YAML and in the dataclass.
+
+    `names` is the kind of thing that it is the name of: `motion`, `posture`, `controller` or `language`.
+    """
+
+    name: str
+    quantity: Quantity = Quantity.PLAIN
+    names: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Verb(Generic[C]):
+    """A verb that is a command: `name` in the YAML, where two commands may share one, and the command's class.
+
+    Behind it stands a map from fields to values, or the first field's value alone; without fields `true`. A `pair` is
+    written as the first field's value with the second's behind it: `track: {head: false}`. An `instant` one ends as it
+    begins, and no robot performs it. `transcript` says what the robot does (`plays dance`), `change` what a
+    behaviour does from now on (“`greet` now … on entering”).
+    """
+
+    name: str
+    command: type[C]
+    fields: tuple[VerbField, ...]
+    transcript: Callable[[C], str]
+    change: Callable[[C], str]
+    pair: bool = False
+    instant: bool = False
+
+    def arguments(self, data: Any) -> Iterator[tuple[VerbField, tuple[str, ...], Any]]:
+        """Each field that stands in the data of the YAML, where it stands below the verb, and its value."""
+        if not self.fields:
+            return
+        if not isinstance(data, Mapping):
+            yield self.fields[0], (), data
+        elif self.pair:
+            for key, value in data.items():
+                yield self.fields[0], (key,), key
+                yield self.fields[1], (key,), value
+        else:
+            for field in self.fields:
+                if field.name in data:
+                    yield field, (field.name,), data[field.name]
+
+    def data(self, command: C, written: Callable[[Quantity, Any], Any]) -> Any:
+        """What stands behind the verb in the YAML for this command; `written` makes data of a field's value."""
+        values = {field.name: written(field.quantity, getattr(command, field.name)) for field in self.fields}
+        if len(values) < 2:
+            return next(iter(values.values()), True)
+        if self.pair:
+            name, value = values.values()
+            return {name: value}
+        return values
+
+
+_PLAY = Verb(
+    "play",
+    Play,
+    (VerbField("motion", names="motion"),),
+    lambda c: f"plays {c.motion}",
+    lambda c: f"plays `{c.motion}`",
+)
+_POSTURE = Verb(
+    "posture",
+    Posture,
+    (VerbField("name", names="posture"), VerbField("speed")),
+    lambda c: f"takes the posture {c.name}",
+    lambda c: f"goes to `{c.name}` at speed {c.speed:g}",
+)
+_MOVE = Verb(
+    "walk",
+    Move,
+    (VerbField("vx", Quantity.LENGTH), VerbField("vy", Quantity.LENGTH), VerbField("vtheta", Quantity.ANGLE)),
+    lambda c: f"walks on at {c.vx:g} m/s, {c.vy:g} m/s, {c.vtheta:.2f} rad/s",
+    lambda c: f"walks on at x {c.vx:g} m/s, y {c.vy:g} m/s, theta {c.vtheta:.3g} rad/s",
+)
+_WALK = Verb(
+    "walk",
+    Walk,
+    (VerbField("x", Quantity.LENGTH), VerbField("y", Quantity.LENGTH), VerbField("theta", Quantity.ANGLE)),
+    lambda c: f"walks {c.x:g} m, {c.y:g} m, {c.theta:.2f} rad",
+    lambda c: f"walks to x {c.x:g} m, y {c.y:g} m, theta {c.theta:.3g} rad",
+)
+_LOOK = Verb(
+    "look",
+    Look,
+    (VerbField("yaw", Quantity.ANGLE), VerbField("pitch", Quantity.ANGLE)),
+    lambda c: "turns its head",
+    lambda c: f"looks to yaw {c.yaw:.3g} rad, pitch {c.pitch:.3g} rad",
+)
+_TRACK = Verb(
+    "track",
+    Track,
+    (VerbField("controller", names="controller"), VerbField("on")),
+    lambda c: f"{'follows the face with' if c.on else 'lets go of'} {c.controller}",
+    lambda c: f"{'lets' if c.on else 'no longer lets'} `{c.controller}` track",
+    pair=True,
+    instant=True,
+)
+_STOP = Verb("stop", Stop, (VerbField("what"),), lambda c: f"stops {c.what}", lambda c: f"stops `{c.what}`")
+_REST = Verb("rest", Rest, (), lambda c: "rests", lambda c: "rests")
+_WAKE = Verb("wake", Wake, (), lambda c: "wakes", lambda c: "wakes")
+_LANGUAGE = Verb(
+    "language",
+    Language,
+    (VerbField("language", names="language"),),
+    lambda c: f"speaks {c.language} from now on",
+    lambda c: f"speaks `{c.language}` from then on",
+    instant=True,
+)
+
+VERBS: tuple[Verb[Any], ...] = (
+    _PLAY, _POSTURE, _MOVE, _WALK, _LOOK, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
+)  # fmt: skip
+"""Of those that share a name the last is meant where no field says which."""
+
+COMPUTED: Mapping[type[ComputedAction], str] = {
+    SayText: "say", PublishBody: "publish", Assign: "assign", Raise: "raise", Send: "send", CancelSend: "cancel",
+    Wait: "wait", LogText: "log", If: "if", Parallel: "parallel",
+}  # fmt: skip
+"""The names of the other verbs: what each does is the statechart's, and `mypy` names the places that know."""
+
+_BY_COMMAND: Mapping[type, Verb[Any]] = {verb.command: verb for verb in VERBS}
+
+
+def verb_of(command: VerbCommand) -> Verb[Any]:
+    """The row of a command."""
+    return _BY_COMMAND[type(command)]
+
+
+def names_in(action: Action, kind: str) -> Iterator[str]:
+    """The names of that kind of thing (`motion`, `posture`, …) that an action holds in fields of its own."""
+    verb = _BY_COMMAND.get(type(action))
+    yield from (getattr(action, field.name) for field in verb.fields if field.names == kind) if verb else ()
+
+
+def verb_named(name: str, data: Any) -> Verb[Any] | None:
+    """The row that is meant by a verb of the YAML and the data behind it; None for a name that is no command's."""
+    rows = [verb for verb in VERBS if verb.name == name]
+    said = data.keys() if isinstance(data, Mapping) else ()
+    meant = (verb for verb in rows if any(field.name in said for field in verb.fields))
+    return next(meant, rows[-1] if rows else None)

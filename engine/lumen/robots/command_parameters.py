@@ -1,0 +1,96 @@
+"""The parameters of a command from the bus, read in the ways that 2015's modules wrote them."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from lumen.errors import BadCommandError
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.projects import Project
+
+MAX_MAGNITUDE = 2.0**63
+"""The largest number that a parameter may hold."""
+LANGUAGES_2015 = {"english": "en", "indonesian": "id", "bahasa": "id"}
+
+PoseSource = Callable[[], Mapping[str, float]]
+"""Where the joints stand now [rad]."""
+
+
+class CommandParameters:
+    """The `parameter` of a command: each method reads one, and raises BadCommandError for one that is missing or wrong.
+
+    Names compare case-insensitively. `pose` is called for a command that counts from where the joints stand.
+    """
+
+    def __init__(self, method: str, data: Any, project: Project, pose: PoseSource) -> None:
+        self.method, self.project, self.pose = method, project, pose
+        self.values = {} if data is None else lowered(data, "the `parameter` of a command")
+
+    def number(self, name: str, default: float | None = None) -> float:
+        value = self.values.get(name)
+        if value is None and default is not None:
+            return default
+        return number(value, f"the parameter `{name}` of `{self.method}`")
+
+    def fraction(self, name: str, default: float) -> float:
+        """A speed: NAOqi has it as a fraction of the greatest."""
+        return min(max(self.number(name, default), 0.01), 1.0)
+
+    def text(self, name: str, default: str | None = None) -> str:
+        value = self.values.get(name)
+        if value is None and default is not None:
+            return default
+        if not isinstance(value, str):
+            raise BadCommandError(f"the parameter `{name}` of `{self.method}` has to be a text")
+        return value.strip()
+
+    def language(self, name: str) -> str:
+        """One of the project's languages, by its code or its English name; empty where none is given."""
+        given = self.text(name, "").lower()
+        code = LANGUAGES_2015.get(given, given)
+        if code and code not in self.project.languages:
+            hint = did_you_mean(code, self.project.languages)
+            raise BadCommandError(f"the language `{shown(given)}` is not spoken here: {hint}")
+        return code
+
+    def turn(self) -> float:
+        """`tetha` was how it was spelt."""
+        return self.number("tetha", self.number("theta", 0.0))
+
+    def joints(self) -> dict[str, float]:
+        """`angles` by `jointNames`; one of either may stand without a list."""
+        names, values = _listed(self.values.get("jointnames")), _listed(self.values.get("angles"))
+        if not names or len(names) != len(values):
+            raise BadCommandError(f"`{self.method}` needs as many `angles` as `jointNames`, and at least one")
+        joints = [self.joint(name) for name in names]
+        return {n: number(v, f"the angle of `{n}`") for n, v in zip(joints, values, strict=True)}
+
+    def joint(self, name: object) -> str:
+        """The joint that is meant: `"LHipPitch "` and `LAngklePitch` were how they were spelt."""
+        meant = str(name).strip().replace("Angkle", "Ankle")
+        if meant not in self.project.body.joints:
+            hint = did_you_mean(shown(meant), self.project.body.joints)
+            raise BadCommandError(f"there is no joint `{shown(meant)}`: {hint}")
+        return meant
+
+
+def lowered(data: Any, what: str) -> dict[str, Any]:
+    """An object with its keys in small letters."""
+    if not isinstance(data, Mapping):
+        raise BadCommandError(f"{what} has to be an object with names and values")
+    return {str(key).lower(): value for key, value in data.items()}
+
+
+def shown(text: str) -> str:
+    """A stranger's text in a message of ours: short, and in one line."""
+    return "".join(c if c.isprintable() else " " for c in text[:40])
+
+
+def number(value: Any, what: str) -> float:
+    """A number of moderate size."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= MAX_MAGNITUDE:
+        raise BadCommandError(f"{what} has to be a number")
+    return float(value)
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [] if value is None else [value]

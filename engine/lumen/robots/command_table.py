@@ -1,0 +1,210 @@
+"""What every robot has to know of each command, but how it performs it: a row for each.
+
+A row says which parts of the body the command owns, which of those that wait goes first, how long the recording robot
+takes, and how it crosses the bus. Robots that move perform it in their `skills.py`.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import hypot, inf
+from typing import Any, Generic, TypeVar, get_args
+
+from lumen.errors import BadCommandError
+from lumen.language.commands import Channel, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.robots import Body
+from lumen.ports import Aim, Perform, Record, RobotCommand
+from lumen.robots.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_motion
+from lumen.robots.command_parameters import CommandParameters, shown
+from lumen.robots.motion_codec import decode_motion, encode_motion
+
+C = TypeVar("C")
+
+AIM_SPEED, POSTURE_SPEED = 0.3, 0.5
+"""Fractions of the greatest speed where a command from the bus names none."""
+RECORDING_DURATION, MAX_RECORDING_DURATION = 5.0, 20.0
+"""How long a recording is, as in 2015, and at most [s]: a message holds 1 MiB."""
+SPEECH_PAUSE, SPEECH_PER_CHARACTER = 0.4, 0.06
+"""How long a text takes to say where nobody says it [s], and each of its characters."""
+WALKING_SPEED, TURNING_SPEED = 0.1, 0.25
+"""How fast a recorded walk goes [m/s] and turns [rad/s]: the simulated robot turns around by 90 degrees in 7 s."""
+USUAL_DURATION, LOOK_DURATION = 2.0, 1.0
+"""How long the recording robot takes for a posture, and to turn its head [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class CommandRow(Generic[C]):
+    """One command.
+
+    `verb` is its name in the YAML, or what a motion or module calls it. Of commands that wait those of the lowest
+    `rank` go first. `parts` are those of the body that it owns from its beginning to its end. `duration` is how long
+    the recording robot takes [s]. On the bus it is `{type: kind, method, parameter}`, `encode` makes its parameters
+    and `decode` reads them; spelt as in 2015 where 2015 had it. `stop: CHANNEL` ends it, as `stop: all` does.
+    """
+
+    command: type[C]
+    verb: str
+    rank: int
+    kind: str
+    method: str
+    encode: Callable[[C], Mapping[str, Any]]
+    decode: Callable[[CommandParameters], C]
+    parts: Callable[[C, Body], frozenset[str]]
+    duration: Callable[[C], float] = lambda _: USUAL_DURATION
+    channel: Channel | None = None
+
+
+def owns(*parts: str) -> Callable[[object, Body], frozenset[str]]:
+    """The same parts of any body, for every command of a kind."""
+    owned = frozenset(parts)
+    return lambda _command, _body: owned
+
+
+def speech_duration(text: str) -> float:
+    """How long a text takes to say where nobody says it [s]."""
+    return SPEECH_PAUSE + SPEECH_PER_CHARACTER * len(text)
+
+
+def aimed(p: CommandParameters, angles: Mapping[str, float]) -> Aim:
+    """An aim inside the joints' limits, as NAOqi would clip it."""
+    limits = p.project.body.joints
+    inside = {n: min(max(a, limits[n].minimum), limits[n].maximum) for n, a in angles.items()}
+    return Aim(inside, p.fraction("speed", AIM_SPEED))
+
+
+def _posture(p: CommandParameters) -> Posture:
+    name = p.text("posturename")
+    postures = {known.lower(): known for known in p.project.body.postures}
+    if name.lower() not in postures:
+        raise BadCommandError(f"there is no posture `{shown(name)}`: {did_you_mean(shown(name), postures.values())}")
+    return Posture(postures[name.lower()], p.fraction("speed", POSTURE_SPEED))
+
+
+def _stop(p: CommandParameters) -> Stop:
+    """`what` is one of walk, play and say, or all."""
+    what = p.text("what", "all").lower()
+    known: dict[str, Channel] = {channel: channel for channel in get_args(Channel)}
+    if what not in known:
+        raise BadCommandError(f"`stop` can't end `{shown(what)}`: {did_you_mean(shown(what), known)}")
+    return Stop(known[what])
+
+
+def _record(p: CommandParameters) -> Record:
+    """`duration` [s] is ours."""
+    duration = p.number("duration", RECORDING_DURATION)
+    if not 0.1 <= duration <= MAX_RECORDING_DURATION:
+        longest = f"{MAX_RECORDING_DURATION:g} s"
+        raise BadCommandError(f"the `duration` of `record` lies between 0.1 and {longest}, not at {duration:g}")
+    return Record(shown(p.text("recordingname", "recording")), duration)
+
+
+_STOP = CommandRow(Stop, "stop", 0, "motion", "stop", lambda c: {"what": c.what}, _stop, owns())
+_REST = CommandRow(Rest, "rest", 0, "motion", "rest", lambda c: {}, lambda p: Rest(), owns(*WHOLE_BODY))
+_WAKE = CommandRow(Wake, "wake", 1, "motion", "wakeUp", lambda c: {}, lambda p: Wake(), owns(*WHOLE_BODY))
+_POSTURE = CommandRow(
+    Posture,
+    "posture",
+    1,
+    "posture",
+    "goToPosture",
+    lambda c: {"postureName": c.name, "speed": c.speed},
+    _posture,
+    owns(*WHOLE_BODY),
+)
+_WALK = CommandRow(
+    Walk,
+    "walk",
+    1,
+    "motion",
+    "moveTo",
+    lambda c: {"x": c.x, "y": c.y, "tetha": c.theta},
+    lambda p: Walk(p.number("x", 0.0), p.number("y", 0.0), p.turn()),
+    owns(LEGS),
+    lambda c: hypot(c.x, c.y) / WALKING_SPEED + abs(c.theta) / TURNING_SPEED,
+    channel="walk",
+)
+_MOVE = CommandRow(
+    Move,
+    "walk",
+    2,
+    "motion",
+    "move",
+    lambda c: {"x": c.vx, "y": c.vy, "tetha": c.vtheta},
+    lambda p: Move(p.number("x", 0.0), p.number("y", 0.0), p.turn()),
+    owns(LEGS),
+    lambda c: inf if any((c.vx, c.vy, c.vtheta)) else 1.0,
+    channel="walk",
+)
+_SAY = CommandRow(
+    Say,
+    "say",
+    2,
+    "texttospeech",
+    "say",
+    lambda c: {"text": c.text, "language": c.language},
+    lambda p: Say(p.text("text"), p.language("language")),
+    owns(VOICE),
+    lambda c: speech_duration(c.text),
+    channel="say",
+)
+_PERFORM = CommandRow(
+    Perform,
+    "play",
+    2,
+    "motion",
+    "perform",
+    lambda c: {"motion": encode_motion(c.motion)},
+    lambda p: Perform(decode_motion(p.values.get("motion"), p.project.body)),
+    lambda c, body: parts_of_motion(c.motion, body),
+    lambda c: c.motion.duration,
+    channel="play",
+)
+_RECORD = CommandRow(
+    Record,
+    "record",
+    2,
+    "audiodevice",
+    "record",
+    lambda c: {"recordingName": c.name, "duration": c.duration},
+    _record,
+    owns(EARS),
+    lambda c: c.duration,
+)
+_LOOK = CommandRow(
+    Look,
+    "look",
+    3,
+    "motion",
+    "look",
+    lambda c: {"yaw": c.yaw, "pitch": c.pitch},
+    lambda p: Look(p.number("yaw", 0.0), p.number("pitch", 0.0)),
+    owns(HEAD),
+    lambda c: LOOK_DURATION,
+)
+_AIM = CommandRow(
+    Aim,
+    "aim",
+    3,
+    "motion",
+    "setAngles",
+    lambda c: {"jointNames": list(c.angles), "angles": list(c.angles.values()), "speed": c.speed},
+    lambda p: aimed(p, p.joints()),
+    owns(),
+)
+"""Nobody waits for an aim, and it moves what no command owns."""
+
+COMMANDS: tuple[CommandRow[Any], ...] = (
+    _WAKE, _REST, _STOP, _POSTURE, _WALK, _MOVE, _SAY, _PERFORM, _RECORD, _LOOK, _AIM,
+)  # fmt: skip
+
+_BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMANDS}
+
+
+def row_of(command: RobotCommand) -> CommandRow[Any]:
+    """The row of a command."""
+    return _BY_COMMAND[type(command)]
+
+
+def parts_of(command: RobotCommand, body: Body) -> frozenset[str]:
+    """The parts of the body that a command owns from its beginning to its end."""
+    return row_of(command).parts(command, body)
