@@ -5,7 +5,12 @@
 import readline from "node:readline";
 import amqplib from "amqplib";
 
-const connection = await amqplib.connect(process.env.LUMEN_BUS);
+const end = (error) => {
+  console.error(`listener: the broker can't be used: ${error.message}`);
+  process.exit(1);
+};
+const connection = await amqplib.connect(process.env.LUMEN_BUS).catch(end);
+connection.on("error", end);
 const channel = await connection.createConfirmChannel();
 const { queue } = await channel.assertQueue("", { exclusive: true });
 await channel.bindQueue(queue, "amq.topic", "lumen.audio.text.stream");

@@ -5,12 +5,16 @@ LUMEN_BUS=amqp://NAME:PASSWORD@HOST/ python poster.py
 
 import os
 import platform
+import sys
 import time
 import uuid
 
-from lumen.bus import Message, Refused, connect
+from lumen.bus import BusError, Message, Refused, connect
 
-bus = connect(os.environ["LUMEN_BUS"])
+try:
+    bus = connect(os.environ["LUMEN_BUS"])
+except BusError as error:
+    sys.exit(f"poster: {error}")
 here = {"robot": "NAO", "parts": ["social"], "session": uuid.uuid4().hex[:12], "host": platform.node()}
 
 

@@ -33,6 +33,15 @@ def running(*command: str, url: str) -> Iterator[Guarded[str]]:
         process.communicate()
 
 
+def program(name: str, folder: Path) -> tuple[str, ...]:
+    """How a module is run; one in JavaScript finds its packages in `folder`."""
+    if name.endswith(".py"):
+        return sys.executable, str(MODULES / name)
+    shutil.copy(MODULES / name, folder)
+    (folder / "node_modules").symlink_to(fetched("node_modules"))
+    return "node", str(folder / name)
+
+
 @pytest.fixture
 def bus(broker: RabbitMQ) -> Iterator[Bus]:
     """An exhibition's own handle, on which bodies are checked."""
@@ -41,10 +50,10 @@ def bus(broker: RabbitMQ) -> Iterator[Bus]:
     bus.close()
 
 
-def test_the_greeter_greets_once_for_each_who_comes_near(broker: RabbitMQ, bus: Bus) -> None:
+def test_the_greeter_greets_once_for_each_who_comes_near(broker: RabbitMQ, bus: Bus, tmp_path: Path) -> None:
     commands, far, near = Collector(), {"leftSensor": 2.0, "rightSensor": 2.0}, {"leftSensor": 0.5, "rightSensor": 2.0}
     bus.subscribe("avatar.NAO.command", commands)
-    with running(sys.executable, str(MODULES / "greeter.py"), url=broker.url) as process:
+    with running(*program("greeter.py", tmp_path), url=broker.url) as process:
         assert process.stdout
         assert process.stdout.readline() == "listening\n"
         for body in (far, near, near, far, near):
@@ -55,11 +64,9 @@ def test_the_greeter_greets_once_for_each_who_comes_near(broker: RabbitMQ, bus: 
 
 
 def test_the_listener_in_javascript_says_and_hears(broker: RabbitMQ, bus: Bus, tmp_path: Path) -> None:
-    shutil.copy(MODULES / "listener.mjs", tmp_path)
-    (tmp_path / "node_modules").symlink_to(fetched("node_modules"))
     heard = Collector()
     bus.subscribe("lumen.audio.speech.recognition", heard)
-    with running("node", str(tmp_path / "listener.mjs"), url=broker.url) as process:
+    with running(*program("listener.mjs", tmp_path), url=broker.url) as process:
         assert process.stdin
         assert process.stdout
         assert process.stdout.readline() == "listening\n"
@@ -68,6 +75,17 @@ def test_the_listener_in_javascript_says_and_hears(broker: RabbitMQ, bus: Bus, t
         assert heard.wait(1)[0]["result"] == "what can you do"
         bus.publish("lumen.audio.text.stream", {"name": "Lumen", "text": "I can dance.", "date": "x"})
         assert process.stdout.readline() == "Lumen: I can dance.\n"
+
+
+@pytest.mark.parametrize("name", ["greeter.py", "poster.py", "listener.mjs"])
+def test_a_wrong_password_is_one_line(broker: RabbitMQ, tmp_path: Path, name: str) -> None:
+    wrong = f"amqp://guest:wrong@127.0.0.1:{broker.port}/"
+    with running(*program(name, tmp_path), url=wrong) as process:
+        said, _ = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert said.startswith(f"{name.partition('.')[0]}: the broker")
+    assert said.count("\n") == 1
+    assert "wrong" not in said
 
 
 @pytest.mark.parametrize("name", ["greeter.py", "listener.mjs"])
