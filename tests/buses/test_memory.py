@@ -105,7 +105,7 @@ def test_what_waits_is_bounded_and_the_newest_stay(caplog: pytest.LogCaptureFixt
 
 
 def test_closing_is_not_dropped_with_what_waits(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lumen.buses.memory.MAX_PENDING_MESSAGES", 10)
+    monkeypatch.setattr("lumen.buses.memory.MAX_QUEUED_MESSAGES", 10)
     one, other, seen = connect("memory://full"), connect("memory://full"), Collector()
     one.subscribe("lumen.a", seen)
     ended, inside = threading.Thread(target=one.close), threading.Event()

@@ -1,0 +1,28 @@
+"""Messages by topic: the buses behind `lumen.ports.Bus`, to be had from `lumen.bus.connect`.
+
+    memory.py         the embedded bus, in this process
+    local/            the embedded bus of another process of this machine: a server, its clients
+    amqp.py           the bus on RabbitMQ, made of the files below
+    validated.py      any bus, with every body checked against the schema of its route
+
+What crosses a bus:
+
+    bodies.py         JSON data as bytes and back, and what bodies and keys may be
+    checking.py       what is wrong with a body, by its JSON Schema, in a line
+
+How RabbitMQ is used, from the inside out:
+
+    broker.py         where a broker is, and in one line why it can't be used
+    queues.py         which queue a route has, and its bounds
+    declarer.py       declares queues, binds and deletes them
+    subscriptions.py  who has subscribed, and what is delivered to whom
+    outbox.py         what waits to be sent: bounded
+    ratelimit.py      how much telemetry a second is handed on
+    connection.py     a connection that belongs to one thread, and is opened again when it is lost
+    polled.py         pika's asynchronous connection, driven by that thread
+    publisher.py      the connection that sends, and waits for the broker's confirmations
+    consumer.py       the connection that receives
+    dispatcher.py     the thread that runs handlers, one at a time
+    transport.py      a publisher, a consumer and a dispatcher; routes of stops have one of their own
+    probe.py          what a broker lets us do, for `lumen doctor`
+"""

@@ -21,11 +21,11 @@ from lumen.interpreters.routing import matches
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler
 
-CLOSE_TIMEOUT = 5.0
+HANDLER_TIMEOUT = 5.0
 """How long closing waits for a subscriber that still works [s]."""
 MAX_CACHED_KEYS = 4_096
 """Keys whose listeners are remembered."""
-MAX_PENDING_MESSAGES = 100_000
+MAX_QUEUED_MESSAGES = 100_000
 """Messages that wait for a subscriber; then the oldest give way."""
 
 _log = logging.getLogger(__name__)
@@ -73,12 +73,12 @@ class _Hub:
     def shed(self) -> None:
         """Drop the oldest messages; a `close` that waits in the queue goes on waiting, behind the newest."""
         with self.changing:
-            while len(self.queue) > MAX_PENDING_MESSAGES:
+            while len(self.queue) > MAX_QUEUED_MESSAGES:
                 item = self.queue.popleft()
                 if type(item) is tuple:
                     self.dropped += 1
                     if self.dropped == 1:
-                        _log.warning("%d messages wait for a subscriber: the oldest are dropped", MAX_PENDING_MESSAGES)
+                        _log.warning("%d messages wait for a subscriber: the oldest are dropped", MAX_QUEUED_MESSAGES)
                 else:
                     self.queue.append(item)
 
@@ -176,7 +176,7 @@ class MemoryBus:
             listeners = hub.find(key)
         if listeners:
             hub.queue.append((listeners, Message(key, own, reply_to, correlation_id)))
-            if len(hub.queue) > MAX_PENDING_MESSAGES:
+            if len(hub.queue) > MAX_QUEUED_MESSAGES:
                 hub.shed()
             hub.deliver()
 
@@ -192,8 +192,8 @@ class MemoryBus:
         gone = threading.Event()
         self._hub.queue.append(lambda: self._leave(gone))
         self._hub.deliver()
-        if self._hub.deliverer != threading.get_ident() and not gone.wait(CLOSE_TIMEOUT):
-            _log.warning("the bus was closed while a subscriber still works, after %g s", CLOSE_TIMEOUT)
+        if self._hub.deliverer != threading.get_ident() and not gone.wait(HANDLER_TIMEOUT):
+            _log.warning("the bus was closed while a subscriber still works, after %g s", HANDLER_TIMEOUT)
 
     def _leave(self, gone: threading.Event) -> None:
         mine = tuple(self._mine)

@@ -1,0 +1,27 @@
+"""Robots behind `lumen.ports.Robot`, and what they share.
+
+    simulation/           the NAO in MuJoCo
+    naoqi/                a real NAO, through NAOqi
+    remote/               a robot in another process, on the bus
+    recording.py          performs nothing and remembers everything: for stories and tests
+    none.py               no robot: every command is refused
+
+How a command is performed:
+
+    body_parts.py         which parts of the body a command owns
+    executor.py           a command waits until its parts are free, then runs until it is done
+    cues.py               the words and sounds of a motion, as their times come
+    silent_recording.py   a recording where nobody makes a sound
+
+A robot on the bus:
+
+    server.py             Lumen Server: the senses out, the commands in
+    robot_routes.py       under which keys a robot and its brain talk
+    command_codec.py      commands as JSON, as those of 2015 and ours
+    motion_codec.py       motions as JSON
+    sense_codec.py        the five senses as JSON
+    sense_publisher.py    the thread of a sense
+    command_receiver.py   commands from the bus, until they are over
+    command_reports.py    how they stand, for the sender and everybody who watches
+    deduplication_log.py  which commands were begun, for the process that comes after a killed one
+"""

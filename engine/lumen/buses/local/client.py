@@ -32,7 +32,7 @@ from lumen.ports import Message, MessageHandler
 
 CLOSE_TIMEOUT = 5.0
 """How long closing may take [s]."""
-MAX_PENDING_MESSAGES = 20_000
+MAX_UNHANDLED_MESSAGES = 20_000
 """Messages that wait for a handler; then the oldest are dropped."""
 
 _log = logging.getLogger(__name__)
@@ -52,7 +52,7 @@ class LocalBusClient:
         self._handlers: dict[int, MessageHandler] = {}
         self._answers: dict[int, tuple[threading.Event, list[str]]] = {}
         self._numbers, self._marked = count(), threading.Event()
-        self._arrived: deque[tuple[MessageHandler, int, Message]] = deque(maxlen=MAX_PENDING_MESSAGES)
+        self._arrived: deque[tuple[MessageHandler, int, Message]] = deque(maxlen=MAX_UNHANDLED_MESSAGES)
         self._arriving = threading.Condition()
         self._threads = [
             threading.Thread(target=work, name=f"lumen-local-{name}", daemon=True)

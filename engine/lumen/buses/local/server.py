@@ -36,7 +36,7 @@ MAX_CLIENTS = 32
 """Connections at a time; a further one is closed at once."""
 MAX_SUBSCRIPTIONS = 1_000
 """Of one client."""
-MAX_PENDING_MESSAGES = 20_000
+MAX_CLIENT_MESSAGES = 20_000
 """Messages that wait for one client; then the oldest are dropped."""
 MAX_UNSENT_BYTES = 32 * 1024 * 1024
 """Frames that wait for one client [bytes]; then the oldest are dropped."""
@@ -55,7 +55,7 @@ class ClientConnection:
         self.wire, self.question, self.known = wire, nonce(), False
         self.since = time.monotonic()
         self.undo: dict[int, Callable[[], None]] = {}
-        self.arrived: deque[tuple[int, Message]] = deque(maxlen=MAX_PENDING_MESSAGES)
+        self.arrived: deque[tuple[int, Message]] = deque(maxlen=MAX_CLIENT_MESSAGES)
         self.read, self.unsent, self.bytes, self.sent = bytearray(), deque[bytes](), 0, 0
 
     def send(self, data: bytes) -> None:
