@@ -1,9 +1,15 @@
 """The parts of a body that have one owner at a time."""
 
+from collections.abc import Mapping
+
+from lumen.language.lights import LIGHTS, lights_of
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 
-HEAD, ARMS, LEGS, VOICE, LEDS, EARS = PARTS = ("head", "arms", "legs", "voice", "leds", "ears")
+HEAD, ARMS, LEGS, VOICE, LEDS, EARS = ("head", "arms", "legs", "voice", "leds", "ears")
+
+PARTS = (HEAD, ARMS, LEGS, VOICE, LEDS, EARS, *(f"light {name}" for name in LIGHTS))
+"""Each light is a part of its own; `leds` is the part of motions that set any, which follow one another."""
 
 WHOLE_BODY = frozenset((HEAD, ARMS, LEGS))
 
@@ -14,9 +20,15 @@ def part_of(body: Body) -> dict[str, str]:
 
 
 def parts_of_motion(motion: MotionDefinition, body: Body) -> frozenset[str]:
-    """What its keys move, arms and legs for the posture that it begins in, and the lights where it sets some."""
+    """What its keys move, arms and legs for the posture that it begins in, and the lights that it sets."""
     belongs = part_of(body)
     moved = {belongs[joint] for joint in motion.tracks if joint in belongs}
     standing = {ARMS, LEGS} if motion.start else set()
-    lit = {LEDS} if any(cue.kind == "leds" for cue in motion.cues) else set()
+    set_by_cues = [cue.value for cue in motion.cues if cue.kind == "leds"]
+    lit = {LEDS}.union(*map(parts_of_lights, set_by_cues)) if set_by_cues else set()
     return frozenset(moved | standing | lit)
+
+
+def parts_of_lights(colours: object) -> frozenset[str]:
+    """The lights of these groups."""
+    return frozenset(f"light {name}" for name, _ in lights_of(colours if isinstance(colours, Mapping) else {}))

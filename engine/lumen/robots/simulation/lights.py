@@ -4,21 +4,17 @@ from collections.abc import Iterable, Mapping
 
 import mujoco
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from lumen.language.lights import LIGHT_GROUPS, lights_of, rgb
 from lumen.robots.simulation.model import ROBOT
 
-LIGHT_PAIRS: Mapping[str, tuple[str, ...]] = {
-    "eyes": ("left_eye", "right_eye"),
-    "ears": ("left_ear", "right_ear"),
-    "feet": ("left_foot", "right_foot"),
-}
-"""Names that stand for several lights; every other light is a material of the MJCF."""
-
-RENDERED_COLOURS: Mapping[str, str] = {
-    "off": "#202428", "black": "#202428", "white": "#f4f6ff", "red": "#ff3020", "green": "#30e040", "blue": "#2060ff",
-    "yellow": "#ffe020", "orange": "#ff8810", "cyan": "#20e0f0", "magenta": "#ff30d0", "purple": "#9030ff",
-    "pink": "#ff80c0", "turquoise": "#30e0c0", "gold": "#ffc030", "violet": "#a050ff",
+RENDERED_COLOURS: Mapping[object, int] = {
+    "off": 0x202428, "black": 0x202428, "white": 0xF4F6FF, "red": 0xFF3020, "green": 0x30E040, "blue": 0x2060FF,
+    "yellow": 0xFFE020, "orange": 0xFF8810, "cyan": 0x20E0F0, "magenta": 0xFF30D0, "purple": 0x9030FF,
+    "pink": 0xFF80C0, "turquoise": 0x30E0C0, "gold": 0xFFC030, "violet": 0xA050FF,
 }  # fmt: skip
+"""How lit LEDs look behind their covers; all other colours are CSS's."""
 
 PROPS = ("microphone",)
 """What the robot can hold for show; materials of the MJCF, invisible until then."""
@@ -35,15 +31,14 @@ class Lights:
         names = {model.material(i).name: i for i in range(model.nmat)}
         self._ids = {name.removeprefix(prefix): i for name, i in names.items() if name.startswith(prefix)}
         self._first = self._colours.copy()
-        self._ears = [self._ids[name] for name in LIGHT_PAIRS["ears"] if name in self._ids]
+        self._unlit: dict[int, NDArray[np.float32]] = {}
 
-    def show(self, colours: Mapping[str, str]) -> None:
+    def show(self, colours: Mapping[str, object]) -> None:
         """Give each of these lights its colour, a name or `#rrggbb`; unknown lights and colours change nothing."""
-        for name, colour in colours.items():
-            rgb = _rgb(colour)
-            for light in LIGHT_PAIRS.get(name, (name,)):
-                if rgb is not None and light in self._ids:
-                    self._colours[self._ids[light], :3] = rgb
+        for light, colour in lights_of(colours):
+            shown = rendered(colour)
+            if shown is not None and light in self._ids:
+                self._set(self._ids[light], shown)
 
     def hold(self, props: Iterable[str]) -> None:
         """Let the robot hold these things, and no others."""
@@ -52,19 +47,32 @@ class Lights:
                 self._colours[self._ids[name], 3] = float(name in props)
 
     def speak(self, speaking: bool) -> None:
-        """Light the ears while the robot speaks."""
-        for i in self._ears:
-            self._colours[i] = np.array([*_SPEAKING, 1.0]) if speaking else self._first[i]
+        """Light the ears while the robot speaks; then they are as they were before."""
+        for light in LIGHT_GROUPS["ears"]:
+            i = self._ids.get(light)
+            if i is not None and speaking:
+                self._unlit.setdefault(i, self._colours[i].copy())
+                self._colours[i] = np.array([*_SPEAKING, 1.0])
+            elif i in self._unlit:
+                self._colours[i] = self._unlit.pop(i)
+
+    def restore(self, groups: Iterable[str]) -> None:
+        """Give the lights of these groups the colours that they had when the robot was switched on."""
+        for light, _ in lights_of(dict.fromkeys(groups)):
+            if light in self._ids:
+                self._set(self._ids[light], self._first[self._ids[light], :3])
 
     def reset(self) -> None:
         """As the robot looked when it was switched on."""
+        self._unlit.clear()
         self._colours[:] = self._first
 
+    def _set(self, i: int, shown: ArrayLike) -> None:
+        """Now, or once an ear is no longer lit by speech."""
+        self._unlit.get(i, self._colours[i])[:3] = shown
 
-def _rgb(colour: object) -> tuple[float, float, float] | None:
-    text = RENDERED_COLOURS.get(str(colour), str(colour))
-    try:
-        red, green, blue = bytes.fromhex(text.removeprefix("#"))
-    except ValueError:
-        return None
-    return red / 255, green / 255, blue / 255
+
+def rendered(colour: object) -> tuple[float, float, float] | None:
+    """How a light of that colour is drawn (red, green, blue from 0 to 1); None for what is no colour."""
+    shown = RENDERED_COLOURS.get(colour, rgb(colour))
+    return None if shown is None else ((shown >> 16) / 255, (shown >> 8 & 255) / 255, (shown & 255) / 255)

@@ -63,7 +63,10 @@ class MotionPlayback:
 
     def cancel(self) -> None:
         """Back to where it began, which takes `RECOVERY`."""
-        self._lights.reset()
+        for cue in self._motion.cues:
+            if cue.kind == "leds" and isinstance(cue.value, Mapping):
+                self._lights.restore(cue.value)
+        self._lights.hold(())
         self._recovery = JointTransition(self._motors, self._home, self._now, RECOVERY_TIME)
 
     def _away(self) -> bool:
