@@ -40,6 +40,7 @@ class CommandRow(Generic[C]):
     `rank` go first. `parts` are those of the body that it owns from its beginning to its end. `duration` is how long
     the recording robot takes [s]. On the bus it is `{type: kind, method, parameter}`, `encode` makes its parameters
     and `decode` reads them; spelt as in 2015 where 2015 had it. `stop: CHANNEL` ends it, as `stop: all` does.
+    `check` raises BadCommandError for one that no robot of that body can perform.
     """
 
     command: type[C]
@@ -52,6 +53,7 @@ class CommandRow(Generic[C]):
     parts: Callable[[C, Body], frozenset[str]]
     duration: Callable[[C], float] = lambda _: USUAL_DURATION
     channel: Channel | None = None
+    check: Callable[[C, Body], None] = lambda _command, _body: None
 
 
 def owns(*parts: str) -> Callable[[object, Body], frozenset[str]]:
@@ -78,6 +80,14 @@ def _posture(p: CommandParameters) -> Posture:
     if name.lower() not in postures:
         raise BadCommandError(f"there is no posture `{shown(name)}`: {did_you_mean(shown(name), postures.values())}")
     return Posture(postures[name.lower()], p.fraction("speed", POSTURE_SPEED))
+
+
+def _check_posture(command: Posture, body: Body) -> None:
+    if not 0 < command.speed <= 1:
+        raise BadCommandError(f"a speed lies above 0 and up to 1, not at {command.speed}")
+    if command.name not in body.postures:
+        hint = did_you_mean(command.name, body.postures, "it knows")
+        raise BadCommandError(f"no posture `{command.name}`: {hint}")
 
 
 def _stop(p: CommandParameters) -> Stop:
@@ -110,6 +120,7 @@ _POSTURE = CommandRow(
     lambda c: {"postureName": c.name, "speed": c.speed},
     _posture,
     owns(*WHOLE_BODY),
+    check=_check_posture,
 )
 _WALK = CommandRow(
     Walk,
@@ -203,6 +214,11 @@ _BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMA
 def row_of(command: RobotCommand) -> CommandRow[Any]:
     """The row of a command."""
     return _BY_COMMAND[type(command)]
+
+
+def check_command(command: RobotCommand, body: Body) -> None:
+    """Raises BadCommandError for a command that no robot of that body can perform."""
+    row_of(command).check(command, body)
 
 
 def parts_of(command: RobotCommand, body: Body) -> frozenset[str]:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, inf, isfinite
 
-from lumen.errors import BadCommandError, RobotFailedError, UsageError
+from lumen.errors import RobotFailedError, UsageError
 from lumen.interpreters.projection import seen
 from lumen.language.commands import Look, Posture
 from lumen.language.diagnostics import did_you_mean
@@ -13,7 +13,7 @@ from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import part_of
-from lumen.robots.command_table import parts_of, row_of
+from lumen.robots.command_table import check_command, parts_of, row_of
 from lumen.robots.cues import CueNotifier
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.silent_recording import SilentRecording
@@ -147,9 +147,8 @@ class RecordingRobot:
         behaves = self._behaves.get(row.verb)
         if behaves == "fails":
             raise RobotFailedError(f"{row.verb} fails in this story")
+        check_command(command, self.body)
         if isinstance(command, Posture):
-            if command.name not in self.body.postures:
-                raise BadCommandError(f"no posture `{command.name}`")
             self._angles.update(self.body.postures[command.name])
         elif isinstance(command, Look):
             self._turn({"HeadYaw": command.yaw, "HeadPitch": command.pitch})

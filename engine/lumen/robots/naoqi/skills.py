@@ -11,7 +11,7 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
-from lumen.robots.command_table import parts_of
+from lumen.robots.command_table import check_command, parts_of
 from lumen.robots.cues import EventSink
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
 from lumen.robots.naoqi.microphones import Microphones
@@ -49,6 +49,7 @@ class NaoqiSkills:
 
     def begin(self, command: RobotCommand, now: float) -> CallSequence:
         """The command under way. Raises RobotError where the robot can't."""
+        check_command(command, self._body)
         match command:
             case Say(text, language):
                 return CallSequence(self._say(text, language), lambda: [self._post("ALTextToSpeech", "stopAll")])
@@ -100,10 +101,6 @@ class NaoqiSkills:
             yield self._post("ALTextToSpeech", "say", said, *([name] if name else []))
 
     def _posture(self, name: str, speed: float) -> CallSequence:
-        if not 0 < speed <= 1:
-            raise BadCommandError(f"a speed lies above 0 and up to 1, not at {speed}")
-        if name not in self._body.postures:
-            raise BadCommandError(f"no posture `{name}`: {did_you_mean(name, self._body.postures, 'it knows')}")
         return CallSequence(self._go(name, speed), lambda: [self._post("ALRobotPosture", "stopMove")])
 
     def _go(self, name: str, speed: float) -> CallSteps:

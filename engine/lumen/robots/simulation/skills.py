@@ -7,10 +7,9 @@ from typing import assert_never
 from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.postures import RESTFUL, UPRIGHT
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
-from lumen.language.diagnostics import did_you_mean
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
-from lumen.robots.command_table import parts_of
+from lumen.robots.command_table import check_command, parts_of
 from lumen.robots.cues import EventSink
 from lumen.robots.executor import Activity
 from lumen.robots.silent_recording import SilentRecording
@@ -78,6 +77,7 @@ class SimulatedSkills:
 
     def begin(self, command: RobotCommand, now: float) -> Activity:
         """The command under way. Raises RobotError where the robot can't."""
+        check_command(command, self._world.body)
         if not isinstance(command, Say | Record | Rest | Wake | Posture):
             self._ready()
         match command:
@@ -131,10 +131,6 @@ class SimulatedSkills:
         return self.playing
 
     def _posture(self, name: str, speed: float, now: float) -> Activity:
-        if not 0 < speed <= 1:
-            raise BadCommandError(f"a speed lies above 0 and up to 1, not at {speed}")
-        if name not in self._postures:
-            raise BadCommandError(f"no posture `{name}`: {did_you_mean(name, self._postures, 'it knows')}")
         if not self.awake and not self.fallen:
             raise RobotRefusedError("the motors are off: `wake` first")
         return self._go((name,), now, speed)
