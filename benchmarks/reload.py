@@ -16,7 +16,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from io import StringIO
 from pathlib import Path
 from statistics import quantiles
 from typing import NamedTuple
@@ -28,13 +27,15 @@ from tests.guarded import PIPE, Guarded
 
 import lumen
 from lumen.app.garbage import GcScheduler
-from lumen.app.node import Node
+from lumen.app.narrator import Narrator
+from lumen.app.parts.saved_files import RecordsPart, ReloadPart
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
 from lumen.app.setup import Setup
+from lumen.app.whole_node import WholeNode
 from lumen.bus import connect
-from lumen.cli.transcript import Transcript
+from lumen.buses.validated import validated
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
@@ -124,10 +125,10 @@ def metronome() -> Iterator[list[int]]:
 class Load(threading.Thread):
     """Sends events on a bus of its own, numbered by their count, at `RATE` a second."""
 
-    def __init__(self, show: Node, url: str) -> None:
+    def __init__(self, show: WholeNode, url: str) -> None:
         super().__init__(daemon=True)
         self.sent, self.ended = 0, threading.Event()
-        self._bus = show.exhibition.bus if url.startswith("memory") else connect(url)
+        self._bus = show.loop.bus if url.startswith("memory") else connect(url)
         self._own = not url.startswith("memory")
 
     def run(self) -> None:
@@ -146,16 +147,17 @@ class Soak:
     def __init__(self, root: Path, url: str, quiet: float, seed: int, edits: int) -> None:
         bundle = lumen.load(root)
         robot = RecordingRobot(bundle.body)
-        self.show = Node(bundle, Setup(robot, SimulatedClock(robot.advance, 1.0), robot), url)
-        transcript = Transcript(self.show.exhibition.clock.now, lambda: bundle.machine, StringIO())
+        bus = validated(connect(url), bundle)
+        self.show = WholeNode(bundle, Setup(robot, SimulatedClock(robot.advance, 1.0), robot), bus)
+        narrator = Narrator(self.show.loop.clock.now, lambda: bundle.machine)
         home = Home(root / ".lumen")
         home.hold()
         records = RunRecords(home)
-        self.reloading = Reloader(self.show, transcript, records=records, quiet=quiet, apart=True)
-        self.show.exhibition.parts += [self.reloading.tick, self.look]
-        self.show.closing.insert(0, self.reloading.close)
+        self.reloading = Reloader(self.show.behavior, narrator, records=records, quiet=quiet, apart=True)
+        self.show.add(ReloadPart(self.reloading))
+        self.show.before.append(self.look)
+        self.show.parts.append(RecordsPart(records, self.show.behavior))
         self.show.closing += [records.close, home.release]
-        self.show.after.append(lambda _: records.keep(self.show.exhibition))
         self.outcome, self.writer = Outcome(edits), Colleague(root, seed, 0.4 * quiet)
         self.show.closing.append(self.writer.close)
         self.load = Load(self.show, url)
@@ -179,7 +181,7 @@ class Soak:
             self._last = self.reloading.last
             self._told.append(told_of(self._last, now))
             self._verdict.set()
-        hash = self.show.exhibition.project.hash
+        hash = self.show.loop.project.hash
         if hash != self._running:
             self._running = hash
             self._applied = hash
@@ -249,12 +251,12 @@ class Soak:
     def run(self) -> Outcome:
         show, outcome = self.show, self.outcome
         try:
-            show.start()
-            assert show.walker
-            show.walker.arrive(Visitor())
+            show.begin()
+            assert show.visitor
+            show.visitor.actor.arrive(Visitor())
             self.load.start()
             gc_scheduler = GcScheduler()
-            show.after.append(gc_scheduler)
+            show.before.append(gc_scheduler)
             show.closing.append(gc_scheduler.close)
             self.until(time.monotonic() + 2.0)
             outcome.missed, outcome.gap, outcome.ticks = 0, 0.0, 0
@@ -280,7 +282,7 @@ class Soak:
             self.show.tick()
 
     def counted(self) -> int:
-        return int(self.show.exhibition.runtime.snapshot.context["loaded"])
+        return int(self.show.loop.runtime.snapshot.context["loaded"])
 
 
 def soak(edits: int, url: str = "memory://", quiet: float = 0.3, seed: int = 1) -> Outcome:

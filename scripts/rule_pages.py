@@ -9,9 +9,9 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
+from lumen.app.lint.findings import Findings
+from lumen.app.lint.physics import played
 from lumen.app.reload.against import against
-from lumen.cli.findings import Findings
-from lumen.cli.physics import played
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import Unreadable, read_files
 from lumen.rules import check_files

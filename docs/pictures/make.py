@@ -23,7 +23,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 import lumen
-from lumen.app.node import Node
+from lumen.app.exhibition import Exhibition
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
@@ -58,13 +58,13 @@ def picture(robot: SimulatedRobot, camera: str | mujoco.MjvCamera, width: int, h
     return Image.fromarray(pixels)
 
 
-def play(project: Project, robot: SimulatedRobot, look: Callable[[Node, float], bool]) -> None:
+def play(project: Project, robot: SimulatedRobot, look: Callable[[Exhibition, float], bool]) -> None:
     """The shipped story, until `look` has seen enough."""
     chosen = Setup(robot, SimulatedClock(robot.advance), robot)
-    show = Node(project, chosen, story=project.stories[project.story])
+    show = Exhibition(project, chosen, story=project.stories[project.story])
     show.start()
     while not look(show, show.tick()):
-        if show.player and show.player.finished:
+        if show.over:
             sys.exit("the story ended before the picture could be taken")
     show.close()
 
@@ -73,8 +73,8 @@ def tour(project: Project) -> None:
     robot = robot_of(project)
     since: list[float] = []
 
-    def look(show: Node, now: float) -> bool:
-        if "dance" in show.exhibition.runtime.snapshot.configuration:
+    def look(show: Exhibition, now: float) -> bool:
+        if "dance" in show.configuration:
             since.append(now)
         return bool(since) and now > since[0] + 3.0 + MID_DANCE
 
@@ -91,9 +91,9 @@ def head(project: Project) -> None:
     centre = (camera.width / 2, camera.height / 2)
     taken: list[str] = []
 
-    def look(show: Node, now: float) -> bool:
+    def look(show: Exhibition, now: float) -> bool:
         face = robot.face()
-        if face and not taken and "idle" in show.exhibition.runtime.snapshot.configuration:
+        if face and not taken and "idle" in show.configuration:
             mark(robot, face, centre).save(HERE / "head_before.png", optimize=True)
             taken.append(f"before: the face is {math.dist(face, centre):.0f} px from the centre")
         if face and taken and math.dist(face, centre) < 10:

@@ -7,6 +7,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from lumen.app.exhibition import Exhibition
+    from lumen.app.opening import open
     from lumen.errors import (
         BadCommandError,
         BadMessageError,
@@ -49,6 +51,7 @@ __all__ = [
     "BusUnreachableError",
     "Diagnostic",
     "Event",
+    "Exhibition",
     "ExpressionError",
     "LumenError",
     "ModuleError",
@@ -67,9 +70,12 @@ __all__ = [
     "__version__",
     "check",
     "load",
+    "open",
 ]
 
 _HOMES = {
+    "lumen.app.exhibition": ("Exhibition",),
+    "lumen.app.opening": ("open",),
     "lumen.errors": (
         "BadCommandError",
         "BadMessageError",

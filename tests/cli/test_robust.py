@@ -8,52 +8,52 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.node import Node
 from lumen.app.setup import Setup
+from lumen.app.whole_node import WholeNode
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.migration import MigrationPlan
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
+from tests.nodes import whole
 
 HEAD = ["HeadYaw", "HeadPitch"]
 
 
-def show_of(project: Project) -> Node:
+def show_of(project: Project) -> WholeNode:
     robot = RecordingRobot(project.body)
-    show = Node(project, Setup(robot, SimulatedClock(robot.advance), robot))
-    transcript = Transcript(show.exhibition.clock.now, lambda: show.exhibition.project.machine)
-    show.exhibition.observers.append(transcript)
-    show.start()
+    transcript = Transcript(lambda: show.now, lambda: show.project.machine)
+    show = whole(project, Setup(robot, SimulatedClock(robot.advance), robot), narrator=transcript)
+    show.begin()
     return show
 
 
 @pytest.fixture
-def show(copy: Path) -> Iterator[Node]:
+def show(copy: Path) -> Iterator[WholeNode]:
     one = show_of(lumen.load(copy))
     yield one
     one.close()
 
 
-def states(show: Node) -> frozenset[str]:
-    return show.exhibition.runtime.snapshot.configuration
+def states(show: WholeNode) -> frozenset[str]:
+    return show.loop.runtime.snapshot.configuration
 
 
-def live(show: Node, seconds: float) -> None:
+def live(show: WholeNode, seconds: float) -> None:
     for _ in range(round(seconds / 0.02)):
         show.tick()
 
 
-def reload(show: Node, project: Project) -> None:
-    plan = show.plan(project)
+def reload(show: WholeNode, project: Project) -> None:
+    plan = show.behavior.plan(project)
     assert isinstance(plan, MigrationPlan)
-    show.apply(project, plan)
+    show.behavior.apply(project, plan)
 
 
-def greeted(show: Node) -> None:
-    assert show.walker
-    show.walker.arrive(Visitor())
+def greeted(show: WholeNode) -> None:
+    assert show.visitor
+    show.visitor.actor.arrive(Visitor())
     live(show, 2.0)
     assert "greet" in states(show)
 
@@ -71,7 +71,7 @@ def greeted(show: Node) -> None:
         ("avatar.NAO.command", {"type": 7}),
     ],
 )  # fmt: skip
-def test_no_message_ends_it_or_switches_the_head_off(show: Node, key: str, body: Any) -> None:
+def test_no_message_ends_it_or_switches_the_head_off(show: WholeNode, key: str, body: Any) -> None:
     greeted(show)
     with suppress(lumen.BusError):
         show.bus.publish(key, body)
@@ -89,28 +89,28 @@ def edit(folder: Path, old: str, new: str, file: str = "behaviors/tour.yaml") ->
     return lumen.load(folder)
 
 
-def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Path, show: Node) -> None:
+def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Path, show: WholeNode) -> None:
     greeted(show)
     live(show, 6.0)
     assert "ask_name" in states(show)
-    asked = show.exhibition.clock.now()
+    asked = show.loop.clock.now()
     reload(show, edit(copy, "after: {30s: goodbye}", "after: {10s: goodbye}"))
     while "goodbye" not in states(show):
         show.tick()
-        assert show.exhibition.clock.now() < asked + 11.0
-    assert show.exhibition.clock.now() < asked + 10.5
+        assert show.loop.clock.now() < asked + 11.0
+    assert show.loop.clock.now() < asked + 10.5
 
 
-def test_routes_that_moved_are_spoken_and_heard_on_their_new_keys(copy: Path, show: Node) -> None:
+def test_routes_that_moved_are_spoken_and_heard_on_their_new_keys(copy: Path, show: WholeNode) -> None:
     edit(copy, "lumen.audio.speech.recognition", "lumen.audio.ears", "lumen.yaml")
     project = edit(copy, "lumen.visual.face.detection", "lumen.visual.eyes", "lumen.yaml")
     reload(show, project)
     greeted(show)
     live(show, 6.0)
-    assert show.walker
-    show.walker.speak("my name is Ada")
+    assert show.visitor
+    show.visitor.actor.speak("my name is Ada")
     live(show, 0.1)
-    assert show.exhibition.runtime.snapshot.context["visitor"] == "Ada"
+    assert show.loop.runtime.snapshot.context["visitor"] == "Ada"
 
 
 def test_a_livelock_drops_the_event_that_began_it(copy: Path) -> None:
@@ -119,7 +119,7 @@ def test_a_livelock_drops_the_event_that_began_it(copy: Path) -> None:
     loop += "      y: {always: {guard: 'context.battery == 100', target: x}}\n"
     edit(copy, "  touch:\n    initial: free", loop + "  touch:\n    initial: free")
     show = show_of(lumen.load(copy))
-    show.exhibition.happen(lumen.Event("stop", {}))
+    show.loop.happen(lumen.Event("stop", {}))
     live(show, 0.5)
     greeted(show)
     show.close()

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.node import Node
 from lumen.app.setup import Setup
 from lumen.cli.main import main
 from lumen.clocks.simulated import SimulatedClock
@@ -15,6 +14,7 @@ from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.robots.recording import RecordingRobot
 from tests.guarded import PIPE, Guarded
+from tests.nodes import whole
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
 
@@ -102,8 +102,8 @@ def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> N
     """At ten times real time, for a broker does not hurry when simulated time does."""
     story = project.stories["visitor"]
     robot = RecordingRobot(project.body)
-    show = Node(project, Setup(robot, SimulatedClock(robot.advance, 10.0), robot), broker.url, story)
-    show.start()
+    show = whole(project, Setup(robot, SimulatedClock(robot.advance, 10.0), robot), broker.url, story)
+    show.begin()
     assert show.player
     while not show.player.finished:
         show.tick()

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import lumen
-from lumen.app.node import Node
+from lumen.app.parts.saved_files import ReloadPart
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.requests import COMMAND, STATUS
@@ -18,6 +18,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.home import Home
+from tests.nodes import whole
 from tests.waiting import Collector
 
 DEADLINE = 30.0
@@ -41,23 +42,30 @@ class Live:
         self.folder = folder
         project = project or lumen.load(folder)
         self.robot = RecordingRobot(project.body, behaves)
-        self.show = Node(project, Setup(self.robot, SimulatedClock(self.robot.advance, 20.0), self.robot), url)
         self.told = StringIO()
-        transcript = Transcript(self.show.exhibition.clock.now, lambda: self.show.exhibition.project.machine, self.told)
-        self.show.exhibition.observers.append(transcript)
+        transcript = Transcript(lambda: self.show.now, lambda: self.show.project.machine, self.told)
+        setup = Setup(self.robot, SimulatedClock(self.robot.advance, 20.0), self.robot)
+        self.show = whole(project, setup, url, None, transcript)
         self.home = Home(folder / ".lumen")
         assert self.home.hold()
         self.records = RunRecords(self.home)
         self.reloading = Reloader(
-            self.show, transcript, mode=mode, records=self.records, quiet=QUIET, budget=0.5, seen=seen, apart=apart
+            self.show.behavior,
+            transcript,
+            mode=mode,
+            records=self.records,
+            quiet=QUIET,
+            budget=0.5,
+            seen=seen,
+            apart=apart,
         )
-        self.show.exhibition.parts.append(self.reloading.tick)
-        self.show.closing[:0] = [self.reloading.close, self.records.close, self.home.release]
+        self.show.add(ReloadPart(self.reloading))
+        self.show.closing += [self.records.close, self.home.release]
         self.answers = Collector()
-        self.show.exhibition.bus.subscribe("lumen.test.answer", self.answers)
+        self.show.loop.bus.subscribe("lumen.test.answer", self.answers)
         self.status = Collector()
-        self.show.exhibition.bus.subscribe(STATUS, self.status)
-        self.show.start()
+        self.show.loop.bus.subscribe(STATUS, self.status)
+        self.show.begin()
 
     def until(self, condition: Callable[[], object]) -> None:
         deadline = time.monotonic() + DEADLINE
@@ -70,17 +78,17 @@ class Live:
 
     def live(self, seconds: float) -> None:
         """So much of its own time."""
-        end = self.show.exhibition.clock.now() + seconds
-        self.until(lambda: self.show.exhibition.clock.now() >= end)
+        end = self.show.loop.clock.now() + seconds
+        self.until(lambda: self.show.loop.clock.now() >= end)
 
     def greet(self) -> None:
-        assert self.show.walker
-        self.show.walker.arrive(Visitor())
+        assert self.show.visitor
+        self.show.visitor.actor.arrive(Visitor())
         self.until(lambda: "ask_name" in self.states)
 
     def speak(self, text: str, state: str) -> None:
-        assert self.show.walker
-        self.show.walker.speak(text)
+        assert self.show.visitor
+        self.show.visitor.actor.speak(text)
         self.until(lambda: state in self.states)
 
     def edit(self, old: str, new: str, file: str = "behaviors/tour.yaml") -> None:
@@ -93,7 +101,7 @@ class Live:
         """The first answer to a command."""
         before = len(self.answers.messages)
         body = {"command": command, **more}
-        self.show.exhibition.bus.publish(COMMAND, body, reply_to="lumen.test.answer", correlation_id=str(before))
+        self.show.loop.bus.publish(COMMAND, body, reply_to="lumen.test.answer", correlation_id=str(before))
         self.until(lambda: len(self.answers.messages) > before)
         found: dict[str, Any] = self.answers.bodies[before]
         return found
@@ -104,7 +112,7 @@ class Live:
 
     @property
     def states(self) -> frozenset[str]:
-        return self.show.exhibition.runtime.snapshot.configuration
+        return self.show.loop.runtime.snapshot.configuration
 
     @property
     def verdicts(self) -> list[str]:

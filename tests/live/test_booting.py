@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.node import Node
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
+from lumen.app.whole_node import WholeNode
 from lumen.cli.main import main
 from lumen.errors import BusError
 from lumen.loading.files import read_files
@@ -41,14 +41,14 @@ def run(copy: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def fail_with(monkeypatch: pytest.MonkeyPatch, hash: str, error: Exception) -> None:
     """From now on these files end whatever runs on them."""
-    usual = Node.tick
+    usual = WholeNode.tick
 
-    def tick(show: Node) -> float:
-        if show.exhibition.project.hash == hash:
+    def tick(show: WholeNode) -> float:
+        if show.loop.project.hash == hash:
             raise error
         return usual(show)
 
-    monkeypatch.setattr(Node, "tick", tick)
+    monkeypatch.setattr(WholeNode, "tick", tick)
 
 
 def test_files_that_end_every_start_give_way_to_the_last_good_ones(
@@ -80,7 +80,7 @@ def test_what_a_start_has_left_aside_is_taken_once_it_changes(copy: Path) -> Non
     save(copy, SORRY, PARDON)
     one = Live(copy, project=before, seen=lumen.load(copy).hash)
     one.live(40.0)
-    assert one.show.exhibition.project is before
+    assert one.show.loop.project is before
     assert one.verdicts == []
     save(copy, PARDON, "en: What was that?")
     one.until_told("in force")
@@ -111,10 +111,10 @@ def test_bad_files_and_last_good_are_journaled(copy: Path, run: list[str], capsy
 
 def test_a_start_on_newer_files_is_a_reload_and_journaled(copy: Path, run: list[str]) -> None:
     one = Live(copy)
-    before = one.show.exhibition.project.hash
+    before = one.show.loop.project.hash
     one.records.store(read_files(copy))
     one.greet()
-    one.records.keep(one.show.exhibition)
+    one.records.keep(one.show.loop)
     one.show.close()
     save(copy, SORRY, PARDON)
     assert main(run) == 0
@@ -152,7 +152,7 @@ def test_where_nothing_else_is_known_to_be_good_the_files_are_tried_again(copy: 
 
 
 def test_what_was_replaced_has_ended_nothing_and_what_failed_has(live: Live) -> None:
-    trials, exhibition = live.records.trials, live.show.exhibition
+    trials, exhibition = live.records.trials, live.show.loop
     assert trials
     live.edit(SORRY, PARDON)
     live.until_told("in force")

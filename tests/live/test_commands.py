@@ -38,11 +38,11 @@ def manual(copy: Path) -> Iterator[Live]:
 
 
 def test_a_saved_text_is_in_force_told_and_journaled(live: Live) -> None:
-    before = live.show.exhibition.project.hash
+    before = live.show.loop.project.hash
     live.edit(SORRY, PARDON)
     live.until_told("the saved files are in force")
     told = live.status.bodies[-1]
-    after = live.show.exhibition.project.hash
+    after = live.show.loop.project.hash
     assert (told["verdict"], told["who"], told["before"], told["after"]) == ("applied", "files", before, after)
     assert told["risk"] == "cosmetic"
     [entry] = live.records.journal.entries()
@@ -51,38 +51,38 @@ def test_a_saved_text_is_in_force_told_and_journaled(live: Live) -> None:
 
 
 def test_by_hand_it_is_staged_until_somebody_applies_it(manual: Live) -> None:
-    before = manual.show.exhibition.project
+    before = manual.show.loop.project
     manual.edit(SORRY, PARDON)
     manual.until_told("staged: ")
-    assert manual.show.exhibition.project is before
+    assert manual.show.loop.project is before
     assert manual.ask("status")["staged"]
     assert manual.ask("apply")["verdict"] == "applied"
-    assert manual.show.exhibition.project.hash != before.hash
+    assert manual.show.loop.project.hash != before.hash
     assert manual.ask("apply")["verdict"] == "refused"
 
 
 def test_a_rollback_brings_back_what_ran_before_and_stays(live: Live) -> None:
-    before = live.show.exhibition.project.hash
+    before = live.show.loop.project.hash
     assert "nothing to go back to" in live.ask("rollback")["reason"]
     live.edit(SORRY, PARDON)
     live.until_told("in force")
     assert live.ask("rollback")["verdict"] == "applied"
     assert "the files before are in force again" in live.transcript
-    assert live.show.exhibition.project.hash == before
+    assert live.show.loop.project.hash == before
     live.live(5.0)
-    assert live.show.exhibition.project.hash == before
+    assert live.show.loop.project.hash == before
     assert live.ask("reload")["verdict"] == "applied"
-    assert live.show.exhibition.project.hash != before
+    assert live.show.loop.project.hash != before
 
 
 def test_a_dry_run_says_what_would_be_and_changes_nothing(manual: Live) -> None:
-    before = manual.show.exhibition.project
+    before = manual.show.loop.project
     manual.edit(SORRY, PARDON)
     manual.until_told("staged: ")
     answer = manual.ask("dry-run")
     assert answer["verdict"] == "dry run"
     assert "it would be in force at once" in answer["lines"][0]
-    assert manual.show.exhibition.project is before
+    assert manual.show.loop.project is before
 
 
 def test_reload_answers_with_the_diagnostics(live: Live) -> None:
@@ -101,7 +101,7 @@ def test_where_nothing_was_saved_it_says_so(live: Live) -> None:
     "body", [None, 7, "reload", [], {}, {"command": 7}, {"command": "danse"}, {"command": "reload", "now": "yes"}]
 )
 def test_nonsense_is_answered_and_ends_nothing(live: Live, body: Any) -> None:
-    bus = live.show.exhibition.bus
+    bus = live.show.loop.bus
     bus.publish("lumen.config.command", body, reply_to="lumen.test.answer")
     bus.publish("lumen.config.command", body)
     live.until(lambda: live.answers.messages)
@@ -153,16 +153,16 @@ def test_what_needs_a_restart_is_named(live: Live) -> None:
     live.until_told("the saved files are good: the stage changed: in force from the next start on")
     assert live.transcript.count("the stage changed") == 1
     assert live.status.bodies[-1]["restart"]
-    assert live.show.exhibition.project.stage
-    assert live.show.exhibition.project.stage.x == (-0.4, 0.4)
+    assert live.show.loop.project.stage
+    assert live.show.loop.project.stage.x == (-0.4, 0.4)
 
 
 def test_a_story_saved_with_the_files_is_played_and_refuses_them(live: Live) -> None:
-    before = live.show.exhibition.project
+    before = live.show.loop.project
     live.edit("steps:\n", "steps:\n  - expect: {state: dance, within: 2s}\n", "behaviors/stories/refuses.yaml")
     live.until_told("the saved story `refuses` fails with these files")
     assert "behaviors/stories/refuses.yaml:" in live.transcript
-    assert live.show.exhibition.project is before
+    assert live.show.loop.project is before
 
 
 def test_a_story_that_no_longer_holds_is_told_after_the_files_are_in_force(live: Live) -> None:
@@ -207,7 +207,7 @@ def test_the_same_on_a_broker_for_which_no_tick_waits(
     assert one.ask("rollback")["verdict"] == "applied"
     assert threading.current_thread() not in waiting
     ears, other = Ears(), connect(broker.url)
-    one.show.exhibition.observers.append(ears)
+    one.show.loop.observers.append(ears)
     one.until(lambda: other.publish("lumen.load", {}) or "load" in ears.heard)
     other.close()
     one.show.close()

@@ -12,7 +12,7 @@ from tests.live.shows import Live
 def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
     live.edit("en: I am sorry, I did not understand that.", "en: Come again, please?")
     live.until_told("in force")
-    walker = live.show.walker
+    walker = live.show.visitor
     assert walker
     walker.arrive(Visitor())
     live.until_told("ask_name")
@@ -23,7 +23,7 @@ def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
 
 
 def test_the_visitors_name_survives(live: Live) -> None:
-    walker = live.show.walker
+    walker = live.show.visitor
     assert walker
     walker.arrive(Visitor())
     live.until_told("ask_name")
@@ -48,12 +48,12 @@ def test_the_visitors_name_survives(live: Live) -> None:
 def test_a_broken_file_is_reported_with_its_place_and_changes_nothing(
     live: Live, old: str, new: str, told: str
 ) -> None:
-    before = live.show.exhibition.project
+    before = live.show.loop.project
     live.edit(old, new)
     live.until_told("refused: the exhibition goes on as it was")
     assert told in live.transcript
     assert "behaviors/tour.yaml:" in live.transcript
-    assert live.show.exhibition.project is before
+    assert live.show.loop.project is before
     live.edit(new, old)
     live.edit("en: Never mind.", "en: No problem.")
     live.until_told("in force")
@@ -69,7 +69,7 @@ def storyless(copy: Path) -> None:
 
 @pytest.mark.usefixtures("storyless")
 def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
-    walker = live.show.walker
+    walker = live.show.visitor
     assert walker
     walker.arrive(Visitor())
     live.until(lambda: "ask_name" in live.states)

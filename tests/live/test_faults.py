@@ -19,28 +19,28 @@ def fail(*_: Any, **__: Any) -> Any:
 
 
 def test_a_fault_leaves_the_old_bundle_running(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = live.show.exhibition.project
+    before = live.show.loop.project
     with monkeypatch.context() as patched:
         patched.setattr(InlineValidation, "load", fail)
         live.edit(SORRY, PARDON)
         live.until_told("refused: Lumen failed on these files: ZeroDivisionError('a fault of ours')")
-    assert live.show.exhibition.project is before
+    assert live.show.loop.project is before
     live.edit("en: Never mind.", "en: No problem.")
     live.until_told("the saved files are in force")
 
 
 def test_a_bus_that_refuses_is_told(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
-    before, usual = live.show.exhibition.project, live.show.exhibition.inbox.listen
+    before, usual = live.show.loop.project, live.show.loop.inbox.listen
 
     def listen(project: Any) -> None:
         if project is not before:
             raise BusError("the broker says no")
         usual(project)
 
-    monkeypatch.setattr(live.show.exhibition.inbox, "listen", listen)
+    monkeypatch.setattr(live.show.loop.inbox, "listen", listen)
     live.edit(SORRY, PARDON)
     live.until_told("refused: the bus refuses its routes: the broker says no")
-    assert live.show.exhibition.project is before
+    assert live.show.loop.project is before
 
 
 @pytest.mark.parametrize("error", [ZeroDivisionError("a fault"), LumenError("it never comes to rest")])
@@ -48,10 +48,10 @@ def test_a_bundle_that_fails_in_its_probation_is_taken_back_and_no_event_lost(
     live: Live, monkeypatch: pytest.MonkeyPatch, error: Exception
 ) -> None:
     live.greet()
-    before, usual = live.show.exhibition.project.hash, runtime.step
+    before, usual = live.show.loop.project.hash, runtime.step
     live.edit(SORRY, PARDON)
     live.until_told("in force")
-    bad = live.show.exhibition.project.machine
+    bad = live.show.loop.project.machine
 
     def step(machine: Any, snapshot: Any, event: Event) -> Any:
         if machine is bad and event.name == "heard":
@@ -60,8 +60,8 @@ def test_a_bundle_that_fails_in_its_probation_is_taken_back_and_no_event_lost(
 
     monkeypatch.setattr(runtime, "step", step)
     live.speak("my name is Ada", "how_are_you")
-    assert live.show.exhibition.runtime.snapshot.context["visitor"] == "Ada"
-    assert live.show.exhibition.project.hash == before
+    assert live.show.loop.runtime.snapshot.context["visitor"] == "Ada"
+    assert live.show.loop.project.hash == before
     assert f"the new files failed: {error}: back to the files before" in live.transcript
     assert live.verdicts[-1] == "rolled back"
 
@@ -71,29 +71,29 @@ def test_after_its_probation_a_bundle_is_on_its_own(live: Live, monkeypatch: pyt
     live.edit(SORRY, PARDON)
     live.until_told("in force")
     live.live(11.0)
-    after = live.show.exhibition.project.hash
+    after = live.show.loop.project.hash
     assert live.records.keeper
     assert live.records.keeper.good() == after
     monkeypatch.setattr(runtime, "step", lambda *_: (_ for _ in ()).throw(LumenError("it never comes to rest")))
-    live.show.exhibition.happen(Event("stop", {}))
+    live.show.loop.happen(Event("stop", {}))
     live.live(0.1)
-    assert live.show.exhibition.project.hash == after
+    assert live.show.loop.project.hash == after
 
 
 def test_what_performs_may_fail_too(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = live.show.exhibition.project.hash
+    before = live.show.loop.project.hash
     live.edit(SORRY, PARDON)
     live.until_told("in force")
-    usual = live.show.exhibition._performer.perform
+    usual = live.show.loop._performer.perform
 
     def perform(project: Any, *rest: Any) -> None:
         if project.hash != before:
             fail()
         usual(project, *rest)
 
-    monkeypatch.setattr(live.show.exhibition._performer, "perform", perform)
+    monkeypatch.setattr(live.show.loop._performer, "perform", perform)
     live.greet()
-    assert live.show.exhibition.project.hash == before
+    assert live.show.loop.project.hash == before
 
 
 def test_where_there_is_no_way_back_it_begins_anew(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,7 +102,7 @@ def test_where_there_is_no_way_back_it_begins_anew(live: Live, monkeypatch: pyte
     live.edit(SORRY, PARDON)
     live.until_told("in force")
     monkeypatch.setattr(live.show, "plan", lambda *_, **__: MigrationDelay("no way", "how_are_you"))
-    commands = live.show.exhibition.rescue(ZeroDivisionError("a fault"))
+    commands = live.show.loop.rescue(ZeroDivisionError("a fault"))
     assert commands
     assert "idle" in live.states
-    assert isinstance(live.show.exhibition.plan(live.show.exhibition.project), MigrationPlan)
+    assert isinstance(live.show.loop.plan(live.show.loop.project), MigrationPlan)

@@ -18,7 +18,7 @@ FINE = "en: [I am glad to hear that.,"
 
 def test_a_trace_replays_across_reloads_to_the_same_steps(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     live = Live(copy)
-    runtime, trace = live.show.exhibition.runtime, list[tuple[str, float, Any]]()
+    runtime, trace = live.show.loop.runtime, list[tuple[str, float, Any]]()
     tick, apply = runtime.tick, runtime.apply
 
     def ticked(now: float, events: Any) -> Any:
@@ -26,10 +26,10 @@ def test_a_trace_replays_across_reloads_to_the_same_steps(copy: Path, monkeypatc
         return tick(now, trace[-1][2])
 
     def applied(project: Project, planned: Any) -> None:
-        trace.append(("reload", live.show.exhibition.clock.now(), project.hash))
+        trace.append(("reload", live.show.loop.clock.now(), project.hash))
         apply(project, planned)
 
-    first, epoch = live.show.exhibition.project, live.show.exhibition.runtime.snapshot.epoch
+    first, epoch = live.show.loop.project, live.show.loop.runtime.snapshot.epoch
     steps: list[Step] = []
     observe = runtime._observe
     monkeypatch.setattr(runtime, "_observe", lambda step: (steps.append(step), observe(step)))

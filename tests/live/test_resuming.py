@@ -38,7 +38,7 @@ def crashed(live: Live) -> None:
     live.speak("fine", "offer")
     live.speak("dance", "dance")
     live.live(4.0)
-    live.records.keep(live.show.exhibition)
+    live.records.keep(live.show.loop)
     live.show.close()
 
 
@@ -59,10 +59,10 @@ def test_it_goes_on_where_it_was_and_what_was_under_way_has_failed(copy: Path) -
     assert found.tracking == ("head",)
     assert {event.data["reason"] for event in found.answers(0.0)} == {REASON}
     again = Live(copy)
-    again.show.exhibition.resume(found)
+    again.show.loop.resume(found)
     again.until_told("(failed: the engine was restarted while it ran)")
     assert "offer" in again.states
-    assert again.show.exhibition.tracking.on == ("head",)
+    assert again.show.loop.tracking.on == ("head",)
     again.show.close()
 
 
@@ -78,7 +78,7 @@ def test_newer_files_are_a_reload(copy: Path) -> None:
 def test_timers_go_on_while_nobody_is_there(copy: Path) -> None:
     one = Live(copy)
     one.greet()
-    project, snapshot = one.show.exhibition.project, one.show.exhibition.runtime.snapshot
+    project, snapshot = one.show.loop.project, one.show.loop.runtime.snapshot
     one.show.close()
     [timer] = [t for t in snapshot.timers if t.delay == 7200.0]
     found = resume(project, project, snapshot, 20.0, ())
@@ -119,7 +119,7 @@ def test_a_bundle_that_was_changed_is_not_taken(copy: Path) -> None:
 
 def test_only_what_is_new_is_written(copy: Path) -> None:
     one = Live(copy)
-    keeper, show = one.records.keeper, one.show.exhibition
+    keeper, show = one.records.keeper, one.show.loop
     assert keeper
     one.records.keep(show)
     one.records.keep(show)
@@ -136,7 +136,7 @@ def test_a_disk_that_refuses_ends_nothing(copy: Path, caplog: pytest.LogCaptureF
     one = Live(copy)
     (one.home.folder / f"{SNAPSHOT}.new").mkdir()
     one.greet()
-    one.records.keep(one.show.exhibition)
+    one.records.keep(one.show.loop)
     one.show.close()
     assert "can't be kept" in caplog.text
 

@@ -39,7 +39,7 @@ class Bench:
     def __init__(self, folder: Path) -> None:
         self.live = Live(folder)
         self.reloading = self.live.reloading
-        self._judge = BundleValidator(InlineValidation(folder), lambda: self.live.show.exhibition.project)
+        self._judge = BundleValidator(InlineValidation(folder), lambda: self.live.show.loop.project)
         self._first = read_files(folder)
         self._number = 0
 
@@ -65,11 +65,11 @@ class Bench:
     @property
     def hash(self) -> str:
         """Of the bundle that runs."""
-        return self.live.show.exhibition.project.hash
+        return self.live.show.loop.project.hash
 
     def is_whole(self) -> bool:
         """Whether everything goes by the bundle that runs."""
-        exhibition = self.live.show.exhibition
+        exhibition = self.live.show.loop
         listens = ("lumen.load", "load") in exhibition.inbox._undo
         stands = any(state.endswith("counting") for state in exhibition.runtime.snapshot.configuration)
         return listens == stands == ("load" in exhibition.project.routes)
@@ -98,7 +98,7 @@ def some(found: list[CodeType], every: bool) -> list[CodeType]:
 
 @every
 def test_a_fault_in_loading_or_linting(bench: Bench, every: bool) -> None:
-    saved, running = bench.saved(), bench.live.show.exhibition.project
+    saved, running = bench.saved(), bench.live.show.loop.project
     found = steps(lambda: bench.validation(saved), Reloader._judge)
     assert len(found) > 500
     for step in some(found, every):
@@ -106,7 +106,7 @@ def test_a_fault_in_loading_or_linting(bench: Bench, every: bool) -> None:
         validation = failing(step, lambda: bench.validation(saved), Reloader._judge)  # noqa: B023 called at once
         assert name(step) in validation.fault
         bench.take(validation)
-        assert bench.live.show.exhibition.project is running
+        assert bench.live.show.loop.project is running
         assert f"refused: Lumen failed on these files: FaultError('{name(step)}')" in bench.live.transcript
     bench.take(bench.validation(bench.saved()))
     assert bench.live.verdicts[-1] == "applied"

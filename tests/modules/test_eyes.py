@@ -14,11 +14,11 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from lumen.app.modules.in_process import join
-from lumen.app.node import Node
+from lumen.app.rehearsal import RehearsalTrace
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import ModuleError
+from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.modules.eyes import Eyes
@@ -27,6 +27,7 @@ from lumen.modules.eyes.gallery import FaceGallery
 from lumen.ports import Sense
 from lumen.robots.simulation import SimulatedRobot
 from tests.modules.conftest import Stand, with_options
+from tests.nodes import whole
 
 Make = Callable[..., Stand]
 Pixels = NDArray[np.uint8]
@@ -232,15 +233,16 @@ def test_a_video_file(stand: Make, project: Project, photographed: Pixels, tmp_p
 def test_the_head_turns_to_a_face_that_was_seen_in_the_image(project: Project) -> None:
     """Rendered camera, JPEG, bus, detector, fuzzy controller, head: the whole way through pixels."""
     robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
-    show = Node(with_options(project, "eyes"), Setup(robot, SimulatedClock(robot.advance, None), robot))
-    told: list[str] = []
-    join(show, None, lambda who, text: told.append(f"{who}: {text}"), paced=False)
+    lines = RehearsalTrace(lambda: show.now, lambda: show.project.machine, None)
+    setup = Setup(robot, SimulatedClock(robot.advance, None), robot)
+    show = whole(with_options(project, "eyes"), setup, narrator=lines)
+    show.add_modules(awaited=True)
     seen = []
     show.bus.subscribe("lumen.visual.face.#", lambda message: seen.append((message.key, message.body)))
     try:
-        show.start()
-        assert show.walker
-        show.walker.arrive(Visitor(x=1.3, y=0.6))
+        show.begin()
+        assert show.visitor
+        show.visitor.actor.arrive(Visitor(x=1.3, y=0.6))
         distances = []
         while show.tick() < 5.0:
             face = robot.face()
@@ -248,7 +250,7 @@ def test_the_head_turns_to_a_face_that_was_seen_in_the_image(project: Project) -
     finally:
         show.close()
     faces = [b for key, b in seen if key.endswith("detection")]
-    assert told == []
+    assert not [who for _, who, _ in lines.lines if who in MODULES]
     assert len(faces) == sum(key.endswith("tracking") for key, _ in seen) > 10
     assert max(distances[:50]) > 60.0
     assert max(distances[-25:]) < 12.0

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.node import Node
 from lumen.app.setup import Setup
+from lumen.app.whole_node import WholeNode
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.commands import Command, Say, Start
 from lumen.language.events import CUE, Event
@@ -19,6 +19,7 @@ from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.loop import Observer
 from tests.motions.making import ROOT, made, nao
+from tests.nodes import whole
 
 GREETING = """
 start: Stand
@@ -94,11 +95,13 @@ def project(tmp_path: Path) -> Project:
     return lumen.load(tmp_path)
 
 
-def run(project: Project, seconds: float, touch: float = 99.0, language: str = "") -> tuple[Ear, RecordingRobot, Node]:
+def run(
+    project: Project, seconds: float, touch: float = 99.0, language: str = ""
+) -> tuple[Ear, RecordingRobot, WholeNode]:
     robot, ear = RecordingRobot(project.body), Ear()
-    show = Node(project, Setup(robot, SimulatedClock(robot.advance), robot), "memory://", sensing=False)
-    show.exhibition.observers.append(ear)
-    show.start(language)
+    show = whole(project, Setup(robot, SimulatedClock(robot.advance), robot), "memory://", silent=True)
+    show.loop.observers.append(ear)
+    show.behavior.start(language)
     for i in range(round(seconds / 0.02)):
         if i == round(touch / 0.02):
             robot.touch("FrontTactil", True)
@@ -111,7 +114,7 @@ def test_an_exhibition_speaks_them_in_its_language_and_the_behaviour_hears_nothi
     ear, robot, show = run(project, 4.0, language="id")
     assert ear.said == [Say("Lihat!", "id"), Say("Bye", "id")]
     assert [c for _, c in robot.performed if isinstance(c, Say)] == ear.said
-    assert show.exhibition.runtime.snapshot.configuration == {"over"}
+    assert show.loop.runtime.snapshot.configuration == {"over"}
 
 
 def test_words_end_with_a_motion_that_is_cancelled(project: Project) -> None:

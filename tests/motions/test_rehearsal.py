@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.physics.outcome_cache import OutcomeCache
+from lumen.app.lint.outcome_cache import OutcomeCache
 from lumen.cli.main import main
 from lumen.rules.physics import DONE, Case, Outcome
 from lumen.rules.physics.cases import cases

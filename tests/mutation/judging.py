@@ -122,7 +122,7 @@ class Judge:
 
         try:
             with patience():
-                failed = rehearse(project, story, parts=[enough]).failed
+                failed = rehearse(project, story, hooks=[enough]).failed
         except EnoughError:
             return None
         except Hang:

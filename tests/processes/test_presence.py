@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from lumen.app.processes.guard import Guard
+from lumen.app.parts.guard import BrainGuard
 from lumen.bus import Bus, BusError, connect
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Track
 from lumen.language.events import Event
@@ -105,7 +105,7 @@ def test_a_robot_of_another_name_and_nonsense_are_nobody(hall: Hall) -> None:
 def test_a_robot_rests_when_its_brain_is_gone_and_tells_the_next_one(hall: Hall) -> None:
     robot, presence, brain = RecordingRobot(BODY), hall.presence("robot"), hall.presence("brain")
     noticed: list[Event] = []
-    guard = Guard(robot, presence, noticed.append, lambda line: None, lambda: hall.time)
+    guard = BrainGuard(robot, presence, noticed.append, lambda line: None, lambda: hall.time)
 
     def live(seconds: float, *others: Presence) -> None:
         for _ in range(round(seconds / 0.1)):
@@ -138,7 +138,7 @@ def test_a_robot_that_stood_still_rests_first_and_then_follows_its_brain_on(hall
     robot, presence, brain = RecordingRobot(BODY), hall.presence("robot"), hall.presence("brain")
     noticed: list[Event] = []
     told: list[str] = []
-    guard = Guard(robot, presence, noticed.append, told.append, lambda: hall.time)
+    guard = BrainGuard(robot, presence, noticed.append, told.append, lambda: hall.time)
     for one in (presence, brain):
         one.settle()
 

@@ -130,7 +130,7 @@ def test_files_that_the_brain_puts_in_force_are_in_force_everywhere(troupe: Trou
     robot, brain = troupe.play()
     motion = troupe.join("motion")
     before = brain.brain.project.hash if brain.brain else ""
-    troupe.until(lambda: brain.brain and brain.brain._motion())
+    troupe.until(lambda: brain.brain and brain.brain.motion_module())
     file = troupe.folder / "motions" / "photo.yaml"
     file.write_text(file.read_text("utf-8").replace("description: ", "description: Again, "), "utf-8")
     tour = troupe.folder / "behaviors" / "tour.yaml"
@@ -138,12 +138,12 @@ def test_files_that_the_brain_puts_in_force_are_in_force_everywhere(troupe: Trou
     troupe.ear.publish("lumen.config.command", {"command": "reload"})
 
     def bundles() -> set[object]:
-        peers = [member.process._presence.find(part) for member, part in ((brain, "motion"), (brain, "robot"))]
+        peers = [member.process.presence.find(part) for member, part in ((brain, "motion"), (brain, "robot"))]
         return {peer.said["bundle"] for peer in peers if peer}
 
     troupe.until(lambda: brain.brain and bundles() == {brain.brain.project.hash} and before not in bundles())
     assert brain.brain
-    assert brain.brain._motion()
+    assert brain.brain.motion_module()
     assert {robot, motion} < set(troupe.members)
 
 

@@ -1,6 +1,5 @@
 """The parts of an exhibition, each with a bus, a clock and a loop of its own as in its own process."""
 
-import argparse
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,17 +8,18 @@ from pathlib import Path
 from typing import Any
 
 import lumen
-from lumen.app.node import Node
-from lumen.app.processes.brain import BrainPart
-from lumen.app.processes.starting import assembled
+from lumen.app.parts.remote_brain import RemoteBrainPart
+from lumen.app.processes.assembling import ProcessOptions, assemble
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup, set_up
 from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
+from lumen.cli.transcript import Transcript
 from lumen.clocks.real import RealClock
 from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.presence import BRAIN, ROBOT
+from tests.nodes import whole
 from tests.waiting import Collector
 
 SPEED = "4"
@@ -67,15 +67,16 @@ class Member:
 
     def __init__(self, folder: Path, url: str, names: tuple[str, ...], story: str, name: str, speed: str) -> None:
         project = replace(lumen.load(folder), robot=name)
-        options = argparse.Namespace(speed=speed, reload="manual", fresh=False, robot="recording")
         self.run_directory = RunDirectory(folder, guest=BRAIN not in names)
         self.cast: Setup | None = set_up("recording", project, speed) if ROBOT in names else None
         clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(speed))
         played = project.stories[story] if story else None
         bus = validated(connect(url), project)
-        self.process, self.brain = assembled(
-            options, project, played, names, (bus, url), self.run_directory, "", clock, self.cast
-        )
+        narrator = Transcript(clock.now, lambda: self.process.project.machine)
+        how = ProcessOptions(url, float(speed), "manual")
+        self.process = assemble(project, names, bus, clock, narrator, self.run_directory, how, self.cast, played)
+        brains = [part for part in self.process.parts if isinstance(part, RemoteBrainPart)]
+        self.brain = brains[0] if brains else None
 
     @property
     def body(self) -> RecordingRobot:
@@ -86,8 +87,8 @@ class Member:
     @property
     def states(self) -> frozenset[str]:
         """Where the behaviour stands; nowhere before it has begun."""
-        assert isinstance(self.brain, BrainPart)
-        snapshot = self.brain.show.exhibition.runtime._snapshot
+        assert self.brain
+        snapshot = self.brain.behavior.loop.runtime._snapshot
         return snapshot.configuration if snapshot else frozenset()
 
     def close(self) -> None:
@@ -114,21 +115,21 @@ class Troupe:
     def play(self) -> tuple[Member, Member]:
         """A robot that follows a brain, which is idle."""
         robot, brain = self.join("robot"), self.join("brain")
-        self.until(lambda: "idle" in brain.states and robot.process._presence.find(BRAIN))
+        self.until(lambda: "idle" in brain.states and robot.process.presence.find(BRAIN))
         self.live(0.1)
         return robot, brain
 
     def kill(self, member: Member) -> None:
         """It lives no more, and tells nobody; its connections end, as the system sees to."""
         self.members.remove(member)
-        member.process._bus.close()
+        member.process.bus.close()
         member.run_directory.close(forget=False)
 
     def until(self, condition: Callable[[], object], timeout: float = DEADLINE) -> None:
         deadline = time.monotonic() + timeout
         while not condition():
             for member in self.members:
-                member.process.step()
+                member.process.tick()
             assert time.monotonic() < deadline, f"not within {timeout:g} s"
 
     def live(self, seconds: float) -> None:
@@ -146,10 +147,10 @@ def alone(folder: Path, name: str) -> list[object]:
     """What the behaviour does in one process."""
     project = lumen.load(folder)
     story = project.stories[name]
-    show = Node(project, set_up("recording", project, "max", story), story=story)
+    show = whole(project, set_up("recording", project, "max", story), story=story)
     trace = Collector()
     show.bus.subscribe("lumen.state", trace)
-    show.start()
+    show.begin()
     assert show.player
     while not show.player.finished:
         show.tick()

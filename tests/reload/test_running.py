@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import pytest
 
-from lumen.app.node import Node
 from lumen.app.setup import Setup
 from lumen.buses.memory import MemoryBus
 from lumen.clocks.simulated import SimulatedClock
@@ -22,6 +21,7 @@ from lumen.rules import load
 from lumen.runtime.loop import TICK, BehaviorLoop, Observer
 from lumen.statechart import Machine
 from tests import exhibits
+from tests.nodes import whole
 from tests.tour.names import ROOT
 
 
@@ -62,10 +62,10 @@ def swap(exhibition: BehaviorLoop, project: Project, **how: bool) -> MigrationPl
 def test_the_head_goes_on_smoothly_under_another_controller() -> None:
     project = load(ROOT)
     robot = SimulatedRobot(project.body, ROOT / "models", project.hall)
-    show = Node(project, Setup(robot, SimulatedClock(robot.advance), robot), sensing=True)
-    show.start()
-    assert show.walker
-    show.walker.arrive(Visitor(1.2, 0.8))
+    show = whole(project, Setup(robot, SimulatedClock(robot.advance), robot))
+    show.begin()
+    assert show.visitor
+    show.visitor.actor.arrive(Visitor(1.2, 0.8))
     head = {name: robot.motors.index[name] for name in ("HeadYaw", "HeadPitch")}
     quick = replace(project.controllers["head"].tracking, speed=0.9, looks=1)
     bindings = tuple(replace(b, gain=-b.gain) for b in project.controllers["head"].output_bindings)
@@ -77,9 +77,9 @@ def test_the_head_goes_on_smoothly_under_another_controller() -> None:
             assert moved["HeadYaw"] > 0.1  # it follows the visitor
             moved = dict.fromkeys(head, 0.0)
             changed = replace(project, controllers={**project.controllers, "head": wild})
-            plan = show.plan(changed)
+            plan = show.behavior.plan(changed)
             assert isinstance(plan, MigrationPlan)
-            show.apply(changed, plan)
+            show.behavior.apply(changed, plan)
         show.tick()
         for name, i in head.items():
             goal = float(robot.motors.goal[i])

@@ -70,6 +70,6 @@ def play(project: Project, story: Story, performer: Performer | None = None, *, 
     """The story played to its end, or to its failure; `part` lives with it."""
     run = Run()
     chosen = Setup(performer, SimulatedClock(performer.advance), performer) if performer else None
-    rehearsal = rehearse(project, story, chosen, observers=[Log(run)], parts=[part] if part else [])
+    rehearsal = rehearse(project, story, chosen, observers=[Log(run)], hooks=[part] if part else [])
     run.time, run.failure = rehearsal.time, str(rehearsal.failed or "")
     return run

@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from lumen.app.node import MORNING, time_of_day
+from lumen.app.live_behavior import MORNING, time_of_day
 from lumen.interpreters.exploration import Exploration, ExplorationFinding, PathStep, StimulusKind, explore
 from lumen.language.diagnostics import Place
 from lumen.language.events import ROBOT_EVENTS

@@ -1,181 +1,182 @@
-"""An exhibition with everything around it: senses on the bus, a visitor in the hall, files that may change."""
+"""One process of an exhibition: its parts in one loop, among the processes that have the others, if there are any."""
 
+import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import replace
-from datetime import datetime
-from pathlib import Path
 
-from lumen.app.setup import Setup
-from lumen.bus import connect
-from lumen.buses.validated import ValidatedBus, validated
-from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
-from lumen.language.commands import Command, Say, Start
+from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals
+from lumen.app.garbage import GcScheduler
+from lumen.app.narrator import Narrator
+from lumen.app.parts.part import Part
+from lumen.buses.validated import ValidatedBus
+from lumen.errors import UsageError
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.language.stories import Story, VisitorAction
-from lumen.ports import Sense
-from lumen.robots.server import RobotServer
-from lumen.runtime.loop import BehaviorLoop, Observer, TickHook
-from lumen.runtime.perception import FaceDetector
-from lumen.runtime.story import StoryPlayer, staged
-from lumen.runtime.trace_publisher import TracePublisher
-from lumen.runtime.visitor import VisitorActor
-
-MORNING = "10:00"
-"""The time of day at which a story begins that does not say."""
+from lumen.ports import Clock
+from lumen.robots.robot_routes import COMMAND, key_of
+from lumen.runtime.loop import TICK
+from lumen.runtime.presence import HERE, ROBOT, Presence, told
+from lumen.runtime.trace_publisher import KEY
 
 
-class Node(Observer):
-    """Puts the parts together; `tick` until it is over, then `close`.
+class Node:
+    """Ticks its parts in their order until one is over or somebody ends it.
 
-    With a story its visitor plays it (`player`); without one the visitor (`walker`) does what whoever holds the show
-    makes them do. Both are None where the robot is in no world of ours. `tell` hears what the visitor does. Where
-    `sensing` is off, only those senses are on the bus that the behaviour hears of as events, and nothing tells of the
-    behaviour. What is in `after` lives at the end of each tick, when all that it asked for has been performed; `using`
-    is told of another bundle. A robot that is `remote` has its server where it is; `bus` may be one that is open.
+    With a `presence` it is one of several processes, or a whole exhibition that others on the same bus can see: it
+    begins when it has claimed what it is. `speed` is that of its time; those of the others have to be the same.
+    What is in `before` is called at each tick with its time [s], before the parts; what is in `closing` when it ends.
     """
 
     def __init__(
         self,
         project: Project,
-        chosen: Setup,
-        bus: str | ValidatedBus = "memory://",
-        story: Story | None = None,
-        tell: Callable[[VisitorAction], None] = lambda _: None,
+        bus: ValidatedBus,
+        clock: Clock,
+        narrator: Narrator,
         *,
-        sensing: bool = True,
+        presence: Presence | None = None,
+        speed: float | None = None,
     ) -> None:
-        project = staged(project, story)
-        self.bus = validated(connect(bus), project) if isinstance(bus, str) else bus
-        self.robot, self._story = chosen.robot, story
-        self.exhibition = BehaviorLoop(project, chosen.robot, self.bus, chosen.clock, chosen.tracking)
-        self._sensed: Callable[[Project], Project] = _all if sensing else _quiet
-        self.server = None if chosen.remote else RobotServer(self._sensed(project), chosen.robot, self.bus)
-        self.trace = TracePublisher(self.bus, lambda: self.exhibition.project, chosen.clock.now)
-        self.using: list[Callable[[Project], None]] = []
-        self.walker: VisitorActor | None = None
-        self.faces: FaceDetector | None = None
-        self.player: StoryPlayer | None = None
-        self.closing: list[Callable[[], None]] = [chosen.robot.close]
-        if isinstance(bus, str):
-            self.closing.insert(0, self.bus.close)
-        self.after: list[TickHook] = []
-        self.exhibition.observers.append(self)
-        if sensing:
-            self.exhibition.observers.append(self.trace)
-        if self.server:
-            self.closing.insert(0, self.server.close)
-            self.exhibition.parts.append(self._sense)
-        if chosen.hall:
-            self.walker = VisitorActor(project, chosen.hall, self.bus)
-            self.faces = FaceDetector(project, chosen.hall, self.bus)
-            self.exhibition.parts += [self.walker.tick, self.faces.tick]
-            if story:
-                self.player = StoryPlayer(story, self.exhibition, chosen.hall, self.walker, tell)
-                self.exhibition.observers.append(self.player)
-                self.exhibition.parts.append(self.player.tick)
+        self._project, self._clock, self._narrator, self._speed = project, clock, narrator, speed
+        self.bus, self.presence = bus, presence
+        self.parts: list[Part] = []
+        self.before: list[Callable[[float], None]] = []
+        self.closing: list[Callable[[], None]] = []
+        self.claimed: Callable[[], None] = lambda: None
+        self.now, self._asked = clock.now(), time.monotonic()
+        self._begun: list[Part] = []
+        self._waiting = ""
+        self._interrupts, self._heeded, self._leaving = 0, False, False
 
-    def start(self, language: str = "") -> None:
-        """Enter the initial states; a story may say in which language, at what time of day, and remembering what."""
-        story = self._story
-        self.exhibition.start(
-            language=language or (story.language if story else ""),
-            epoch=time_of_day((story.clock or MORNING) if story else ""),
-            context=story.context if story else None,
-        )
+    @property
+    def project(self) -> Project:
+        """The bundle that runs."""
+        return self._project
+
+    @property
+    def over(self) -> bool:
+        """Whether one of its parts is at its end, or it was interrupted twice."""
+        return self._interrupts > 1 or any(part.over for part in self._begun)
+
+    @property
+    def failed(self) -> bool:
+        """Whether a story has failed, or was not played to its end though nobody interrupted it."""
+        return any(part.failed for part in self._begun)
+
+    @property
+    def interrupted(self) -> bool:
+        return self._interrupts > 0
+
+    @property
+    def leaving(self) -> bool:
+        """Whether it was ended so that the next run goes on where this one was."""
+        return self._leaving
+
+    def interrupt(self, times: int = 1, *, leave: bool = False) -> None:
+        """Ctrl-C: once rests the robot where there is one to rest, twice ends; safe in a signal handler."""
+        self._interrupts += times
+        self._leaving = leave
+
+    def claim(self) -> None:
+        """Be what it is to be. Raises UsageError where another process is that already."""
+        self._asked = time.monotonic()
+        while self.presence and not self.presence.settled:
+            self.presence.tick()
+            self._claim(self.presence)
+            time.sleep(CLAIM_INTERVAL)
+
+    def begin(self) -> None:
+        """Begin the parts that need nobody else, once it has claimed what it is. Raises what `claim` raises."""
+        self.claim()
+        self._begin(self.now)
+
+    def run(self, period: float | None = None) -> float:
+        """Tick until it is over, or has lived for the period [s]; how long it lived [s]."""
+        began = self.now
+        scheduler = GcScheduler()
+        self.closing.append(scheduler.close)
+        while not self.over and (period is None or self.now - began < period):
+            self.tick()
+            scheduler()
+        return self.now - began
 
     def tick(self) -> float:
-        """Live through a tick; its time [s]."""
-        now = self.exhibition.tick()
-        for part in self.after:
-            part(now)
-        return now
+        """Wait for the next tick and live through it; its time [s]."""
+        self._clock.wait(self.now + TICK)
+        self.now = self._clock.now()
+        changes: list[Event] = self.presence.tick() if self.presence else []
+        if self.presence and not self.presence.settled:
+            self._claim(self.presence)
+        for call in self.before:
+            call(self.now)
+        if not self.presence or self.presence.settled:
+            self._begin(self.now)
+        for part in self._begun:
+            part.tick(self.now, changes)
+        self._heed()
+        return self.now
 
-    def plan(self, project: Project, *, now: bool = False, back: bool = False) -> MigrationVerdict:
-        """How another bundle would go on from here, or why it can't; nothing changes."""
-        return self.exhibition.plan(staged(project, self._story), now=now, back=back)
-
-    def apply(self, project: Project, plan: MigrationPlan, begun: Callable[[], None] = lambda: None) -> None:
-        """Go on with another bundle as planned for this moment; `begun` is called before what that asks for is done.
-
-        Raises what `switch` raises.
-        """
-        old = self.exhibition.project
-        self.switch(project, plan)
-        begun()
-        self.exhibition.perform(plan, old)
-
-    def switch(self, project: Project, plan: MigrationPlan) -> None:
-        """Go on with another bundle, and leave undone what that asks for.
-
-        Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
-        """
-        old, new = self.exhibition.project, staged(project, self._story)
-        try:
-            self._use(new)
-            self.exhibition.switch(new, plan)
-        except Exception:
-            self._use(old)
-            raise
-
-    def _use(self, project: Project) -> None:
-        """Let everything around the behaviour go by this bundle from now on."""
+    def use(self, project: Project, but: Part | None = None) -> None:
+        """Let the bus and all parts go by another bundle, but the one that has it already."""
+        self._project = project
         self.bus.use(project)
-        if self.server:
-            self.server.use(self._sensed(project))
-        for part in (self.walker, self.faces):
-            if part:
+        for part in self.parts:
+            if part is not but:
                 part.use(project)
-        for use in self.using:
-            use(project)
 
     def close(self) -> None:
-        """End what has threads, files or windows open, whatever one of them may raise."""
+        """End all parts, whatever one of them may raise; then the bus."""
         with ExitStack() as stack:
-            for close in reversed(self.closing):
+            stack.callback(self.bus.close)
+            if self.presence:
+                stack.callback(self.presence.close)
+            for close in [*(part.close for part in self.parts), *self.closing]:
                 stack.callback(close)
 
-    def performing(self, command: Command, now: float) -> None:
-        match command:
-            case Start(_, Say() as said) if self.server:
-                self.server.begins(said)
+    def summary(self) -> list[str]:
+        """What is said of its parts at the end, a line each."""
+        return [line for part in self._begun for line in part.summary()]
 
-    def answered(self, event: Event) -> None:
-        if self.server:
-            self.server.answer(event)
+    def _claim(self, presence: Presence) -> None:
+        refuse_rivals(presence)
+        if time.monotonic() - self._asked >= CLAIM_DURATION:
+            presence.settle()
+            self.claimed()
 
-    def _sense(self, now: float) -> None:
-        assert self.server
-        self.server.sample(now)
-        self.server.settle()
+    def _begin(self, now: float) -> None:
+        for part in self.parts:
+            if part not in self._begun and self._ready(part):
+                self._check_speed()
+                part.begin(now)
+                self._begun.append(part)
 
+    def _ready(self, part: Part) -> bool:
+        """Whether those are there that it needs; where not, that is said once."""
+        for need in part.needs:
+            if self.presence and need not in self.presence.parts and not self._here(self.presence, need):
+                key = key_of(self._project, COMMAND) if need == ROBOT else KEY
+                line = f"waiting for the {need} on {key}"
+                if line != self._waiting:
+                    self._waiting = line
+                    self._narrator.note(line)
+                return False
+        return True
 
-def _all(project: Project) -> Project:
-    return project
+    def _here(self, presence: Presence, need: str) -> bool:
+        peer = presence.find(need)
+        return peer is not None and peer.state == HERE
 
+    def _check_speed(self) -> None:
+        """Raises UsageError where the others' time runs at another speed."""
+        for peer in self.presence.peers() if self.presence and self._speed else ():
+            theirs = peer.said.get("speed")
+            if isinstance(theirs, int | float) and theirs != self._speed:
+                raise UsageError(f"{told(peer)} runs at {theirs:g} × real time: say --speed {theirs:g} here, too")
 
-def _quiet(project: Project) -> Project:
-    """The project without the routes of senses that become no event."""
-    routes = {name: route for name, route in project.routes.items() if name not in set(Sense) or route.event}
-    return replace(project, routes=routes)
-
-
-def film(show: Node, path: Path) -> None:
-    """Write a film of a simulated robot's show. Raises RobotError where nothing can be drawn."""
-    from lumen.robots.simulation import SimulatedRobot
-    from lumen.robots.simulation.film import Film
-
-    assert isinstance(show.robot, SimulatedRobot)
-    camera = Film(path, show.robot)
-    show.exhibition.parts.append(camera.tick)
-    show.closing.insert(0, camera.close)
-
-
-def time_of_day(clock: str = "") -> float:
-    """`09:30`, or now on this machine's clock, in [s] since midnight."""
-    if clock:
-        hours, minutes = clock.split(":")
-        return int(hours) * 3600.0 + int(minutes) * 60.0
-    now = datetime.now()
-    return now.hour * 3600.0 + now.minute * 60.0 + now.second
+    def _heed(self) -> None:
+        """What the first interrupt asks for; where nobody has anything to do for it, it ends."""
+        if self._interrupts == 1 and not self._heeded:
+            self._heeded = True
+            heeded = [part.interrupt() for part in self._begun]
+            if not any(heeded):
+                self._interrupts = 2

@@ -4,18 +4,21 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from lumen.app.node import Node
+from lumen.app.narrator import Narrator
 from lumen.app.setup import Setup, set_up
-from lumen.cli.transcript import Transcript
+from lumen.app.whole_node import WholeNode
+from lumen.buses.memory import MemoryBus
+from lumen.buses.validated import validated
 from lumen.errors import LumenError
 from lumen.language.diagnostics import Place
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.runtime.loop import Observer, TickHook
+from lumen.runtime.loop import Observer
 from lumen.runtime.story import StoryFailure, StoryPlayer, UnmetExpectation
 
 REMEMBERED = 12
@@ -38,16 +41,17 @@ class Rehearsal:
     trace: tuple[tuple[float, str, str], ...] = ()
 
 
-class Trace(Transcript):
-    """Keeps the last lines of a transcript, None for all of them."""
+class RehearsalTrace(Narrator):
+    """Keeps the last lines of what happens, None for all of them: each time [s], who, and what."""
 
-    def __init__(self, show: Node, remembered: int | None = REMEMBERED) -> None:
-        super().__init__(show.exhibition.clock.now, lambda: show.exhibition.project.machine)
-        self._clock = show.exhibition.clock
+    def __init__(
+        self, now: Callable[[], float], machine: Callable[[], MachineDefinition], remembered: int | None = REMEMBERED
+    ) -> None:
+        super().__init__(now, machine)
         self.lines: deque[tuple[float, str, str]] = deque(maxlen=remembered)
 
     def line(self, who: str, text: str) -> None:
-        self.lines.append((self._clock.now(), who, text))
+        self.lines.append((self._now(), who, text))
 
 
 def rehearse(
@@ -56,33 +60,32 @@ def rehearse(
     chosen: Setup | None = None,
     *,
     observers: Iterable[Observer] = (),
-    parts: Iterable[TickHook] = (),
+    hooks: Iterable[Callable[[float], None]] = (),
     whole: bool = False,
 ) -> Rehearsal:
     """Play the story to its end, or to its failure; `chosen` is another robot than the recording one.
 
     The recording robot keeps its head still: joints and pictures, which no behaviour hears of, are not on its bus.
-    `observers` watch, `parts` live with it. A behaviour that never comes to rest fails the story, as does whatever
-    else the engine logs as an error; its warnings stand in the trace, which begins where the story does with `whole`.
+    `observers` watch, `hooks` are called at each tick with its time [s]. A behaviour that never comes to rest fails the
+    story, as does whatever else the engine logs as an error; its warnings stand in the trace, which begins where the
+    story does with `whole`.
     """
-    robot = chosen or set_up("recording", project, "max", story)
-    show = Node(
-        project, robot, story=story, tell=lambda action: trace.visitor_action(action), sensing=chosen is not None
-    )
-    trace = Trace(show, None if whole else REMEMBERED)
-    show.exhibition.observers += [trace, *observers]
-    show.exhibition.parts += parts
-    player, now, began = show.player, 0.0, time.perf_counter()
+    setup = chosen or set_up("recording", project, "max", story)
+    trace = RehearsalTrace(setup.clock.now, lambda: node.project.machine, None if whole else REMEMBERED)
+    node = WholeNode(project, setup, validated(MemoryBus(), project), story, trace, silent=chosen is None)
+    node.loop.observers += observers
+    node.before += hooks
+    player, now, began = node.player, 0.0, time.perf_counter()
     assert player is not None  # the robot stands in a hall
     try:
-        with _logged(show, trace):
-            show.start()
+        with _logged(player, trace):
+            node.begin()
             while not player.finished:
-                now = show.tick()
+                now = node.tick()
     except LumenError as error:
         player.fail(UnmetExpectation("", str(error)))
     finally:
-        show.close()
+        node.close()
     took, failed = time.perf_counter() - began, player.failed
     if failed is None:
         return Rehearsal(story, now, took, trace=tuple(trace.lines) if whole else ())
@@ -96,7 +99,7 @@ class _Log(logging.Handler):
     Beside a running exhibition only this thread's log is the story's, and only the others' is the exhibition's.
     """
 
-    def __init__(self, player: StoryPlayer, trace: Trace) -> None:
+    def __init__(self, player: StoryPlayer, trace: RehearsalTrace) -> None:
         super().__init__(logging.WARNING)
         self._player, self._trace = player, trace
         self.thread = 0 if threading.current_thread() is threading.main_thread() else threading.get_ident()
@@ -115,10 +118,9 @@ class _Log(logging.Handler):
 
 
 @contextmanager
-def _logged(show: Node, trace: Trace) -> Iterator[None]:
+def _logged(player: StoryPlayer, trace: RehearsalTrace) -> Iterator[None]:
     """While it lasts, the engine's log is the story's and nobody else's."""
-    assert show.player is not None
-    log, handler = logging.getLogger("lumen"), _Log(show.player, trace)
+    log, handler = logging.getLogger("lumen"), _Log(player, trace)
     others = [*logging.getLogger().handlers, logging.lastResort] if handler.thread else []
     before, log.propagate = log.propagate, bool(handler.thread) and log.propagate
     log.addHandler(handler)

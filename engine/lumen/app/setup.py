@@ -1,7 +1,9 @@
 """Who plays: the robot, its clock and the hall around it, chosen by name."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from lumen.clocks.real import RealClock
 from lumen.clocks.simulated import SimulatedClock
@@ -64,3 +66,31 @@ def set_up(kind: str, project: Project, speed: str, story: Story | None = None, 
             raise UsageError("without a robot there is nothing to simulate: leave out --speed")
         return Setup(NoRobot(), RealClock(), None)
     raise UsageError(f"no robot `{kind}`: there are {', '.join(ROBOTS)}")
+
+
+def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = None) -> Setup:
+    """A robot that somebody made, on their clock; without one on its own time, `pace` times real time at most.
+
+    A robot that can `advance` lives through the time that passes; one that has a face before it (`face`) is its own
+    hall. One that can neither has the time of the world outside.
+    """
+    hall: Any = robot if hasattr(robot, "face") and hasattr(robot, "place") else None
+    advance: Callable[[float], None] | None = getattr(robot, "advance", None)
+    if clock is None:
+        return Setup(robot, SimulatedClock(advance, pace) if advance else RealClock(), hall)
+    return Setup(robot, _DrivenClock(clock, advance) if advance else clock, hall)
+
+
+class _DrivenClock:
+    """Somebody's clock, through whose time a world lives."""
+
+    def __init__(self, clock: Clock, live: Callable[[float], None]) -> None:
+        self._clock, self._live = clock, live
+
+    def now(self) -> float:
+        return self._clock.now()
+
+    def wait(self, until: float) -> None:
+        before = self._clock.now()
+        self._clock.wait(until)
+        self._live(self._clock.now() - before)

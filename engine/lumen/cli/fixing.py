@@ -7,15 +7,15 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from lumen.cli.findings import Findings
-from lumen.cli.linting import Asked, Wanted, checked
+from lumen.app.lint.findings import Findings
+from lumen.app.lint.targets import LintTarget, Wanted, checked
 from lumen.cli.render.terminal_text import clean, counted
 from lumen.cli.terminal import paint
 from lumen.errors import UsageError
 from lumen.rules.repairs import Repair, repaired
 
 
-def repair(what: Asked, wanted: Wanted) -> tuple[Mapping[str, bytes], Mapping[str, bytes], list[Repair]]:
+def repair(what: LintTarget, wanted: Wanted) -> tuple[Mapping[str, bytes], Mapping[str, bytes], list[Repair]]:
     """The files of a project as they are, as they would be, and what was repaired."""
     before = what.files()
     after, done = repaired(before, lambda files: checked(what.root, files), lambda d: wanted(d) and what.shown(d))

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import lumen
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result

@@ -1,18 +1,18 @@
 """`lumen lint`: what is wrong in a project, and where."""
 
 import argparse
-import os
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from lumen.app.garbage import gc_paused
-from lumen.cli.findings import Findings
-from lumen.cli.linting import Asked, Judge, Wanted, asked, lint
+from lumen.app.lint.findings import Findings
+from lumen.app.lint.targets import FindingsOf, LintTarget, Wanted, lint, lint_targets
+from lumen.cli.printing import show, verdict
 from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.errors import UsageError
-from lumen.language.diagnostics import Diagnostic, Severity
+from lumen.language.diagnostics import Diagnostic
 from lumen.loading.packaged import shipped_root
 from lumen.rules.selection import selected
 
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     """0 where nothing is wrong, 1 where something is, or where --diff would change something."""
     wanted = _wanted(options)
     _consistent(options)
-    projects = asked(options.paths, options.stdin_filename)
+    projects = lint_targets(options.paths, options.stdin_filename)
     if options.fix and not options.paths and projects[0].root == shipped_root() and not _here(projects[0]):
         raise UsageError("there is no project here or above to repair: name its folder")
     judge = _judge(options.against, wanted)
@@ -62,39 +62,26 @@ def run(options: argparse.Namespace) -> int:
 
 def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
     """The findings with those of the motions in simulation; how they went is told beside what is for people."""
-    from lumen.cli.physics import ROBOTS, number_of_robots, played, summary
+    from lumen.app.lint.physics import ROBOTS, number_of_robots, played, summary
+    from lumen.cli.progress import progress
 
     robots = ROBOTS if options.robots is None else number_of_robots(options.robots)
-    both = [played(each, wanted, robots) for each in found]
+    with progress() as tell:
+        both = [played(each, wanted, robots, tell) for each in found]
     for _, rehearsals in both if options.format == "text" else ():
         print(summary(rehearsals) or "no motion was played: there is none, or there are errors", file=sys.stderr)
     return [each for each, _ in both]
 
 
-def verdict(found: Sequence[Findings], *, strict: bool = False) -> int:
-    """1 where something is shown that counts, else 0."""
-    return int(any(each.count(Severity.ERROR) or (strict and each.count(Severity.WARNING)) for each in found))
-
-
-def show(text: str) -> None:
-    """Print it; where nobody reads on (`lumen lint | head`), the verdict still counts."""
-    try:
-        print(text.encode("utf-8", "replace").decode(), flush=True)
-    except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        if not isinstance(error, BrokenPipeError):
-            raise UsageError(f"can't print: {(error.strerror or str(error)).lower()}") from None
-
-
-def _judge(against: str | None, wanted: Wanted) -> Judge:
+def _judge(against: str | None, wanted: Wanted) -> FindingsOf:
     """What finds what is wanted in a project, what a reload from `against` would refuse, move or forget included."""
 
-    def judge(what: Asked, files: Mapping[str, bytes] | None = None) -> Findings:
+    def judge(what: LintTarget, files: Mapping[str, bytes] | None = None) -> Findings:
         with gc_paused():
             found = lint(what, wanted, files)
         if against is None:
             return found
-        from lumen.app.reload.against import compared
+        from lumen.app.lint.reloading import compared
 
         return compared(found, against, wanted)
 
@@ -112,7 +99,7 @@ def _wanted(options: argparse.Namespace) -> Wanted:
     return wanted
 
 
-def _here(project: Asked) -> bool:
+def _here(project: LintTarget) -> bool:
     """Whether one stands in the project."""
     return Path.cwd().is_relative_to(project.root.resolve())
 
@@ -134,7 +121,7 @@ def _consistent(options: argparse.Namespace) -> None:
         raise UsageError("`-` has no file to repair: --diff shows what would change")
 
 
-def _diff(projects: Sequence[Asked], wanted: Wanted) -> int:
+def _diff(projects: Sequence[LintTarget], wanted: Wanted) -> int:
     from lumen.cli.fixing import diff, repair
 
     lines: list[str] = []
@@ -146,7 +133,7 @@ def _diff(projects: Sequence[Asked], wanted: Wanted) -> int:
     return int(bool(lines))
 
 
-def _fix(projects: Sequence[Asked], wanted: Wanted) -> None:
+def _fix(projects: Sequence[LintTarget], wanted: Wanted) -> None:
     from lumen.cli.fixing import repair, tell, write
 
     for what in projects:

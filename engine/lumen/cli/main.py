@@ -16,6 +16,12 @@ from lumen.errors import LumenError, ProjectError
 
 STARTED = time.monotonic()
 
+
+def ready() -> float:
+    """How long ago this process began [s]."""
+    return time.monotonic() - STARTED
+
+
 VERBS = {
     "new": "start a project of your own",
     "run": "run an exhibition",

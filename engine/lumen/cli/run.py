@@ -3,22 +3,36 @@
 import argparse
 import os
 import signal
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from lumen.app.exhibition import Exhibition
+from lumen.app.node import Node
+from lumen.app.parts.visitor import VisitorPart
+from lumen.app.processes.assembling import ProcessOptions, assemble
 from lumen.app.processes.choosing import parts_of
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.reload.reloader import MODES
 from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup, set_up
 from lumen.app.stories import home_of, stories_of
-from lumen.cli.performance import Performance
+from lumen.bus import connect
+from lumen.buses.validated import validated
+from lumen.cli.main import ready
+from lumen.cli.performance import Performance, clock_time
+from lumen.cli.transcript import Transcript
+from lumen.cli.typed import TypedVisitorPart
+from lumen.clocks.real import RealClock
 from lumen.errors import BusError, ModuleError, RobotError, UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.packaged import find_project
 from lumen.loading.units import seconds
+from lumen.ports import Clock
+from lumen.runtime.home import home_of as home_of_run
+from lumen.runtime.presence import BRAIN, ROBOT
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -59,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, parts: tuple[str, ...]) -> int:
-    project = startup_project(root, run_directory, last_good=options.last_good)
+    project = startup_project(root, run_directory, last_good=options.last_good, warn=_warn)
     story = _story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
         raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
@@ -68,28 +82,119 @@ def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, p
     period, language = _period(options.period), _language(project, options.language)
     url = options.bus or os.environ.get("LUMEN_BUS") or project.bus
     if parts:
-        from lumen.app.processes.starting import start  # not needed for an exhibition in one process
+        return _processes(options, project, story, parts, url, run_directory, period, language)
+    return _whole(options, project, story, url, run_directory, period, language)
 
-        return start(options, project, story, parts, url, run_directory, period, language)
+
+def _whole(
+    options: argparse.Namespace,
+    project: Project,
+    story: Story | None,
+    url: str,
+    run_directory: RunDirectory,
+    period: float | None,
+    language: str,
+) -> int:
+    """Run a whole exhibition in this process."""
     video = film_path(options.video, options.robot)
-    chosen = set_up(options.robot, project, options.speed, story, options.robot_url)
-    silence = _voice(options, chosen, language or project.languages[0])
-    performance = Performance(project, chosen, url, story, run_directory)
-    signal.signal(signal.SIGINT, lambda *_: performance.interrupt())
-    signal.signal(signal.SIGTERM, lambda *_: performance.interrupt(2, leave=True))
+    setup = set_up(options.robot, project, options.speed, story, options.robot_url)
+    silence = _voice(options, setup, language or project.languages[0])
+    performance = Performance(setup, lambda: exhibition.project)
     try:
-        return performance.run(options.speed, period, language, video, mode=options.reload, fresh=options.fresh)
+        exhibition = Exhibition(
+            project, setup, url, story, performance.transcript,
+            run_directory=run_directory, reload=options.reload, language=language, fresh=options.fresh,
+        )  # fmt: skip
+        node = exhibition.node
+        _heed_signals(node)
+        try:
+            if video:
+                node.add_film(video)
+            node.claim()
+            performance.introduce(exhibition, run_directory, options.speed)
+            folder = None if story else home_of_run(run_directory.root)
+            node.add_modules(folder, awaited=options.speed == "max")
+            exhibition.start()
+            performance.run(exhibition, period)
+        finally:
+            exhibition.close()
+        run_directory.ended(exhibition.project)
+        run_directory.close(forget=not node.leaving)
+        return performance.summary(exhibition, video)
     finally:
         silence()
 
 
-def _voice(options: argparse.Namespace, chosen: Setup, language: str) -> Callable[[], None]:
+def _processes(
+    options: argparse.Namespace,
+    project: Project,
+    story: Story | None,
+    parts: Sequence[str],
+    url: str,
+    run_directory: RunDirectory,
+    period: float | None,
+    language: str,
+) -> int:
+    """Run these parts of an exhibition. Raises UsageError for options that do not go with that."""
+    _check_processes(options, story, parts, url)
+    setup = set_up(options.robot, project, options.speed, story, options.robot_url) if ROBOT in parts else None
+    speed = float(options.speed)
+    clock: Clock = setup.clock if setup else RealClock(speed=speed)
+    transcript = Transcript(clock.now, lambda: node.project.machine)
+    how = ProcessOptions(url, speed, options.reload, language, options.fresh)
+    bus = validated(connect(url), project)
+    node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story)
+    visitor = next((part for part in node.parts if isinstance(part, VisitorPart)), None)
+    if visitor and story is None:
+        greeting = "You are the visitor: type what you say. Ctrl-D walks away, Ctrl-C ends.\n"
+        node.parts.append(TypedVisitorPart(visitor, transcript, greeting))
+    place, what = url.rpartition("@")[2], ", ".join(parts)
+    node.claimed = lambda: print(f"{project.name}: {what} of {project.robot}, on {place}, ready after {ready():.1f} s.")
+    if setup:
+        node.closing.append(_voice(options, setup, language or project.languages[0]))
+    _heed_signals(node)
+    try:
+        lived = node.run(period)
+    finally:
+        node.close()
+    print(f"\n{'The story failed' if node.failed else 'Ended'}: {clock_time(lived)}.")
+    for line in node.summary():
+        print(f"  {line}")
+    if BRAIN in parts:
+        run_directory.ended(node.project)
+        run_directory.close(forget=not node.leaving)
+    return 1 if node.failed and not node.interrupted else 0
+
+
+def _heed_signals(node: Node) -> None:
+    signal.signal(signal.SIGINT, lambda *_: node.interrupt())
+    signal.signal(signal.SIGTERM, lambda *_: node.interrupt(2, leave=True))
+
+
+def _check_processes(options: argparse.Namespace, story: Story | None, parts: Sequence[str], url: str) -> None:
+    if url.startswith("memory:"):
+        raise UsageError("processes need a bus that they can all reach: say --bus amqp://USER:PASSWORD@HOST/")
+    if options.speed == "max":
+        raise UsageError("processes live in one time, which is real: --speed max needs everything in one of them")
+    if options.video:
+        raise UsageError("--video films an exhibition in one process: leave out --only")
+    if options.robot == "none" and ROBOT in parts:
+        raise UsageError("`--only robot` needs a robot: leave out --robot none")
+    if story and story.robot and ROBOT not in parts:
+        raise UsageError(f"`{story.name}` says with `robot:` what fails: give it to the robot's process, too")
+
+
+def _warn(text: str) -> None:
+    print(text, file=sys.stderr)
+
+
+def _voice(options: argparse.Namespace, setup: Setup, language: str) -> Callable[[], None]:
     """Give the robot the voice that the flags ask for; what ends it. Raises UsageError or ModuleError."""
     if options.voice == "none" and not options.sound:
         return lambda: None
     from lumen.app.voice import voiced  # nobody else needs espeak-ng
 
-    return voiced(chosen, options.voice, options.sound, language)
+    return voiced(setup, options.voice, options.sound, language)
 
 
 def _story(project: Project, name: str | None) -> Story | None:

@@ -3,40 +3,55 @@
 import queue
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Sequence
 from io import TextIOWrapper
 
-from lumen.language.stories import Leave, Speak, VisitorAction
-from lumen.runtime.visitor import VisitorActor
+from lumen.app.narrator import Narrator
+from lumen.app.parts.part import Part
+from lumen.app.parts.visitor import VisitorPart
+from lumen.language.events import Event
+from lumen.language.stories import Arrive, Leave, Speak, Visitor
+
+FAREWELL = 5.0
+"""How long it goes on after whoever typed has left [s]."""
 
 
-class TypedSpeech:
-    """Reads lines on a thread of its own; at the end of input the visitor walks away.
+class TypedVisitorPart(Part):
+    """Reads lines on a thread of its own, for a visitor; at the end of input they walk away.
 
-    Where there is no terminal and nothing ever comes, nobody types: the visitor stays, and the show goes on.
+    Where there is no terminal and nothing ever comes, nobody types: the visitor stays, and the exhibition goes on.
+    `greeting` is what whoever types is told at the beginning.
     """
 
-    def __init__(self, walker: VisitorActor, tell: Callable[[VisitorAction], None]) -> None:
-        self._walker, self._tell = walker, tell
+    def __init__(self, visitor: VisitorPart, narrator: Narrator, greeting: str) -> None:
+        self.needs = visitor.needs
+        self._visitor, self._narrator, self._greeting = visitor.actor, narrator, greeting
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._gone: float | None = None
+        self._now = 0.0
+
+    @property
+    def over(self) -> bool:
+        return self._gone is not None and self._now - self._gone > FAREWELL
+
+    def begin(self, now: float) -> None:
+        self._narrator.note(self._greeting)
+        self._visitor.arrive(Visitor())
+        self._narrator.visitor_action(Arrive(Visitor()))
         threading.Thread(target=self._read, name="lumen-typing", daemon=True).start()
 
-    def tick(self, now: float) -> None:
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Say what was typed since the last tick."""
+        self._now = now
         while not self._lines.empty():
             line = self._lines.get()
             if line is None:
-                self._tell(Leave())
-                self._walker.leave()
+                self._narrator.visitor_action(Leave())
+                self._visitor.leave()
                 self._gone = now
             elif line:
-                self._tell(Speak(line))
-                self._walker.speak(line)
-
-    def gone_for(self, now: float) -> float:
-        """How long ago the visitor left [s]."""
-        return 0.0 if self._gone is None else now - self._gone
+                self._narrator.visitor_action(Speak(line))
+                self._visitor.speak(line)
 
     def _read(self) -> None:
         if isinstance(sys.stdin, TextIOWrapper):

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
 from lumen.app.garbage import GcScheduler, gc_paused
-from lumen.cli.findings import Findings
-from lumen.cli.lint import show, verdict
-from lumen.cli.linting import Asked, Judge
+from lumen.app.lint.findings import Findings
+from lumen.app.lint.targets import FindingsOf, LintTarget
+from lumen.cli.printing import show, verdict
 from lumen.cli.render import render
 from lumen.cli.terminal import coloured, paint
 from lumen.runtime.watcher import FileWatcher, SavedFiles
@@ -20,7 +20,9 @@ QUIET = 0.01
 _CLEAR = "\x1b[2J\x1b[H"
 
 
-def watch(projects: Sequence[Asked], judge: Judge, format: str, ended: Callable[[], bool] = lambda: False) -> int:
+def watch(
+    projects: Sequence[LintTarget], judge: FindingsOf, format: str, ended: Callable[[], bool] = lambda: False
+) -> int:
     """Show what is wrong, and again after every change, until `ended` or Ctrl-C; always 0."""
     changes: queue.SimpleQueue[tuple[int, SavedFiles]] = queue.SimpleQueue()
     found = [judge(what) for what in projects]

@@ -1,6 +1,6 @@
 """The loop of a running behaviour: the order of things, fifty times a second."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
@@ -18,9 +18,6 @@ from lumen.runtime.tracking import LocalTracking, TrackingService
 
 TICK = 0.02
 BRAIN_LOST = 5.0
-
-TickHook = Callable[[float], None]
-"""Something that runs with the loop: called at each tick with its time [s]."""
 
 
 class Observer:
@@ -49,7 +46,6 @@ class BehaviorLoop:
         self, project: Project, robot: Robot, bus: Bus, clock: Clock, tracking: TrackingService | None = None
     ) -> None:
         self.robot, self.bus, self.clock = robot, bus, clock
-        self.parts: list[TickHook] = []
         self.observers: list[Observer] = []
         self.rescue: Rescue = lambda _: None
         self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
@@ -88,15 +84,14 @@ class BehaviorLoop:
         """Let something happen at the next tick."""
         self._events.append(event)
 
-    def tick(self) -> float:
-        """Live through one tick; its time [s]."""
-        self.clock.wait(self._last + TICK)
-        now = self.clock.now()
+    def tick(self, now: float | None = None) -> float:
+        """Live through one tick at `now` [s], where nobody says so a period after the last; its time [s]."""
+        if now is None:
+            self.clock.wait(self._last + TICK)
+            now = self.clock.now()
         if now - self._last > self.patience:
             self._events.append(Event("brain.lost", {"seconds": now - self._last}, now))
         self._last = now
-        for part in self.parts:
-            part(now)
         try:
             self.tracking.tick(now)
         except Exception as error:

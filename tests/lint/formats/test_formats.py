@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft4Validator
 
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 from lumen.cli.render import FORMATS, render
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
 from lumen.loading.files import Unreadable

@@ -16,7 +16,7 @@ from lumen.runtime.watcher import SLICE
 MOVED = ("applied", "rolled back")
 
 
-class Bundles:
+class BundleFollower:
     """Hears what becomes of saved files, and loads them on a thread of its own; `tick` hands on what was loaded.
 
     `tell` hears where the files here are not those that the brain runs on: another machine may have others.
@@ -30,7 +30,7 @@ class Bundles:
         self._thread = threading.Thread(target=self._run, name="lumen-bundles", daemon=True)
         self._thread.start()
 
-    def tick(self) -> None:
+    def tick(self, now: float) -> None:
         while not self._loaded.empty():
             found = self._loaded.get()
             if isinstance(found, str):

@@ -6,8 +6,11 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.narrator import Narrator
 from lumen.app.recovery.previous_run import recover
 from lumen.app.reload.records import RunRecords
+from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
 from lumen.buses.local import LocalBusServer
 from lumen.errors import UsageError
@@ -65,6 +68,22 @@ class RunDirectory:
     def refused(self) -> str:
         """The hash of the files that are there, where this start has taken others."""
         return next((report.after for report in self.news if report.verdict == "refused"), "")
+
+    def reloader(self, behavior: LiveBehavior, narrator: Narrator, *, mode: str) -> Reloader:
+        """What takes saved files in this run; they are judged in another process."""
+        return Reloader(
+            behavior, narrator, mode=mode, records=self.records, applied=self.announce, seen=self.refused, apart=True
+        )
+
+    def begin_run(
+        self, behavior: LiveBehavior, url: str, reloader: Reloader | None, *, fresh: bool
+    ) -> Resumption | str:
+        """Let others find this run, and tell what was reloaded; how it goes on with the run before, else why not."""
+        self.open(behavior.loop.bus, url, behavior.project)
+        found = "" if fresh else self.resumption(behavior.project)
+        if reloader:
+            reloader.begin(self.news)
+        return found
 
     def open(self, bus: Bus, url: str, project: Project) -> None:
         """Let others find this run: by its broker, or through a door to the embedded bus."""

@@ -1,7 +1,6 @@
 """Which files a start begins with: those that are there, or the last good ones where those can't be."""
 
-import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from lumen.app.recovery.run_directory import RunDirectory
@@ -17,26 +16,28 @@ from lumen.runtime.crash_counter import DEATHS
 from lumen.runtime.watcher import SavedFiles
 
 
-def startup_project(root: Path, run_directory: RunDirectory, *, last_good: bool) -> Project:
+def startup_project(
+    root: Path, run_directory: RunDirectory, *, last_good: bool, warn: Callable[[str], None] = lambda _: None
+) -> Project:
     """The project in that folder; the last good one where it has errors and that is wanted, or ends every start.
 
-    Raises ProjectError where there is none to begin with.
+    `warn` hears of what a person has to know. Raises ProjectError where there is none to begin with.
     """
     files = read_files(root)
     project, diagnostics = check_files(root, files)
     if project is None:
         good = run_directory.last_good()
         if good and last_good:
-            _say("THE FILES HAVE ERRORS", "")
+            warn(_instead_of_yours("THE FILES HAVE ERRORS"))
             return _instead(run_directory, good, fingerprint(files), "", diagnostics)
         if good:
-            print("`lumen run --last-good` starts with the last files that had no errors.", file=sys.stderr)
+            warn("`lumen run --last-good` starts with the last files that had no errors.")
         raise ProjectError(diagnostics)
     if (died := run_directory.records.died(project.hash)) >= DEATHS:
         good = run_directory.last_good()
         if good and good.hash != project.hash:
             why = f"these files ended the exhibition {died} times within {PERIOD:.0f} s of their start"
-            _say(why.upper(), "Save them again, or `lumen reload`, to have them tried again.\n")
+            warn(_instead_of_yours(why.upper(), "Save them again, or `lumen reload`, to have them tried again.\n"))
             return _instead(run_directory, good, project.hash, why)
     run_directory.begin(project, files)
     return project
@@ -51,5 +52,5 @@ def _instead(
     return good
 
 
-def _say(what: str, more: str) -> None:
-    print(f"\n{what}: IT STARTS WITH THE LAST GOOD ONES, AND NOT WITH YOURS.\n{more}", file=sys.stderr)
+def _instead_of_yours(what: str, more: str = "") -> str:
+    return f"\n{what}: IT STARTS WITH THE LAST GOOD ONES, AND NOT WITH YOURS.\n{more}"

@@ -1,12 +1,8 @@
 """What a reload from another version of a project would refuse, move or forget, as findings in the new files."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
-from pathlib import Path
 
 from lumen.app.reload.migration_preview import MigrationPreview, preview
-from lumen.app.versions import version
-from lumen.cli.findings import Findings
 from lumen.interpreters.changes import live
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.migration.identity import Identity
@@ -14,7 +10,6 @@ from lumen.interpreters.statechart.types import type_checks, type_name
 from lumen.language.diagnostics import Diagnostic, NodePath, Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.rules import check_files
 from lumen.rules.codes import CODES
 
 BOUND = 10_000
@@ -27,16 +22,6 @@ def against(old: Project, new: Project, tell: Callable[[int, int], None] = lambd
     everywhere = preview(old, live(old, new), BOUND, tell)
     found = [*_refused(new, everywhere), *_moved(old, new, everywhere), *_forgotten(old, new)]
     return sorted(dict.fromkeys(found), key=lambda d: (d.place, d.code, d.message))
-
-
-def compared(found: Findings, name: str, wanted: Callable[[Diagnostic], bool]) -> Findings:
-    """The findings of a project with those of a reload from another version of it, where it has no errors."""
-    root = Path(found.root)
-    old, new = version(name, root).project, check_files(root, found.files)[0]
-    more = [d for d in against(old, new) if wanted(d)] if new else []
-    shown = [d for d in more if not found.asked or d.place.file in found.asked]
-    elsewhere = found.elsewhere + len(more) - len(shown)
-    return replace(found, diagnostics=[*found.diagnostics, *shown], elsewhere=elsewhere)
 
 
 def _refused(new: Project, everywhere: MigrationPreview) -> Iterator[Diagnostic]:

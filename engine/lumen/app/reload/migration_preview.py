@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from lumen.app.exploring import outside
-from lumen.app.node import MORNING, time_of_day
+from lumen.app.live_behavior import MORNING, time_of_day
 from lumen.interpreters.exploration.search import StateSpaceSearch, leaves
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan, MigrationVerdict, plan
 from lumen.interpreters.statechart import Snapshot

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from lumen.app.node import Node
+from lumen.app.live_behavior import LiveBehavior
 from lumen.app.reload.notifier import ReloadNotifier
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.report import ReloadReport, reason_of, what_for
@@ -48,16 +48,16 @@ class MigrationQueue:
     """
 
     def __init__(
-        self, show: Node, notifier: ReloadNotifier, records: RunRecords, applied: Callable[[Project], None]
+        self, behavior: LiveBehavior, notifier: ReloadNotifier, records: RunRecords, applied: Callable[[Project], None]
     ) -> None:
-        self._node, self._notifier, self._records, self._applied = show, notifier, records, applied
+        self._behavior, self._notifier, self._records, self._applied = behavior, notifier, records, applied
         self.revision = 0
         self.staged: StagedBundle | None = None
-        self.rollback_guard = RollbackGuard(show, self._rolled_back)
+        self.rollback_guard = RollbackGuard(behavior, self._rolled_back)
 
     @property
     def running(self) -> Project:
-        return self._node.exhibition.project
+        return self._behavior.loop.project
 
     def stage(self, staged: StagedBundle, order: ReloadRequest | None = None) -> None:
         """Have a bundle put in force as soon as may be."""
@@ -80,7 +80,7 @@ class MigrationQueue:
 
     def dry_run(self, staged: StagedBundle, order: ReloadRequest) -> None:
         """Answer what would become of a bundle."""
-        verdict = self._node.plan(staged.project, now=order.now)
+        verdict = self._behavior.plan(staged.project, now=order.now)
         report = self._about(staged, "dry run")
         match verdict:
             case MigrationPlan(notes=notes):
@@ -101,12 +101,12 @@ class MigrationQueue:
     def _go(self, staged: StagedBundle, now: float) -> None:
         """Apply it, wait for what it has to wait for, or refuse it."""
         expired = time.monotonic() - staged.since > self.running.patience
-        before, snapshot = self.running, self._node.exhibition.runtime.snapshot
+        before, snapshot = self.running, self._behavior.loop.runtime.snapshot
         if staged.asked is snapshot and not expired:
             return
         staged.asked = snapshot
         try:
-            verdict = self._node.plan(staged.project, now=staged.now, back=staged.back)
+            verdict = self._behavior.plan(staged.project, now=staged.now, back=staged.back)
             if isinstance(verdict, MigrationPlan):
                 self._apply(staged, verdict, now)
                 return
@@ -136,7 +136,7 @@ class MigrationQueue:
             report.took = {"applying": time.perf_counter() - began, "waiting": time.monotonic() - staged.since}
             self._tell_all(report, staged.orders)
 
-        self._node.apply(staged.project, plan, begun)
+        self._behavior.apply(staged.project, plan, begun)
 
     def _tell_all(self, report: ReloadReport, orders: list[ReloadRequest]) -> None:
         """Let everybody know of another bundle that is in force; a fault of ours in that changes nothing about it."""

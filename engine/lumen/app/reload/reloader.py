@@ -1,12 +1,14 @@
 """Saved files on a running exhibition: taken where they are good, reported where they are not."""
 
 import logging
+import time
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from lumen.app.node import Node
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.narrator import Narrator
 from lumen.app.rehearsal import Rehearsal
 from lumen.app.reload.migration_queue import MigrationQueue, StagedBundle
 from lumen.app.reload.notifier import ReloadNotifier
@@ -16,7 +18,6 @@ from lumen.app.reload.requests import COMMAND, WAITING, ReloadRequest, answering
 from lumen.app.reload.validation_worker import InlineValidation, ValidationWorker
 from lumen.app.reload.validator import BUDGET, BundleValidator, Validation, fault_of, told
 from lumen.buses.validated import by_key
-from lumen.cli.transcript import Transcript
 from lumen.errors import BusError, UsageError
 from lumen.interpreters.changes import changes, live
 from lumen.language.events import Event
@@ -41,8 +42,8 @@ class Reloader:
 
     def __init__(
         self,
-        show: Node,
-        transcript: Transcript,
+        behavior: LiveBehavior,
+        narrator: Narrator,
         *,
         mode: str = "auto",
         records: RunRecords | None = None,
@@ -52,23 +53,23 @@ class Reloader:
         quiet: float = QUIET,
         budget: float = BUDGET,
     ) -> None:
-        self._node, self._mode = show, mode
+        self._behavior, self._mode = behavior, mode
         self._records = records or RunRecords(None)
-        self._notifier = ReloadNotifier(show, transcript, self._records)
-        self._queue = MigrationQueue(show, self._notifier, self._records, applied)
-        self._bus = show.exhibition.bus
+        self._notifier = ReloadNotifier(behavior, narrator, self._records)
+        self._queue = MigrationQueue(behavior, self._notifier, self._records, applied)
+        self._bus = behavior.loop.bus
         self._came: deque[Message] = deque(maxlen=WAITING)
-        project = show.exhibition.project
+        project = behavior.loop.project
         self._worker = (ValidationWorker if apart else InlineValidation)(Path(project.root))
-        judge = BundleValidator(self._worker, lambda: self._running, budget)
+        self._validator = BundleValidator(self._worker, lambda: self._running, budget)
         self._watcher: FileWatcher[Validation | list[Rehearsal]] = FileWatcher(
             Path(project.root),
             read_files(Path(project.root)),
-            lambda saved: self._judge(judge, saved),
+            self._judge,
             hash=seen or project.hash,
             quiet=quiet,
             hints=mode != "off",
-            leisure=lambda validation, urgent: self._advise(judge, validation, urgent),
+            leisure=self._advise,
             noticed=self._worker.begin,
         )
         self._undo = self._bus.subscribe(COMMAND, self._came.append)
@@ -81,7 +82,7 @@ class Reloader:
 
     @property
     def _running(self) -> Project:
-        return self._node.exhibition.project
+        return self._behavior.loop.project
 
     def begin(self, news: Iterable[ReloadReport]) -> None:
         """The exhibition starts; `news` are the reloads that this is."""
@@ -93,6 +94,16 @@ class Reloader:
         self._undo()
         self._watcher.close()
         self._worker.close()
+
+    def reload(self, now: float) -> ReloadReport:
+        """Take the files as they are on the disk, between two ticks, while everything waits for it; what came of it."""
+        files = read_files(Path(self._running.root))
+        request = ReloadRequest("reload", now=False, answer=lambda _: None)
+        began = time.monotonic()
+        self._take(self._judge(SavedFiles(files, tuple(files), began, began, request)))
+        self._queue.tick(now)
+        assert self.last
+        return self.last
 
     def tick(self, now: float) -> None:
         """Take what was asked, see what the watcher found, and apply what is staged.
@@ -116,11 +127,11 @@ class Reloader:
                 self._warn(found)
         self._queue.tick(now)
 
-    def _judge(self, judge: BundleValidator, saved: SavedFiles) -> Validation:
+    def _judge(self, saved: SavedFiles) -> Validation:
         """On the watcher's thread: routes that come with the files are made ready here, where nobody has to wait."""
         validation = Validation(saved, "")
         try:
-            validation = judge(saved)
+            validation = self._validator(saved)
             if validation.good and validation.project:
                 self._bus.prepare(by_key(validation.project))
                 self._records.store(saved.files)
@@ -130,11 +141,9 @@ class Reloader:
             return replace(validation, fault=fault_of(error))
         return validation
 
-    def _advise(
-        self, judge: BundleValidator, validation: Validation | list[Rehearsal], urgent: Callable[[], bool]
-    ) -> None:
+    def _advise(self, validation: Validation | list[Rehearsal], urgent: Callable[[], bool]) -> None:
         """On the watcher's thread, when there is nothing more urgent."""
-        if isinstance(validation, Validation) and (failed := judge.advise(validation, urgent)):
+        if isinstance(validation, Validation) and (failed := self._validator.advise(validation, urgent)):
             self._watcher.results.put(failed)
 
     def _warn(self, failed: list[Rehearsal]) -> None:
@@ -149,7 +158,7 @@ class Reloader:
             return
         queue = self._queue
         if order.verb == "stop":
-            self._node.exhibition.happen(Event("stop", {}))
+            self._behavior.loop.happen(Event("stop", {}))
             order.answer(self._answer("stopped", "the behaviour is told to stop").to_json())
         elif order.verb == "status":
             order.answer(self._status().to_json())
@@ -205,7 +214,7 @@ class Reloader:
             "mode": self._mode,
             "staged": [str(change) for change in staged.changes] if staged else None,
             "waiting": staged.told if staged else "",
-            "probation": self._queue.rollback_guard.left(self._node.exhibition.clock.now()),
+            "probation": self._queue.rollback_guard.left(self._behavior.loop.clock.now()),
             "last": last.to_json() if last else None,
             "lines": [report.reason, *(last.lines() if last else [])],
         }

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from lumen.app.node import Node
+from lumen.app.live_behavior import LiveBehavior
 from lumen.interpreters.changes import live
 from lumen.interpreters.migration import MigrationPlan
 from lumen.language.commands import Command
@@ -27,12 +27,12 @@ class RollbackGuard:
     bundle of the start is on probation, too; there is none to go back to in this run.
     """
 
-    def __init__(self, show: Node, back: Callable[[str, Project, float], None]) -> None:
-        self._node, self._back = show, back
-        self.good = _lean(show.exhibition.project)
+    def __init__(self, behavior: LiveBehavior, back: Callable[[str, Project, float], None]) -> None:
+        self._behavior, self._back = behavior, back
+        self.good = _lean(behavior.loop.project)
         self.before: Project | None = None
-        self._until: float | None = show.exhibition.clock.now() + PERIOD
-        show.exhibition.rescue = self._rescue
+        self._until: float | None = behavior.loop.clock.now() + PERIOD
+        behavior.loop.rescue = self._rescue
 
     def begin(self, before: Project, now: float) -> None:
         """Another bundle runs since `now` [s]."""
@@ -42,7 +42,7 @@ class RollbackGuard:
         """Whether the bundle has stood it just now."""
         if self._until is None or now < self._until:
             return False
-        self._until, self.good = None, _lean(self._node.exhibition.project)
+        self._until, self.good = None, _lean(self._behavior.loop.project)
         return True
 
     def left(self, now: float) -> float | None:
@@ -50,23 +50,23 @@ class RollbackGuard:
         return None if self._until is None else max(0.0, round(self._until - now, 3))
 
     def _rescue(self, error: Exception) -> Sequence[Command] | None:
-        bad = self._node.exhibition.project
+        bad = self._behavior.loop.project
         if self._until is None or self.good.hash == bad.hash:
             return None
         self._until, began = None, time.perf_counter()
         good = live(bad, self.good)
         _log.debug("a reload failed", exc_info=error)
         plan = self._plan(good)
-        self._node.switch(good, plan)
+        self._behavior.switch(good, plan)
         self.before = _lean(bad)
         self._back(str(error) or repr(error), bad, time.perf_counter() - began)
         return plan.commands
 
     def _plan(self, good: Project) -> MigrationPlan:
-        plan = self._node.plan(good, now=True, back=True)
+        plan = self._behavior.plan(good, now=True, back=True)
         if isinstance(plan, MigrationPlan):
             return plan
-        exhibition = self._node.exhibition
+        exhibition = self._behavior.loop
         return anew(good, exhibition.runtime.snapshot, exhibition.clock.now())
 
 

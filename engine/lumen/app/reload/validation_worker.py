@@ -122,7 +122,7 @@ def failure(project: Project, story: str, seconds: float) -> Rehearsal | None:
             raise EnoughError
 
     try:
-        rehearsal = rehearse(project, project.stories[story], parts=[hurry])
+        rehearsal = rehearse(project, project.stories[story], hooks=[hurry])
     except EnoughError:
         return None
     return rehearsal if rehearsal.failed else None

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import Protocol, cast
 
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 
 
 class Renderer(Protocol):

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 from lumen.cli.render.terminal_text import SEVERITY_COLOURS, clean, summary
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Diagnostic

@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 from lumen.cli.render.terminal_text import clean, summary
 from lumen.language.diagnostics import Diagnostic, Severity
 

@@ -4,7 +4,7 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 from lumen.language.diagnostics import Diagnostic, Severity
 
 _FORBIDDEN = re.compile("[^\t\n\u0020-\u007e\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

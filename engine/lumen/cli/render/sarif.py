@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import quote
 
 import lumen
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 from lumen.language.diagnostics import Diagnostic, Place, Severity
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.fixes import Edit, fixes

@@ -3,7 +3,7 @@
 import unicodedata
 from collections.abc import Mapping, Sequence
 
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Severity
 

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 from lumen.cli.render.terminal_text import SEVERITY_COLOURS, clean, summary, width
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Diagnostic, Place

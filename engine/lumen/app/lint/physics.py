@@ -1,14 +1,12 @@
 """`lumen lint --physics`: every motion played by the simulated robot, and by others that differ a little."""
 
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import inf
 from pathlib import Path
 
-from lumen.app.physics.outcome_cache import OutcomeCache
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
+from lumen.app.lint.outcome_cache import OutcomeCache
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
@@ -20,12 +18,17 @@ from lumen.rules.physics.verdict import findings
 ROBOTS = 20
 """How many robots beside the one of the model play each motion, where nobody says."""
 
-Tell = Callable[[int, int, str], None]
+ProgressHook = Callable[[int, int, str], None]
 """Told how many performances are done, of how many, and of what is played now."""
 
 
 def played(
-    found: Findings, wanted: Callable[[Diagnostic], bool], robots: int, *, keep: bool = True
+    found: Findings,
+    wanted: Callable[[Diagnostic], bool],
+    robots: int,
+    tell: ProgressHook = lambda *_: None,
+    *,
+    keep: bool = True,
 ) -> tuple[Findings, list[CaseResult]]:
     """The findings of a project with those of its motions in simulation, where it has no errors; and what was played.
 
@@ -37,15 +40,14 @@ def played(
         return found, []
     chosen = [case for case in cases(project) if not found.asked or case.file in found.asked]
     memory = OutcomeCache(project, found.files) if keep else None
-    with _progress() as tell:
-        rehearsals = rehearse(chosen, _maker(project), robots, memory, tell)
+    rehearsals = play_cases(chosen, _maker(project), robots, memory, tell)
     more = [d for r in rehearsals for d in findings(r, project.documents[r.case.file]) if wanted(d)]
     everything = sorted([*found.diagnostics, *dict.fromkeys(more)], key=lambda d: (d.place.file, d.place.line))
     return replace(found, diagnostics=everything), rehearsals
 
 
-def rehearse(
-    chosen: Sequence[Case], make: SubjectFactory, robots: int, memory: OutcomeCache | None, tell: Tell
+def play_cases(
+    chosen: Sequence[Case], make: SubjectFactory, robots: int, memory: OutcomeCache | None, tell: ProgressHook
 ) -> list[CaseResult]:
     """What comes of each case with the robot of the model and `robots` others; what is remembered is not played."""
     done, whole, rehearsals = 0, len(chosen) * (robots + 1), []
@@ -97,20 +99,3 @@ def _maker(project: Project) -> SubjectFactory:
 
     models = Path(project.root) / "models"
     return lambda number: subject(project.body, models, project.hall, number)
-
-
-@contextmanager
-def _progress() -> Iterator[Tell]:
-    """A bar on a terminal, of which nothing is left at the end."""
-    terminal = sys.stderr.isatty()
-
-    def tell(done: int, whole: int, name: str) -> None:
-        if terminal:
-            bar = "#" * (30 * done // max(whole, 1))
-            print(f"\r\x1b[K[{bar:<30}] {done} of {whole}  {name}", end="", file=sys.stderr, flush=True)
-
-    try:
-        yield tell
-    finally:
-        if terminal:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)

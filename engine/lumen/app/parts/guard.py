@@ -12,7 +12,7 @@ PATIENCE = 5.0
 """How long a brain may be silent before its robot rests [s]."""
 
 
-class Guard:
+class BrainGuard:
     """Watches over the brain that the robot follows; `follows` is its session, empty where there is none.
 
     A brain that comes back, or another one, is told by `notice` for how long nobody was there (`brain.lost`). A robot

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from lumen.cli.findings import Findings
+from lumen.app.lint.findings import Findings
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import counts
@@ -19,7 +19,7 @@ STDIN = "-"
 
 
 @dataclass(frozen=True)
-class Asked:
+class LintTarget:
     """A project; `only` are the files of it that were named, none where it is meant as a whole.
 
     `typed` are contents that stand in place of those on the disk.
@@ -36,13 +36,13 @@ class Asked:
         return not self.only or diagnostic.place.file in self.only
 
 
-class Judge(Protocol):
+class FindingsOf(Protocol):
     """What finds what is wrong in a project; `files` are what it holds, where somebody has read them already."""
 
-    def __call__(self, what: Asked, files: Mapping[str, bytes] | None = None) -> Findings: ...
+    def __call__(self, what: LintTarget, files: Mapping[str, bytes] | None = None) -> Findings: ...
 
 
-def asked(paths: Sequence[str], stdin_name: str | None = None) -> list[Asked]:
+def lint_targets(paths: Sequence[str], stdin_name: str | None = None) -> list[LintTarget]:
     """The projects that these folders and files are or belong to; without any, the one here or above.
 
     Raises UsageError for what is neither, and for a file that lint does not read.
@@ -52,16 +52,16 @@ def asked(paths: Sequence[str], stdin_name: str | None = None) -> list[Asked]:
     if stdin_name:
         raise UsageError("--stdin-filename names what is read with `-`: write `lumen lint - --stdin-filename FILE`")
     if not paths:
-        return [Asked(find_project())]
+        return [LintTarget(find_project())]
     projects: dict[Path, set[str] | None] = {}
     for path in paths:
         root, files = _owner(path)
         known = projects.setdefault(root.resolve(), set())
         projects[root.resolve()] = known | files if files and known is not None else None
-    return [Asked(root, frozenset(only or ())) for root, only in projects.items()]
+    return [LintTarget(root, frozenset(only or ())) for root, only in projects.items()]
 
 
-def lint(what: Asked, wanted: Wanted, files: Mapping[str, bytes] | None = None) -> Findings:
+def lint(what: LintTarget, wanted: Wanted, files: Mapping[str, bytes] | None = None) -> Findings:
     """The findings of a project that are wanted, those in files that nobody asked about counted.
 
     `files` are what it holds, where somebody has read them already.
@@ -102,7 +102,7 @@ def _root(path: Path) -> Path | None:
     return next((folder for folder in path.absolute().parents if (folder / MAIN_FILE).is_file()), None)
 
 
-def _typed(paths: Sequence[str], name: str | None) -> Asked:
+def _typed(paths: Sequence[str], name: str | None) -> LintTarget:
     if len(paths) > 1 or not name:
         raise UsageError("`-` reads one file: write `lumen lint - --stdin-filename behaviors/NAME.yaml`")
     root = _root(Path(name))
@@ -111,4 +111,4 @@ def _typed(paths: Sequence[str], name: str | None) -> Asked:
     file = Path(name).absolute().relative_to(root).as_posix()
     if not counts(file):
         raise UsageError(f"{name} is no file that lint reads: docs/yaml.md lists the files of a project")
-    return Asked(root, frozenset((file,)), ((file, sys.stdin.buffer.read()),))
+    return LintTarget(root, frozenset((file,)), ((file, sys.stdin.buffer.read()),))

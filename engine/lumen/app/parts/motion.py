@@ -1,10 +1,11 @@
 """The motion module's process, Lumen Motion: motions by name, and the head that follows what it sees."""
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
+from lumen.app.narrator import Narrator
+from lumen.app.parts.part import Part
 from lumen.buses.validated import ValidatedBus
-from lumen.cli.transcript import Transcript
 from lumen.language.commands import Track
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -17,20 +18,19 @@ from lumen.runtime.tracking import LocalTracking
 WAITING = 1_000
 
 
-class MotionPart:
+class MotionPart(Part):
     """Sends the keyframes of the motions that the brain names to the robot, and aims its head by the controllers.
 
     Controllers are off again when the brain is gone, or the robot is another: whoever comes back says what is wanted.
     """
 
     name = MOTION
-    needs: tuple[str, ...] = (ROBOT,)
-    over = failed = False
+    needs = (ROBOT,)
 
     def __init__(
-        self, project: Project, bus: ValidatedBus, clock: Clock, presence: Presence, transcript: Transcript
+        self, project: Project, bus: ValidatedBus, clock: Clock, presence: Presence, narrator: Narrator
     ) -> None:
-        self._project, self._bus, self._presence, self._transcript = project, bus, presence, transcript
+        self._project, self._bus, self._presence, self._narrator = project, bus, presence, narrator
         self._robot = RemoteRobot(project, bus, clock.now)
         self._tracking = LocalTracking(project, self._robot, bus)
         self._asked: deque[Message] = deque(maxlen=WAITING)
@@ -56,11 +56,8 @@ class MotionPart:
             undo, self._undo = self._undo, self._bus.subscribe(motion_key(project), self._asked.append)
             undo()
 
-    def interrupt(self) -> bool:
-        return False
-
-    def summary(self) -> None:
-        print(f"  {self._played} motions sent")
+    def summary(self) -> Iterator[str]:
+        yield f"{self._played} motions sent"
 
     def close(self) -> None:
         self._undo()
@@ -84,13 +81,13 @@ class MotionPart:
         match message.body:
             case {"id": str(id), "play": str(name)} if name in self._project.motions:
                 if message.body.get("bundle") != self._project.hash:
-                    self._transcript.line("motion", f"does not play {name}: its files are not the brain's")
+                    self._narrator.line("motion", f"does not play {name}: its files are not the brain's")
                     return
                 self._played += 1
-                self._transcript.line("motion", f"plays {name}")
+                self._narrator.line("motion", f"plays {name}")
                 self._robot.forward(id, Perform(self._project.motions[name]))
             case {"track": str(name), "on": bool(on)} if name in self._project.controllers:
-                self._transcript.line("motion", f"{'follows what is seen with' if on else 'lets go of'} {name}")
+                self._narrator.line("motion", f"{'follows what is seen with' if on else 'lets go of'} {name}")
                 self._tracking.switch(Track(name, on))
             case _:
-                self._transcript.line("trouble", f"nobody here knows what {str(message.body)[:80]} asks for")
+                self._narrator.line("trouble", f"nobody here knows what {str(message.body)[:80]} asks for")

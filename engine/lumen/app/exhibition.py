@@ -1,0 +1,160 @@
+"""An exhibition in this process: opened, stepped or run, observed, reloaded, asked to stop, and closed."""
+
+from collections.abc import Callable, Mapping
+from types import TracebackType
+from typing import Any, Self
+
+from lumen.app.narrator import Narrator
+from lumen.app.parts.saved_files import RecordsPart, ReloadPart
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.report import ReloadReport
+from lumen.app.setup import Setup
+from lumen.app.whole_node import WholeNode
+from lumen.bus import connect
+from lumen.buses.validated import validated
+from lumen.errors import UsageError
+from lumen.interpreters.statechart import Step
+from lumen.language.commands import Say, Wake
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.ports import Bus
+from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
+from lumen.runtime.home import home_of
+from lumen.runtime.loop import Observer
+from lumen.runtime.sending import send
+
+
+class Exhibition:
+    """A project on a robot, a bus and a clock: all its parts are in `node`. `start` it, then `tick` or `run`.
+
+    With a story, its visitor plays it. `narrator` is called with what happens. Its files can be reloaded where `reload`
+    says how saved ones are taken (`auto`, `manual`, `off`). With a `run_directory` other terminals reach it, and it
+    goes on where the run before ended without notice, unless it is to begin `fresh`. Raises BusError where the bus
+    can't be reached.
+    """
+
+    def __init__(
+        self,
+        project: Project,
+        setup: Setup,
+        bus: str | Bus = "memory://",
+        story: Story | None = None,
+        narrator: Narrator | None = None,
+        *,
+        run_directory: RunDirectory | None = None,
+        reload: str = "",
+        language: str = "",
+        fresh: bool = True,
+    ) -> None:
+        url = bus if isinstance(bus, str) else "memory://"
+        shared = not url.startswith("memory:")
+        opened = validated(connect(bus) if isinstance(bus, str) else bus, project)
+        self.node = WholeNode(project, setup, opened, story, narrator, language=language, shared=shared)
+        behavior, directory = self.node.behavior, run_directory
+        self.reloader: Reloader | None = None
+        if reload:
+            taken_by = directory.reloader if directory else Reloader
+            self.reloader = taken_by(behavior, self.node.narrator, mode=reload)
+            self.node.add(ReloadPart(self.reloader))
+        if directory:
+            fresh = fresh or story is not None
+            self.node.brain.recover = lambda: directory.begin_run(behavior, url, self.reloader, fresh=fresh)
+            if story is None:
+                self.node.parts.append(RecordsPart(directory.records, behavior))
+            if shared:
+                log = DeduplicationLog(home_of(directory.root) / DEDUPLICATION_FILE)
+                self.node.robot.server.recall(log)
+
+    @property
+    def project(self) -> Project:
+        """The bundle that runs."""
+        return self.node.project
+
+    @property
+    def configuration(self) -> frozenset[str]:
+        """The active states but the root, by alias where there is one, else by path."""
+        return self.node.loop.runtime.snapshot.configuration
+
+    @property
+    def context(self) -> dict[str, Any]:
+        """What the behaviour remembers."""
+        return dict(self.node.loop.runtime.snapshot.context)
+
+    @property
+    def now(self) -> float:
+        """The exhibition's time [s]."""
+        return self.node.now
+
+    @property
+    def over(self) -> bool:
+        """Whether its story is at its end, or it was interrupted."""
+        return self.node.over
+
+    def start(self) -> None:
+        """Begin all parts: enter the initial states, or go on where the run before ended without notice.
+
+        Raises UsageError where another process on the bus is this robot already.
+        """
+        self.node.begin()
+
+    def tick(self) -> float:
+        """Live through a tick, a 50th of a second; its time [s]."""
+        return self.node.tick()
+
+    def run(self, seconds: float | None = None) -> float:
+        """Live for so long [s], or until it is over; how long it lived [s]."""
+        return self.node.run(seconds)
+
+    def send(self, route: str, body: Mapping[str, Any]) -> None:
+        """Send a message on a route, as a module would. Raises UsageError where there is none, or it is not allowed."""
+        if reason := send(self.node.bus, self.project, route, body):
+            raise UsageError(f"can't send on `{route}`: {reason}")
+
+    def say(self, text: str, language: str = "") -> None:
+        """Let the robot say something, whatever the behaviour is doing."""
+        said = Say(text, language)
+        self.node.setup.robot.start("operator", said)
+        self.node.robot.server.begins(said)
+
+    def stop(self) -> None:
+        """Let the robot rest, at once, and the behaviour hear of it (`stop`)."""
+        self.node.brain.rest()
+
+    def resume(self) -> None:
+        """Let the robot that rests stand up."""
+        self.node.setup.robot.start("operator", Wake())
+
+    def observe(self, handler: Callable[[Step], None]) -> None:
+        """Call this with each step from now on, in the order taken."""
+        self.node.loop.observers.append(_StepHandler(handler))
+
+    def reload(self) -> ReloadReport:
+        """Take the files as they are on the disk; what came of it.
+
+        Its `verdict` is `unchanged`, `applied`, `refused` (see `diagnostics`), or `waiting` for what the behaviour is
+        doing: then it is applied at a later tick. Raises UsageError where it was opened without `reload`.
+        """
+        if self.reloader is None:
+            raise UsageError("this exhibition was opened to keep its files")
+        return self.reloader.reload(self.now)
+
+    def close(self) -> None:
+        """End what has threads, files or windows open."""
+        self.node.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+class _StepHandler(Observer):
+    def __init__(self, handler: Callable[[Step], None]) -> None:
+        self._handler = handler
+
+    def stepped(self, step: Step) -> None:
+        self._handler(step)

@@ -1,0 +1,21 @@
+"""What a reload would refuse, move or forget, among the findings of a project."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from lumen.app.lint.findings import Findings
+from lumen.app.reload.against import against
+from lumen.app.versions import version
+from lumen.language.diagnostics import Diagnostic
+from lumen.rules import check_files
+
+
+def compared(found: Findings, name: str, wanted: Callable[[Diagnostic], bool]) -> Findings:
+    """The findings of a project with those of a reload from another version of it, where it has no errors."""
+    root = Path(found.root)
+    old, new = version(name, root).project, check_files(root, found.files)[0]
+    more = [d for d in against(old, new) if wanted(d)] if new else []
+    shown = [d for d in more if not found.asked or d.place.file in found.asked]
+    elsewhere = found.elsewhere + len(more) - len(shown)
+    return replace(found, diagnostics=[*found.diagnostics, *shown], elsewhere=elsewhere)

@@ -1,1 +1,0 @@
-"""The modules beside robot, brain and motion: made by name, inside `lumen run` or in a process of their own."""

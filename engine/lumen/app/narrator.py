@@ -1,0 +1,107 @@
+"""What happens in an exhibition, in words: who, what, and why."""
+
+from collections.abc import Callable
+
+from lumen.app.causes import innermost, reason_of, why
+from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart.inside import unfolded
+from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start
+from lumen.language.events import CUE, RECORDED, Event
+from lumen.language.machines import MachineDefinition
+from lumen.language.stories import Arrive, Happen, Leave, SendMessage, Speak, TouchSensor, VisitorAction
+from lumen.language.verbs import verb_of
+from lumen.runtime.loop import Observer
+
+
+class Narrator(Observer):
+    """Tells what happens, a line each, and counts it; who shows the lines overrides `line` and `note`.
+
+    `now` is asked for the time [s], `machine` for the one that runs.
+    """
+
+    def __init__(self, now: Callable[[], float], machine: Callable[[], MachineDefinition]) -> None:
+        self._now, self._machine = now, machine
+        self._running: dict[str, str] = {}
+        self.states: set[str] = set()
+        self.said = 0
+        self.played: dict[str, int] = {}
+
+    def line(self, who: str, text: str) -> None:
+        """One line: who it is about, and what happens now."""
+
+    def note(self, text: str) -> None:
+        """A text about the run itself, outside of its time."""
+
+    def counted(self) -> str:
+        """What happened altogether."""
+        return f"{len(self.states)} states, {self.said} texts, motions: {', '.join(self.played) or 'none'}"
+
+    def stepped(self, step: Step) -> None:
+        for prefix, machine, part in unfolded(self._machine(), step):
+            for error in part.raised:
+                if error.name.startswith("error."):
+                    self.line("trouble", f"{error.name}: {reason_of(error)}".rstrip(": "))
+            entered = [prefix + name for name in innermost(machine, part.entered)]
+            if entered:
+                self.states.update(entered)
+                self.line("state", f"{', '.join(entered)}  ({why(part)})")
+
+    def performing(self, command: Command, now: float) -> None:
+        match command:
+            case Start(id, wanted):
+                self._started(id, wanted)
+            case Publish(route):
+                self.line("robot", f"publishes on {route}")
+            case Log(text):
+                self.line("log", text)
+
+    def _started(self, id: str, command: BodyCommand) -> None:
+        if isinstance(command, Say):
+            self.said += 1
+            self.line("robot", f"“{command.text}”")
+            return
+        verb = verb_of(command)
+        words = verb.transcript(command)
+        self.line("robot", words)
+        if not verb.instant:
+            self._running[id] = words
+
+    def answered(self, event: Event) -> None:
+        kind, _, id = event.name.partition(".command.")
+        running = self._running.pop(id, "")
+        if kind == "error":
+            self.line("trouble", f"could not {_base(running) or 'do that'}: {reason_of(event)}")
+        elif kind == "done" and running.startswith("plays "):
+            motion = running.removeprefix("plays ")
+            self.played[motion] = self.played.get(motion, 0) + 1
+        elif kind == "cancelled" and running:
+            self.line("robot", f"ends early: {running}")
+        elif event.name == CUE:
+            if isinstance(event.data, dict) and event.data.get("kind") == "sound":
+                self.line("robot", f"sounds {event.data.get('value')}")
+        elif event.name == RECORDED:
+            self.line("robot", "has recorded what it heard")
+        elif not id:
+            details = ", ".join(f"{k} {v}" for k, v in (event.data or {}).items())
+            self.line("robot", f"notices {event.name}" + (f": {details}" if details else ""))
+
+    def visitor_action(self, action: VisitorAction) -> None:
+        """The visitor does something."""
+        match action:
+            case Arrive():
+                self.line("visitor", "walks up")
+            case Leave():
+                self.line("visitor", "walks away")
+            case Speak(text):
+                self.line("visitor", f"“{text}”")
+            case TouchSensor(sensor, pressed):
+                self.line("visitor", f"{'presses' if pressed else 'lets go of'} {sensor}")
+            case Happen(name):
+                self.line("story", f"lets `{name}` happen")
+            case SendMessage(route):
+                self.line("story", f"a module sends `{route}`")
+
+
+def _base(words: str) -> str:
+    verb, _, rest = words.partition(" ")
+    return f"{verb.removesuffix('s')} {rest}".strip()

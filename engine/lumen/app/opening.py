@@ -1,0 +1,65 @@
+"""An exhibition for a program of somebody else's: `lumen.open`."""
+
+from pathlib import Path
+
+from lumen.app.exhibition import Exhibition
+from lumen.app.setup import Setup, set_up, set_up_with
+from lumen.app.stories import stories_of
+from lumen.errors import UsageError
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.ports import Bus, Clock, Robot
+from lumen.rules import load
+
+
+def open(
+    path: str | Path | None = None,
+    *,
+    robot: str | Robot = "recording",
+    bus: str | Bus = "memory://",
+    clock: Clock | None = None,
+    speed: str | float = "max",
+    story: str | None = None,
+    language: str = "",
+) -> Exhibition:
+    """The exhibition of a project, begun: `path` is its folder, without one the project here or above.
+
+    `robot` is one of `recording`, `simulation`, `naoqi` and `none`, or an object that is one (`lumen.ports.Robot`);
+    `bus` is an address (`memory://`, `amqp://…`) or an open bus, which the exhibition closes at its end. Time is that
+    of the robot's own world, `speed` times real time or as fast as it can (`max`); with a `clock` it is what that one
+    says. `story` is a scripted visitor. Use it in a `with` block, or `close` it.
+
+    Raises UsageError for a name that is none, ProjectError for files with errors, BusError and RobotError where those
+    can't be reached.
+    """
+    project = load(path)
+    found = None
+    if story is not None:
+        named = list(stories_of(project, story))
+        if len(named) > 1:
+            raise UsageError(f"one story at a time: `{story}` means `{named[0].name}`, `{named[1].name}` and more")
+        found = named[0]
+    setup = _setup(project, robot, clock, str(speed), found)
+    try:
+        exhibition = Exhibition(project, setup, bus, found, reload="off", language=language)
+    except BaseException:
+        setup.robot.close()
+        raise
+    try:
+        exhibition.start()
+    except BaseException:
+        exhibition.close()
+        raise
+    return exhibition
+
+
+def _setup(project: Project, robot: str | Robot, clock: Clock | None, speed: str, story: Story | None) -> Setup:
+    try:
+        pace = None if speed == "max" else float(speed)
+    except ValueError:
+        raise UsageError(f'`speed` is how many times real time, or "max", not `{speed}`') from None
+    if not isinstance(robot, str):
+        return set_up_with(robot, clock, pace)
+    real = robot in ("naoqi", "none")
+    setup = set_up(robot, project, "1" if real and speed == "max" else speed, story)
+    return setup if clock is None else set_up_with(setup.robot, clock)

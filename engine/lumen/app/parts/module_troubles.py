@@ -1,0 +1,33 @@
+"""What modules say on the bus that they can't do."""
+
+from collections import deque
+from collections.abc import Callable, Sequence
+
+from lumen.app.parts.part import Part
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.modules.module import DEFAULT_KEYS
+from lumen.ports import Bus, Message
+
+MAX_PENDING_TROUBLES = 100
+
+
+class ModuleTroublesPart(Part):
+    """Tells line by line what modules can't do; those of this process, `own`, say so themselves."""
+
+    def __init__(self, project: Project, bus: Bus, tell: Callable[[str, str], None], own: Sequence[str] = ()) -> None:
+        self._tell, self._own = tell, own
+        self._messages: deque[Message] = deque(maxlen=MAX_PENDING_TROUBLES)
+        row = project.routes.get("trouble")
+        self._unsubscribe = bus.subscribe(
+            row.key_for(project.robot) if row else DEFAULT_KEYS["trouble"], self._messages.append
+        )
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        while self._messages:
+            match self._messages.popleft().body:
+                case {"module": str(module), "text": str(text)} if module not in self._own:
+                    self._tell(module[:20], text[:500])
+
+    def close(self) -> None:
+        self._unsubscribe()

@@ -1,0 +1,46 @@
+"""What a node is made of."""
+
+from collections.abc import Iterator, Sequence
+
+from lumen.language.events import Event
+from lumen.language.projects import Project
+
+
+class Part:
+    """Something that lives in a node's loop; it begins when the parts that it `needs` are there.
+
+    What a part does not care about it leaves as it is here: nothing.
+    """
+
+    name = ""
+    needs: Sequence[str] = ()
+
+    @property
+    def over(self) -> bool:
+        """Whether the node has nothing more to do."""
+        return False
+
+    @property
+    def failed(self) -> bool:
+        """Whether a story has failed, or was not played to its end."""
+        return False
+
+    def begin(self, now: float) -> None:
+        """What it needs is there, at `now` [s]."""
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        """Live until `now` [s]; `changes` tell who of the other processes was lost or came back."""
+
+    def use(self, project: Project) -> None:
+        """Go by another bundle from now on."""
+
+    def interrupt(self) -> bool:
+        """What Ctrl-C asks for; true where another one has to end it."""
+        return False
+
+    def summary(self) -> Iterator[str]:
+        """What is said of it at the end, a line each."""
+        return iter(())
+
+    def close(self) -> None:
+        """End what has threads, files or windows open."""

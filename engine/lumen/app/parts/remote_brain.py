@@ -1,0 +1,118 @@
+"""A brain whose robot is in another process: the robot is on the bus."""
+
+import json
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.narrator import Narrator
+from lumen.app.parts.brain import BrainPart
+from lumen.app.setup import Setup
+from lumen.buses.validated import ValidatedBus
+from lumen.errors import BusRefusedError
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.ports import Clock
+from lumen.robots.remote import RemoteRobot
+from lumen.runtime.delegated_tracking import DelegatedTracking
+from lumen.runtime.home import Home
+from lumen.runtime.presence import BRAIN, HERE, MOTION, ROBOT, Presence, told
+from lumen.runtime.resuming import Resumption
+from lumen.runtime.tracking import LocalTracking
+
+SESSION = "brain.json"
+"""Where a brain keeps under which session its commands travel, for the one that goes on after it."""
+GONE = "the robot is gone"
+
+
+class RemoteBody:
+    """A robot on the bus, with the tracking that the motion module does for it where there is one."""
+
+    def __init__(self, project: Project, bus: ValidatedBus, clock: Clock, presence: Presence) -> None:
+        self._presence = presence
+        self._project: Callable[[], Project] = lambda: project
+        self.robot = RemoteRobot(project, bus, clock.now, delegate=lambda id, command: self.tracking.play(id, command))
+        own = LocalTracking(project, self.robot, bus)
+        self.tracking = DelegatedTracking(own, project, bus, self.motion_module, self.robot.time)
+        self._clock = clock
+
+    def behavior(self, project: Project, bus: ValidatedBus, story: Story | None, speed: float) -> LiveBehavior:
+        """The behaviour on this robot; whether it was away is a matter of real time, as for the robot."""
+        found = LiveBehavior(project, Setup(self.robot, self._clock, None, tracking=self.tracking), bus, story)
+        found.loop.patience *= speed
+        self._project = lambda: found.project
+        return found
+
+    def motion_module(self) -> str:
+        """The session of the motion module that has the files that run here, empty where there is none."""
+        if MOTION in self._presence.parts:
+            return self._presence.session
+        peer = self._presence.find(MOTION)
+        return peer.session if peer and peer.said.get("bundle") == self._project().hash else ""
+
+
+class RemoteBrainPart(BrainPart):
+    """Runs the behaviour on a robot that is somewhere else; it ends where that one follows another brain."""
+
+    needs = (ROBOT,)
+
+    def __init__(
+        self,
+        behavior: LiveBehavior,
+        body: RemoteBody,
+        narrator: Narrator,
+        presence: Presence,
+        home: Home | None,
+        language: str = "",
+    ) -> None:
+        super().__init__(behavior, narrator, presence, language)
+        self.robot, self._tracking, self._others, self._home = body.robot, body.tracking, presence, home
+        self.motion_module = body.motion_module
+        self._session, self._lost = "", False
+
+    def begin(self, now: float) -> None:
+        super().begin(now)
+        if self._home:
+            self._home.write(SESSION, json.dumps({"session": self.robot.session}).encode())
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        """Live through a tick. Raises BusRefusedError where the robot follows another brain."""
+        if self._lost:
+            self.robot.lose(GONE)
+            self._lost = False
+        self._lost = any(change.name == "robot.lost" for change in changes)
+        self._follow()
+        super().tick(now, changes)
+
+    def close(self) -> None:
+        self.robot.close()
+
+    def _regained(self, found: Resumption) -> Resumption:
+        """What was under way is asked of the robot, which also says itself whether it was left alone for long."""
+        before = self._before()
+        if not before:
+            return found
+        self.robot.recover(before, found.lost)
+        return found._replace(lost=(), away=0.0)
+
+    def _before(self) -> str:
+        """Under which session the last brain's commands travelled; empty where that is not known."""
+        try:
+            data: Any = json.loads((self._home and self._home.read(SESSION)) or b"")
+            return str(data["session"])
+        except (ValueError, TypeError, KeyError):
+            return ""
+
+    def _follow(self) -> None:
+        """See which robot there is, and whom it follows."""
+        robot = self._others.find(ROBOT)
+        if robot is None:
+            return
+        if self._session and robot.session != self._session:
+            self.robot.lose(GONE)
+            self._tracking.restart()
+        self._session = robot.session
+        other = self._others.get(str(robot.said.get("follows", "")))
+        if other and self._others.alive(other) and BRAIN in other.parts and other.state == HERE:
+            raise BusRefusedError(f"the robot follows another brain by now, {told(other)}: this one ends")

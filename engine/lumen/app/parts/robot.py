@@ -1,0 +1,90 @@
+"""The robot: its senses on the bus, and a face detector where the hall around it is simulated."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from lumen.app.parts.part import Part
+from lumen.app.setup import Setup
+from lumen.language.commands import Command, Say, Start
+from lumen.language.events import Event
+from lumen.language.modules import EYES
+from lumen.language.projects import Project
+from lumen.ports import Bus, Sense
+from lumen.robots.sense_publisher import PublishCounts
+from lumen.robots.server import RobotServer
+from lumen.runtime.loop import Observer
+from lumen.runtime.perception import FaceDetector
+from lumen.runtime.presence import ROBOT, Presence
+
+
+class RobotPart(Part, Observer):
+    """A robot that the brain of this node commands directly; modules command it through `server`.
+
+    It watches the brain's loop: what the robot says and answers is on the bus, too. A `silent` one publishes only those
+    senses that the behaviour hears of as events.
+    """
+
+    name = ROBOT
+
+    def __init__(
+        self,
+        project: Project,
+        bus: Bus,
+        setup: Setup,
+        presence: Presence | None = None,
+        *,
+        server: RobotServer | None = None,
+        silent: bool = False,
+    ) -> None:
+        self._silent, self._presence = silent, presence
+        self.robot = setup.robot
+        self.server = server or RobotServer(self._sensed(project), setup.robot, bus)
+        self.faces = FaceDetector(project, setup.hall, bus) if setup.hall else None
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self.server.sample(now)
+        self.server.settle()
+        self._look(now)
+
+    def use(self, project: Project) -> None:
+        self.server.use(self._sensed(project))
+        if self.faces:
+            self.faces.use(project)
+
+    def performing(self, command: Command, now: float) -> None:
+        match command:
+            case Start(_, Say() as said):
+                self.server.begins(said)
+
+    def answered(self, event: Event) -> None:
+        self.server.answer(event)
+
+    def summary(self) -> Iterator[str]:
+        yield "published: " + ", ".join(map(_counted, self.server.counts.items()))
+
+    def close(self) -> None:
+        try:
+            self.server.close()
+        finally:
+            self.robot.close()
+
+    def _sensed(self, project: Project) -> Project:
+        """The project with the routes of the senses that are published."""
+        if not self._silent:
+            return project
+        routes = {name: route for name, route in project.routes.items() if name not in set(Sense) or route.event}
+        return replace(project, routes=routes)
+
+    def _look(self, now: float) -> None:
+        """Detect the visitor's face, unless somebody with eyes does."""
+        if self.faces is None:
+            return
+        if self._presence and EYES not in self._presence.parts:
+            self.faces.quiet = self._presence.find(EYES) is not None
+        self.faces.tick(now)
+
+
+def _counted(item: tuple[str, PublishCounts]) -> str:
+    """`1204 joint (3 dropped)`."""
+    sense, count = item
+    return f"{count.published} {sense}" + (f" ({count.dropped} dropped)" if count.dropped else "")

@@ -1,0 +1,32 @@
+"""Saved files, taken while the behaviour runs; and where it stands, kept for a run after this one."""
+
+from collections.abc import Sequence
+
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.parts.part import Part
+from lumen.app.reload.records import RunRecords
+from lumen.app.reload.reloader import Reloader
+from lumen.language.events import Event
+
+
+class ReloadPart(Part):
+    """Takes saved files; its place is before the brain, so that a bundle comes between two steps."""
+
+    def __init__(self, reloader: Reloader) -> None:
+        self._reloader = reloader
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self._reloader.tick(now)
+
+    def close(self) -> None:
+        self._reloader.close()
+
+
+class RecordsPart(Part):
+    """Keeps where the behaviour stands; its place is after the brain."""
+
+    def __init__(self, records: RunRecords, behavior: LiveBehavior) -> None:
+        self._records, self._behavior = records, behavior
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self._records.keep(self._behavior.loop)

@@ -1,0 +1,89 @@
+"""One process of several: the parts that it is, put together."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from lumen.app.claiming import presence_of
+from lumen.app.narrator import Narrator
+from lumen.app.node import Node
+from lumen.app.parts.hosted_robot import HostedRobotPart
+from lumen.app.parts.module import ModulePart
+from lumen.app.parts.module_troubles import ModuleTroublesPart
+from lumen.app.parts.motion import MotionPart
+from lumen.app.parts.remote_brain import RemoteBody, RemoteBrainPart
+from lumen.app.parts.saved_files import RecordsPart, ReloadPart
+from lumen.app.parts.visitor import RemoteVisitorPart
+from lumen.app.processes.bundles import BundleFollower
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.setup import Setup
+from lumen.buses.validated import ValidatedBus
+from lumen.language.modules import MODULES
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.ports import Clock
+from lumen.runtime.home import home_of
+from lumen.runtime.presence import BRAIN, MOTION, VISITOR
+from lumen.runtime.story import staged
+
+
+@dataclass(frozen=True)
+class ProcessOptions:
+    """How a process takes part: `speed` times real time, saved files taken as `reload` says, `fresh` or not."""
+
+    url: str
+    speed: float = 1.0
+    reload: str = "auto"
+    language: str = ""
+    fresh: bool = False
+
+
+def assemble(
+    project: Project,
+    names: Sequence[str],
+    bus: ValidatedBus,
+    clock: Clock,
+    narrator: Narrator,
+    run_directory: RunDirectory,
+    options: ProcessOptions,
+    setup: Setup | None = None,
+    story: Story | None = None,
+) -> Node:
+    """The process that is these parts of an exhibition; `setup` is its robot, where it has one."""
+    robot: HostedRobotPart | None = None
+
+    def said() -> dict[str, Any]:
+        follows = robot.follows if robot else ""
+        return {"bundle": node.project.hash, "speed": options.speed, "follows": follows}
+
+    presence = presence_of(project, bus, tuple(names), said)
+    node = Node(project, bus, clock, narrator, presence=presence, speed=options.speed)
+    if setup:
+        robot = HostedRobotPart(project, bus, setup, presence, narrator)
+        node.parts.append(robot)
+    if MOTION in names:
+        node.parts.append(MotionPart(project, bus, clock, presence, narrator))
+    if BRAIN in names:
+        node.parts.append(ModuleTroublesPart(project, bus, narrator.line))
+        body = RemoteBody(staged(project, story), bus, clock, presence)
+        behavior = body.behavior(project, bus, story, options.speed)
+        reloader = run_directory.reloader(behavior, narrator, mode=options.reload)
+        brain = RemoteBrainPart(behavior, body, narrator, presence, run_directory.home, options.language)
+        brain.recover = lambda: run_directory.begin_run(behavior, options.url, reloader, fresh=options.fresh)
+
+        def adopt(bundle: Project) -> None:
+            body.robot.use(bundle)
+            node.use(bundle, but=brain)
+
+        behavior.adopt = adopt
+        node.parts += [ReloadPart(reloader), brain, RecordsPart(run_directory.records, behavior)]
+    if VISITOR in names:
+        node.parts.append(RemoteVisitorPart(project, bus, narrator, story, telling=BRAIN not in names))
+    folder = home_of(run_directory.root)
+    node.parts += [ModulePart(name, project, bus, narrator.line, folder) for name in names if name in MODULES]
+    if BRAIN not in names:
+        follower = BundleFollower(Path(project.root), bus, node.use, lambda line: narrator.line("reload", line))
+        node.before.append(follower.tick)
+        node.closing.append(follower.close)
+    return node

@@ -1,0 +1,24 @@
+"""Findings on standard output, and whether they count."""
+
+import os
+import sys
+from collections.abc import Sequence
+
+from lumen.app.lint.findings import Findings
+from lumen.errors import UsageError
+from lumen.language.diagnostics import Severity
+
+
+def verdict(found: Sequence[Findings], *, strict: bool = False) -> int:
+    """1 where something is shown that counts, else 0."""
+    return int(any(each.count(Severity.ERROR) or (strict and each.count(Severity.WARNING)) for each in found))
+
+
+def show(text: str) -> None:
+    """Print it; where nobody reads on (`lumen lint | head`), the verdict still counts."""
+    try:
+        print(text.encode("utf-8", "replace").decode(), flush=True)
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            raise UsageError(f"can't print: {(error.strerror or str(error)).lower()}") from None
