@@ -14,26 +14,26 @@ def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
     live.until_told("in force")
     walker = live.show.visitor
     assert walker
-    walker.arrive(Visitor())
+    walker.actor.arrive(Visitor())
     live.until_told("ask_name")
-    walker.speak("my name is Ada")
+    walker.actor.speak("my name is Ada")
     live.until_told("how_are_you")
-    walker.speak("purple")
+    walker.actor.speak("purple")
     live.until_told("“Come again, please?”")
 
 
 def test_the_visitors_name_survives(live: Live) -> None:
     walker = live.show.visitor
     assert walker
-    walker.arrive(Visitor())
+    walker.actor.arrive(Visitor())
     live.until_told("ask_name")
-    walker.speak("my name is Ada")
+    walker.actor.speak("my name is Ada")
     live.until(lambda: "how_are_you" in live.states)
     live.edit("en: [I am glad to hear that.,", 'en: ["Wonderful, {{ context.visitor }}!",')
     live.edit('"That is good to hear, {{ context.title_en }}."]', '"Wonderful, {{ context.visitor }}!"]')
     live.until_told("in force")
     assert "how_are_you" in live.states
-    walker.speak("fine")
+    walker.actor.speak("fine")
     live.until_told("“Wonderful, Ada!”")
 
 
@@ -71,7 +71,7 @@ def storyless(copy: Path) -> None:
 def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
     walker = live.show.visitor
     assert walker
-    walker.arrive(Visitor())
+    walker.actor.arrive(Visitor())
     live.until(lambda: "ask_name" in live.states)
     for old, new in (
         ("          ask_name:\n            id: ask_name", "          asking:\n            id: asking"),
@@ -81,6 +81,6 @@ def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
     ):
         live.edit(old, new)
     live.until_told("waiting for `ask_name`: `ask_name` is active and gone")
-    walker.speak("my name is Ada")
+    walker.actor.speak("my name is Ada")
     live.until_told("in force")
     assert "how_are_you" in live.states
