@@ -10,10 +10,10 @@ from lumen.language.events import Event
 
 
 class ReloadPart(Part):
-    """Takes saved files; its place is before the brain, so that a bundle comes between two steps."""
+    """Takes saved files; it stands before the brain, whose `needs` it has, so that a bundle comes between two steps."""
 
-    def __init__(self, reloader: Reloader) -> None:
-        self._reloader = reloader
+    def __init__(self, reloader: Reloader, needs: Sequence[str] = ()) -> None:
+        self.needs, self._reloader = needs, reloader
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self._reloader.tick(now)
@@ -23,10 +23,10 @@ class ReloadPart(Part):
 
 
 class RecordsPart(Part):
-    """Keeps where the behaviour stands; its place is after the brain."""
+    """Keeps where the behaviour stands; it stands after the brain, whose `needs` it has."""
 
-    def __init__(self, records: RunRecords, behavior: LiveBehavior) -> None:
-        self._records, self._behavior = records, behavior
+    def __init__(self, records: RunRecords, behavior: LiveBehavior, needs: Sequence[str] = ()) -> None:
+        self.needs, self._records, self._behavior = needs, records, behavior
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self._records.keep(self._behavior.loop)

@@ -77,7 +77,11 @@ def assemble(
             node.use(bundle, but=brain)
 
         behavior.adopt = adopt
-        node.parts += [ReloadPart(reloader), brain, RecordsPart(run_directory.records, behavior)]
+        node.parts += [
+            ReloadPart(reloader, brain.needs),
+            brain,
+            RecordsPart(run_directory.records, behavior, brain.needs),
+        ]
     if VISITOR in names:
         node.parts.append(RemoteVisitorPart(project, bus, narrator, story, telling=BRAIN not in names))
     folder = home_of(run_directory.root)
