@@ -29,7 +29,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "engine")]
 from tests.guarded import CompletedProcess, run_guarded  # noqa: E402
 from tests.lsp.client import Client  # noqa: E402
 
-from lumen.loading.files import FOLDERS, read_files  # noqa: E402
+from lumen.loading.files import PROJECT_FOLDERS, read_files  # noqa: E402
 from lumen.rules import check_files  # noqa: E402
 
 TOUR, GOODBYE, MAIN = "behaviors/tour.yaml", "motions/goodbye.yaml", "lumen.yaml"
@@ -68,7 +68,7 @@ def mistakes() -> list[Mistake]:
 def project(mistake: Mistake, folder: Path) -> dict[str, bytes]:
     """The shipped project with the mistake in it, in a folder."""
     shutil.copy(ROOT / MAIN, folder)
-    for name in FOLDERS:
+    for name in PROJECT_FOLDERS:
         shutil.copytree(ROOT / name, folder / name)
     text = (folder / mistake.file).read_text("utf-8")
     assert mistake.old in text, mistake.what

@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.guarded import DEVNULL, PIPE, Guarded, run_guarded
 
-from lumen.loading.files import FOLDERS, read_files
+from lumen.loading.files import PROJECT_FOLDERS, read_files
 from lumen.loading.packaged import MAIN_FILE
 from lumen.rules import check_files
 
@@ -140,7 +140,7 @@ def watched() -> list[float]:
     with tempfile.TemporaryDirectory() as name:
         root = Path(name)
         shutil.copy(ROOT / MAIN_FILE, root)
-        for folder in FOLDERS:
+        for folder in PROJECT_FOLDERS:
             shutil.copytree(ROOT / folder, root / folder)
         command = [sys.executable, "-m", "lumen", "lint", "--watch", "--format", "concise", name]
         environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}

@@ -12,9 +12,10 @@ from lumen.language import motions
 from lumen.language.diagnostics import has_errors
 from lumen.language.robots import Body
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.files import read_files
 from lumen.loading.motions import build_motion, countable
 from lumen.loading.packaged import MAIN_FILE, find_project, shipped_root
-from lumen.loading.project import draft, read_files
+from lumen.loading.project import draft
 from lumen.loading.schema import check_schema
 from lumen.loading.source import Document, DocumentReport, parse
 

@@ -10,7 +10,7 @@ from jsonschema import Draft202012Validator
 
 from lumen.cli.main import main
 from lumen.cli.schema import FILES, merged, settings
-from lumen.loading.schema import KINDS, load_schema
+from lumen.loading.schema import FILE_KINDS, load_schema
 
 ROOT = Path(__file__).parents[2]
 SAMPLES = {"examples", "enum", "const", "default", "properties"}
@@ -41,7 +41,7 @@ def whole(schema: Any, root: Any) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", FILE_KINDS)
 def test_every_property_is_described_and_shown(kind: str) -> None:
     root = load_schema(kind)
     Draft202012Validator.check_schema(root)
@@ -54,7 +54,7 @@ def test_every_property_is_described_and_shown(kind: str) -> None:
         assert SAMPLES & known.keys() or known.get("type") == "boolean" or "$ref" in str(schema), name
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", FILE_KINDS)
 def test_examples_and_defaults_fit(kind: str) -> None:
     root = load_schema(kind)
     for name, schema in properties(root):
@@ -67,11 +67,11 @@ def test_a_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema", "motion"]) == 0
     assert json.loads(capsys.readouterr().out) == load_schema("motion")
     assert main(["schema"]) == 0
-    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(KINDS)
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(FILE_KINDS)
 
 
 def test_every_kind_has_its_files() -> None:
-    assert FILES.keys() == set(KINDS)
+    assert FILES.keys() == set(FILE_KINDS)
     for patterns in FILES.values():
         assert list(ROOT.glob(patterns[0])), patterns
 

@@ -7,17 +7,17 @@ import pytest
 
 import lumen
 from lumen.fuzzy import Controller
-from lumen.interpreters.inference.formulas import FUNCTIONS
-from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, HEDGES, S_NORMS, T_NORMS, TERMS
+from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
+from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, HEDGES, S_NORMS, T_NORMS, TERM_PARAMETERS
 
 FUZZY = Path("docs/fuzzy.md").read_text()
 ERRATUM = Path("docs/erratum.md").read_text()
 
 
 def test_every_word_of_the_language_is_there() -> None:
-    for word in (*TERMS, *HEDGES, *T_NORMS, *S_NORMS, *ACTIVATIONS, *DEFUZZIFIERS):
+    for word in (*TERM_PARAMETERS, *HEDGES, *T_NORMS, *S_NORMS, *ACTIVATIONS, *DEFUZZIFIERS):
         assert f"`{word}`" in FUZZY or f"{{method: {word}}}" in FUZZY, word
-    assert set(FUNCTIONS) <= set(re.findall(r"\w+", FUZZY))
+    assert set(FORMULA_FUNCTIONS) <= set(re.findall(r"\w+", FUZZY))
 
 
 def test_the_example_is_the_shipped_controller() -> None:

@@ -23,8 +23,16 @@ from lumen.interpreters.inference.arithmetic import NUMBERS
 from lumen.interpreters.inference.hedges import hedged
 from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.norms import norm
-from lumen.interpreters.inference.weighted import INVERSES, value
-from lumen.language.controllers import DEFUZZIFIERS, HEDGES, INTEGRAL, S_NORMS, T_NORMS, TERMS, Term
+from lumen.interpreters.inference.weighted import INVERSE_MEMBERSHIPS, value
+from lumen.language.controllers import (
+    DEFUZZIFIERS,
+    HEDGES,
+    INTEGRAL_DEFUZZIFIERS,
+    S_NORMS,
+    T_NORMS,
+    TERM_PARAMETERS,
+    Term,
+)
 
 EXAMPLES = sorted((Path(fl.__file__).parent / "examples").rglob("*.fll"))
 EDGES = {"binary": 1, "arc": 1}
@@ -102,7 +110,7 @@ width = st.floats(0.05, 30).map(lambda x: round(x, 3))
 
 def shaped(kind: str) -> st.SearchStrategy[tuple[float, ...]]:
     """Parameters of a kind of term, in our order, which is FuzzyLite's."""
-    names = TERMS[kind]
+    names = TERM_PARAMETERS[kind]
     ascending = st.lists(number, min_size=len(names), max_size=len(names), unique=True).map(sorted).map(tuple)
     match kind:
         case "triangle" | "trapezoid" | "pi-shape" | "s-shape" | "z-shape" | "rectangle":
@@ -127,7 +135,7 @@ def shaped(kind: str) -> st.SearchStrategy[tuple[float, ...]]:
 
 @settings(max_examples=15, deadline=None)
 @given(st.data(), st.lists(st.floats(-100, 100), min_size=1, max_size=8), st.sampled_from([1.0, 0.4]))
-@pytest.mark.parametrize("kind", [kind for kind in TERMS if kind not in ("constant", "linear", "function")])
+@pytest.mark.parametrize("kind", [kind for kind in TERM_PARAMETERS if kind not in ("constant", "linear", "function")])
 def test_a_term(kind: str, data: st.DataObject, xs: list[float], height: float) -> None:
     parameters = data.draw(shaped(kind))
     other = factories.term.construct(camel(kind), name="t")
@@ -143,7 +151,7 @@ def test_a_term(kind: str, data: st.DataObject, xs: list[float], height: float) 
 
 @settings(max_examples=15, deadline=None)
 @given(st.data(), st.floats(0.01, 0.99), st.sampled_from([1.0, 0.4]))
-@pytest.mark.parametrize("kind", sorted(set(INVERSES) - {"arc"}))
+@pytest.mark.parametrize("kind", sorted(set(INVERSE_MEMBERSHIPS) - {"arc"}))
 def test_a_term_read_backwards(kind: str, data: st.DataObject, part: float, height: float) -> None:
     parameters = data.draw(shaped(kind))
     other = factories.term.construct(camel(kind), name="t")
@@ -227,8 +235,8 @@ def test_an_activation(activation: str) -> None:
 
 @pytest.mark.parametrize("method", DEFUZZIFIERS)
 def test_a_defuzzifier(method: str) -> None:
-    terms = SETS if method in INTEGRAL else VALUES
-    resolution = " 200" if method in INTEGRAL else ""
+    terms = SETS if method in INTEGRAL_DEFUZZIFIERS else VALUES
+    resolution = " 200" if method in INTEGRAL_DEFUZZIFIERS else ""
     assert agree(*both(defuzzifier=camel(method) + resolution, terms=terms), spread(30)) == 30
 
 

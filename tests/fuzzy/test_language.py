@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from lumen.errors import LumenError, ProjectError
 from lumen.fuzzy import Controller
 from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
-from lumen.interpreters.inference.formulas import FUNCTIONS, formula
+from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS, formula
 from lumen.loading.controllers import build_controller
 from lumen.loading.schema import check_schema, load_schema
 from lumen.loading.source import DocumentReport, parse
@@ -123,7 +123,7 @@ def test_what_is_infinite_counts_as_silence() -> None:
 FORMULAS = [
     "x + a", "x - a * b", "a / b", "-x % 2", "a < b", "a <= b == (x > 0)", "a != b && b >= x", "!(a > 1) || x < 0",
     "a > 0 ? sqrt(a) : 1 / b", "x > 0 && 1 / x > 0.5 ? 1 : 0", "pow(a, b)", "min(a, max(b, x))", "atan2(a, b) + pi",
-    *(f"{name}({', '.join('ab'[:count])})" for name, count in FUNCTIONS.items()),
+    *(f"{name}({', '.join('ab'[:count])})" for name, count in FORMULA_FUNCTIONS.items()),
 ]  # fmt: skip
 number = st.one_of(st.floats(-20, 20), st.sampled_from([0.0, 1.0, -1.0, 2.0]))
 

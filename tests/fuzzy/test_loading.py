@@ -8,7 +8,7 @@ import pytest
 
 from lumen.errors import ProjectError
 from lumen.fuzzy import Controller
-from lumen.language.controllers import ACTIVATIONS, COMPARISONS, DEFUZZIFIERS, S_NORMS, T_NORMS, TERMS
+from lumen.language.controllers import ACTIVATIONS, COMPARISONS, DEFUZZIFIERS, S_NORMS, T_NORMS, TERM_PARAMETERS
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.loading.controllers import build_controller
 from lumen.loading.schema import check_schema, load_schema
@@ -164,7 +164,7 @@ def test_angles_and_times_arrive_in_si() -> None:
 def test_the_schema_knows_the_whole_vocabulary() -> None:
     schema = load_schema("controller")
     operators = schema["properties"]["operators"]["properties"]
-    assert set(schema["$defs"]["term"]["properties"]) == {*TERMS, "height"}
+    assert set(schema["$defs"]["term"]["properties"]) == {*TERM_PARAMETERS, "height"}
     assert operators["conjunction"]["enum"] == operators["implication"]["enum"] == list(T_NORMS)
     assert operators["disjunction"]["enum"] == operators["aggregation"]["enum"] == list(S_NORMS)
     assert operators["defuzzifier"]["enum"] == list(DEFUZZIFIERS)

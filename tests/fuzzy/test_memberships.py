@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
-from lumen.interpreters.inference.memberships import SHAPES, membership
-from lumen.interpreters.inference.weighted import INVERSES, value
-from lumen.language.controllers import TERMS, VALUES, Term
+from lumen.interpreters.inference.memberships import MEMBERSHIP_FUNCTIONS, membership
+from lumen.interpreters.inference.weighted import INVERSE_MEMBERSHIPS, value
+from lumen.language.controllers import TERM_PARAMETERS, VALUE_TERMS, Term
 
 CASES = [
     ("triangle", (0, 4, 10), {-1: 0, 0: 0, 2: 0.5, 4: 1, 7: 0.5, 11: 0}),
@@ -54,7 +54,9 @@ def test_a_shape_at_known_points(kind: str, parameters: tuple[float, ...], point
 
 
 def test_every_kind_has_a_shape_and_a_case() -> None:
-    assert set(SHAPES) == set(TERMS) - {*VALUES, "function"} == {kind for kind, _, _ in CASES}
+    assert (
+        set(MEMBERSHIP_FUNCTIONS) == set(TERM_PARAMETERS) - {*VALUE_TERMS, "function"} == {kind for kind, _, _ in CASES}
+    )
 
 
 def test_the_height_scales_the_shape() -> None:
@@ -72,7 +74,7 @@ def test_numbers_and_arrays_agree_within_0_and_1(
     assert all(0.0 <= v <= 1.0 for v in values)
 
 
-@given(st.sampled_from(sorted(INVERSES)), st.floats(0.02, 0.98), st.sampled_from([1.0, 0.5]))
+@given(st.sampled_from(sorted(INVERSE_MEMBERSHIPS)), st.floats(0.02, 0.98), st.sampled_from([1.0, 0.5]))
 def test_a_monotonic_shape_read_backwards(kind: str, part: float, height: float) -> None:
     parameters = next(p for k, p, _ in CASES if k == kind)
     term = Term("t", kind, tuple(map(float, parameters)), height)

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.inference.activations import COMPARE, METHODS
+from lumen.interpreters.inference.activations import ACTIVATE, COMPARISON_FUNCTIONS
 from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
-from lumen.interpreters.inference.hedges import HEDGES, hedged
-from lumen.interpreters.inference.norms import NORMS, norm
+from lumen.interpreters.inference.hedges import HEDGE_FUNCTIONS, hedged
+from lumen.interpreters.inference.norms import NORM_FUNCTIONS, norm
 from lumen.language import controllers
 from lumen.language.controllers import ACTIVATIONS, COMPARISONS, S_NORMS, T_NORMS, Activation
 
@@ -18,10 +18,10 @@ degree = st.one_of(st.floats(0, 1), st.sampled_from([0.0, 0.5, 1.0]))
 
 
 def test_the_vocabulary_is_complete() -> None:
-    assert set(NORMS) == {*T_NORMS, *S_NORMS}
-    assert set(HEDGES) == set(controllers.HEDGES)
-    assert set(METHODS) == set(ACTIVATIONS)
-    assert set(COMPARE) == set(COMPARISONS)
+    assert set(NORM_FUNCTIONS) == {*T_NORMS, *S_NORMS}
+    assert set(HEDGE_FUNCTIONS) == set(controllers.HEDGES)
+    assert set(ACTIVATE) == set(ACTIVATIONS)
+    assert set(COMPARISON_FUNCTIONS) == set(COMPARISONS)
 
 
 @given(degree, degree)
@@ -83,14 +83,14 @@ def test_the_hedge_next_to_the_term_acts_first() -> None:
 )
 def test_which_rules_take_part(activation: Activation, expected: list[float]) -> None:
     degrees = [0.2, 0.8, 0.0, 0.5]
-    method = METHODS[activation.method]
+    method = ACTIVATE[activation.method]
     assert method(NUMBERS, activation, degrees) == pytest.approx(expected, nan_ok=True)
     columns = method(arrays(), activation, [np.array([d, d]) for d in degrees])
     assert [float(c[1]) for c in columns] == pytest.approx(expected, nan_ok=True)
 
 
 def test_of_equal_rules_the_first_are_taken() -> None:
-    chosen = METHODS["highest"](NUMBERS, Activation("highest", rules=1), [0.5, 0.5])
+    chosen = ACTIVATE["highest"](NUMBERS, Activation("highest", rules=1), [0.5, 0.5])
     assert chosen[0] == 0.5
     assert isnan(chosen[1])
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from lumen.loading.project import read_files
+from lumen.loading.files import read_files
 from lumen.loading.source import parse
 from lumen.rules import check_files
 

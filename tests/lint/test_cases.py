@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.project import read_files
+from lumen.loading.files import read_files
 from lumen.loading.source import parse
 from lumen.rules import check_files
 

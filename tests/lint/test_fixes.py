@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lumen.cli.main import main
 from lumen.language.diagnostics import Diagnostic, Place, has_errors
-from lumen.loading.project import read_files
+from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.rules.fixes import edited, fixes
 from lumen.rules.fixes.misspellings import near

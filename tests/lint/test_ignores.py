@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from lumen.loading.project import read_files
+from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.rules.codes import FAMILIES
 

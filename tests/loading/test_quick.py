@@ -11,7 +11,7 @@ from jsonschema import Draft202012Validator
 
 from lumen.loading.files import read_files
 from lumen.loading.quick import quick
-from lumen.loading.schema import KINDS, load_schema
+from lumen.loading.schema import FILE_KINDS, load_schema
 from lumen.loading.source import Document, parse
 from lumen.lsp.grammar import kind_of
 
@@ -29,8 +29,8 @@ def documents() -> list[tuple[str, Document]]:
 
 
 DOCUMENTS = documents()
-QUICK = {kind: quick(load_schema(kind)) for kind in KINDS}
-VALIDATORS = {kind: Draft202012Validator(load_schema(kind)) for kind in KINDS}
+QUICK = {kind: quick(load_schema(kind)) for kind in FILE_KINDS}
+VALIDATORS = {kind: Draft202012Validator(load_schema(kind)) for kind in FILE_KINDS}
 SMALL = [(kind, document) for kind, document in DOCUMENTS if len(document.spans) < 200]
 VALUES = [
     None,

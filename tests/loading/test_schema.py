@@ -7,7 +7,7 @@ import jsonschema
 import pytest
 
 from lumen.loading.packaged import schema_folder
-from lumen.loading.schema import KINDS, check_schema, load_schema
+from lumen.loading.schema import FILE_KINDS, check_schema, load_schema
 from lumen.loading.source import DocumentReport, parse
 
 
@@ -19,7 +19,7 @@ def check(text: str, kind: str = "behavior") -> tuple[Any, DocumentReport]:
     return check_schema(document, kind, report), report
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", FILE_KINDS)
 def test_a_schema_is_strict_and_describes_its_keys(kind: str) -> None:
     schema = load_schema(kind)
     jsonschema.Draft202012Validator.check_schema(schema)
@@ -40,7 +40,7 @@ def test_a_schema_is_strict_and_describes_its_keys(kind: str) -> None:
 
 
 def test_every_kind_has_its_schema() -> None:
-    assert {f"{kind}.schema.json" for kind in KINDS} == {p.name for p in schema_folder().glob("*.schema.json")}
+    assert {f"{kind}.schema.json" for kind in FILE_KINDS} == {p.name for p in schema_folder().glob("*.schema.json")}
 
 
 def test_a_sound_document_is_returned_as_it_is() -> None:

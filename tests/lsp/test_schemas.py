@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lumen.loading.files import FOLDERS
+from lumen.loading.files import PROJECT_FOLDERS
 from tests.fetched import fetched
 from tests.lsp.client import Client
 
@@ -46,7 +46,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the shipped project; the first line of each file names its schema."""
     root = tmp_path_factory.mktemp("editor").resolve()
     shutil.copy(ROOT / "lumen.yaml", root)
-    for folder in FOLDERS:
+    for folder in PROJECT_FOLDERS:
         shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("*.obj", "*.png"))
     return root
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from lumen.loading.files import FOLDERS
+from lumen.loading.files import PROJECT_FOLDERS
 from tests.lsp.client import Client
 
 ROOT = Path(__file__).parents[2]
@@ -19,7 +19,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("editor") / "hall and stand"
     root.mkdir()
     shutil.copy(ROOT / "lumen.yaml", root)
-    for folder in FOLDERS:
+    for folder in PROJECT_FOLDERS:
         shutil.copytree(ROOT / folder, root / folder)
     return root
 

@@ -13,7 +13,7 @@ from lumen.interpreters.changes import Change, Risk, changes, live, risk, summar
 from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.loading.project import read_files
+from lumen.loading.files import read_files
 from lumen.rules import check_files, load
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore

@@ -5,7 +5,8 @@ import pytest
 
 import lumen
 from lumen.language.projects import Project
-from lumen.loading.project import FOLDERS, MAIN_FILE
+from lumen.loading.files import PROJECT_FOLDERS
+from lumen.loading.packaged import MAIN_FILE
 from tests.tour.names import ROOT
 
 
@@ -19,6 +20,6 @@ def project() -> Project:
 def copy(tmp_path: Path) -> Path:
     """A copy of the shipped exhibition, to be changed."""
     shutil.copy(ROOT / MAIN_FILE, tmp_path)
-    for folder in FOLDERS:
+    for folder in PROJECT_FOLDERS:
         shutil.copytree(ROOT / folder, tmp_path / folder)
     return tmp_path

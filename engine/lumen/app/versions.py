@@ -8,8 +8,8 @@ from typing import NamedTuple
 from lumen.errors import ProjectError, UsageError
 from lumen.interpreters.statechart import Snapshot, deserialize
 from lumen.language.projects import Project
+from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
-from lumen.loading.project import read_files
 from lumen.loading.revisions import files_at
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of

@@ -5,8 +5,8 @@ import shutil
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.loading.packaged import shipped_root
-from lumen.loading.project import FOLDERS, MAIN_FILE
+from lumen.loading.files import PROJECT_FOLDERS
+from lumen.loading.packaged import MAIN_FILE, shipped_root
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -21,7 +21,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         shutil.copy(source / MAIN_FILE, folder)
-        for name in FOLDERS:
+        for name in PROJECT_FOLDERS:
             shutil.copytree(source / name, folder / name, dirs_exist_ok=True)
     except OSError as error:
         raise UsageError(f"can't write {error.filename or folder}: {error.strerror}") from None

@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 from lumen.bus import connect
 from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.errors import BusUnreachableError
+from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
-from lumen.loading.project import draft, read_files
+from lumen.loading.project import draft
 from lumen.ports import Bus
 from lumen.robots.command_receiver import KEY, ROUTE
 from lumen.runtime.home import DOOR, Home, home_of, homes

@@ -9,7 +9,7 @@ from typing import Any
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
 from lumen.loading.packaged import MAIN_FILE, find_project, schema_folder
-from lumen.loading.schema import KINDS, load_schema
+from lumen.loading.schema import FILE_KINDS, load_schema
 
 FILES: Mapping[str, tuple[str, ...]] = {
     "lumen": (MAIN_FILE,),
@@ -25,7 +25,13 @@ FILES: Mapping[str, tuple[str, ...]] = {
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("kind", nargs="?", choices=KINDS, metavar="KIND", help=f"one of {', '.join(KINDS)}; default: list them")
+    add(
+        "kind",
+        nargs="?",
+        choices=FILE_KINDS,
+        metavar="KIND",
+        help=f"one of {', '.join(FILE_KINDS)}; default: list them",
+    )
     add("--vscode", action="store_true", help="print the settings of VS Code that give each file its schema")
     add("-o", "--output", metavar="FILE", type=Path, help="write it there; settings that stand there already stay")
 
@@ -40,8 +46,10 @@ def run(options: argparse.Namespace) -> int:
     elif options.kind:
         write_result(_json(load_schema(options.kind)), options.output)
     else:
-        wide = max(map(len, KINDS))
-        lines = [f"{kind:{wide}}  {', '.join(FILES.get(kind, ())):40} {load_schema(kind)['title']}" for kind in KINDS]
+        wide = max(map(len, FILE_KINDS))
+        lines = [
+            f"{kind:{wide}}  {', '.join(FILES.get(kind, ())):40} {load_schema(kind)['title']}" for kind in FILE_KINDS
+        ]
         write_result("\n".join(lines) + "\n", options.output)
     return 0
 

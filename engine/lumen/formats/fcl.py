@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
 from lumen.formats.fll.fuzzylite_names import SHAPES, plain
-from lumen.language.controllers import TERMS, WEIGHTED
+from lumen.language.controllers import TERM_PARAMETERS, WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.rule_parser import RuleWord
 
@@ -197,7 +197,7 @@ class _Reader:
                     pass
                 case _:
                     self.findings.lost(self.at(statement), f"`{key} : {said}` can't be said of an output")
-        weighted = spec.get("defuzzifier") in WEIGHTED
+        weighted = spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         said = spec.pop("aggregation", "" if weighted else self.accu.get("", ""))
         spec.update(operators({"aggregation": said or None}, {"aggregation": "maximum"}))
 
@@ -225,7 +225,7 @@ class _Reader:
         """A value for outputs; for a set it has no width."""
         if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(variable):
             spec["defuzzifier"] = "weighted-average"
-        if spec.get("defuzzifier") in WEIGHTED:
+        if spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS:
             self.draft.term(variable, spec, name, "constant", [x], self.at(statement))
         else:
             self.draft.term(variable, spec, name, "rectangle", [x, x], self.at(statement))
@@ -251,5 +251,5 @@ def _reach(kind: str, parameters: list[float]) -> list[float]:
         case "gaussian", [mean, sigma, *_]:
             return [mean - 3 * abs(sigma), mean + 3 * abs(sigma)]
         case (("triangle" | "trapezoid" | "rectangle" | "ramp" | "s-shape" | "z-shape" | "pi-shape"), _):
-            return parameters[: len(TERMS[kind])]
+            return parameters[: len(TERM_PARAMETERS[kind])]
     return []

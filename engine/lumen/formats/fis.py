@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
 from lumen.formats.fll.fuzzylite_names import written
-from lumen.language.controllers import WEIGHTED
+from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.rule_parser import RuleWord
 
@@ -106,7 +106,7 @@ class _Reader:
             if section.kind in self.order:
                 self.variable(section, said)
         rules = [self.rule(line) for section in sections if section.kind == "rules" for line in section.lines]
-        weighted = said.get("defuzzifier") in WEIGHTED
+        weighted = said.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         usual = {**_USUAL, "aggregation": "unbounded-sum" if weighted else "maximum"}
         block = {"name": "", "operators": operators(said, usual), "rules": [rule for rule in rules if rule]}
         self.draft.blocks.append(block)
@@ -122,7 +122,7 @@ class _Reader:
                     said[word] = table[value]
                 else:
                     self.findings.lost(line.place, f"there is no {word} `{value}` here: the usual one is used")
-        if said.get("defuzzifier") in WEIGHTED:
+        if said.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS:
             said.pop("implication", None)  # a value is not cut
             said["aggregation"] = "unbounded-sum"  # every rule counts with its own weight, whatever the file says
         return said

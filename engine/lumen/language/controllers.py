@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from lumen.language.diagnostics import NodePath
 
-TERMS: Mapping[str, tuple[str, ...]] = {
+TERM_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "triangle": ("left", "top", "right"),
     "trapezoid": ("bottom left", "top left", "top right", "bottom right"),
     "gaussian": ("mean", "sigma"),
@@ -32,7 +32,7 @@ TERMS: Mapping[str, tuple[str, ...]] = {
 }
 """The kinds of term, and what their parameters are called, in order; `discrete` and `linear` take any number."""
 
-VALUES = ("constant", "linear")
+VALUE_TERMS = ("constant", "linear")
 """The kinds of term that are a single value, for weighted defuzzifiers; `function` may be that as well as a set."""
 
 HEDGES = ("any", "not", "extremely", "seldom", "somewhat", "very")
@@ -56,9 +56,9 @@ ACTIVATIONS: Mapping[str, tuple[str, ...]] = {
 
 COMPARISONS = ("<", "<=", "==", "!=", ">=", ">")
 
-INTEGRAL = ("centroid", "bisector", "smallest-of-maximum", "mean-of-maximum", "largest-of-maximum")
-WEIGHTED = ("weighted-average", "weighted-sum")
-DEFUZZIFIERS = INTEGRAL + WEIGHTED
+INTEGRAL_DEFUZZIFIERS = ("centroid", "bisector", "smallest-of-maximum", "mean-of-maximum", "largest-of-maximum")
+WEIGHTED_DEFUZZIFIERS = ("weighted-average", "weighted-sum")
+DEFUZZIFIERS = INTEGRAL_DEFUZZIFIERS + WEIGHTED_DEFUZZIFIERS
 """Integral ones work on the sampled set (Mamdani), weighted ones on the terms (Takagi-Sugeno, Tsukamoto)."""
 
 

@@ -17,7 +17,7 @@ from lumen.loading.transitions import TransitionReader
 
 M = TypeVar("M", bound=MachineDefinition)
 
-CONTEXT = "context"
+CONTEXT_PREFIX = "context"
 """How `renamed` calls keys of the context: `context.name: context.visitor`."""
 
 
@@ -151,14 +151,14 @@ class _Builder:
     def known(self, name: str) -> str:
         """The path of a state by its path or id, or `context.KEY` of a key; empty where there is neither."""
         entry = self.outline.entries.get(name) or self.outline.aliases.get(name)
-        key = name.removeprefix(f"{CONTEXT}.")
+        key = name.removeprefix(f"{CONTEXT_PREFIX}.")
         return entry.path if entry else name if key != name and key in (self.data.get("context") or {}) else ""
 
     def unknown(self, name: str, where: NodePath) -> None:
         """Report a name under `renamed` that nothing has."""
         head, _, key = name.partition(".")
-        if head == CONTEXT:
-            known = [f"{CONTEXT}.{other}" for other in self.data.get("context") or {}]
+        if head == CONTEXT_PREFIX:
+            known = [f"{CONTEXT_PREFIX}.{other}" for other in self.data.get("context") or {}]
             self.report("unknown-context-key", where, f"`context` has no `{key}`", hint=did_you_mean(name, known))
         else:
             hint = did_you_mean(name, filter(None, self.outline.entries))

@@ -11,10 +11,10 @@ from lumen.language.robots import Body, Camera, CoupledLimit, Joint, LinkInertia
 from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, LENGTHS
 
-POSTURES = ("Stand", "Crouch")
+COMMON_POSTURES = ("Stand", "Crouch")
 """Those that every robot knows: where it begins, and where it may go limp."""
 
-SLACK = 2e-3
+POSTURE_TOLERANCE = 2e-3
 """How far a posture may lie outside a limit [rad]: published postures are rounded."""
 
 
@@ -154,10 +154,12 @@ class _Builder:
     def postures(self) -> dict[str, dict[str, float]]:
         """The postures, those of `POSTURES` among them."""
         found = {name: self.posture(name, angles) for name, angles in (self.data.get("postures") or {}).items()}
-        for name in POSTURES:
+        for name in COMMON_POSTURES:
             if "postures" in self.data and name not in found and name not in self.report.lost:
                 message = f"the robot has no posture `{name}`"
-                hint = f"every robot has {' and '.join(f'`{n}`' for n in POSTURES)}: give the angle of each joint"
+                hint = (
+                    f"every robot has {' and '.join(f'`{n}`' for n in COMMON_POSTURES)}: give the angle of each joint"
+                )
                 self.report("missing-key", ("postures",), message, hint=hint, key=True)
         return found
 
@@ -176,7 +178,7 @@ class _Builder:
         """The angle [rad] inside the joint's limits; reported where the file's lies outside."""
         joint, unit = self.joints[name], self.unit(name)
         angle = value * unit
-        if not (isfinite(angle) and joint.minimum - SLACK <= angle <= joint.maximum + SLACK):
+        if not (isfinite(angle) and joint.minimum - POSTURE_TOLERANCE <= angle <= joint.maximum + POSTURE_TOLERANCE):
             message = f"`{name}` can't stand at {value}"
             hint = f"it moves between {joint.minimum / unit:.6g} and {joint.maximum / unit:.6g}"
             self.report("angle-out-of-range", path, message, hint=hint, root=f"the range of `{name}` in models/")

@@ -8,7 +8,7 @@ from typing import Any
 from lumen.language.diagnostics import NodePath, did_you_mean, nearest
 from lumen.loading.schema_messages import Error, describe, node, wording
 
-MOST_KEYS = 50
+MAX_UNKNOWN_KEYS = 50
 """Unknown keys of a node for which it is looked what was meant; if there are more, it is something else."""
 
 
@@ -80,10 +80,10 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
     patterns = error.schema.get("patternProperties", ())
     free = [k for k in known if k not in error.instance] or known
     unknown = [k for k in error.instance if not (k in known or any(re.search(pattern, k) for pattern in patterns))]
-    for key in unknown[MOST_KEYS:]:
+    for key in unknown[MAX_UNKNOWN_KEYS:]:
         here, message = (*path, key), f"`{key}` is not a key of {node(path)}"
         yield Complaint("unknown-key", here, message, "", path, here, True)
-    for key in unknown[:MOST_KEYS]:
+    for key in unknown[:MAX_UNKNOWN_KEYS]:
         meant = also if (also := _ALSO.get(key, "")) in free else nearest(key, free)
         hint = f"did you mean `{meant}`?" if meant else did_you_mean(key, free, "allowed here:")
         if key == "<<":

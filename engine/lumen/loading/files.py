@@ -8,10 +8,10 @@ from pathlib import Path
 
 from lumen.loading.packaged import MAIN_FILE
 
-FOLDERS = ("behaviors", "fuzzy", "motions", "schemas", "models")
+PROJECT_FOLDERS = ("behaviors", "fuzzy", "motions", "schemas", "models")
 """What belongs to a project beside lumen.yaml."""
 
-MAX_BYTES = 4_000_000
+MAX_FILE_BYTES = 4_000_000
 """Of one file; a behaviour of ten thousand states is smaller."""
 
 _READ: Mapping[str, tuple[str, ...]] = {
@@ -77,8 +77,8 @@ def _read(path: Path) -> bytes | None:
             return Unreadable(b"it is a folder")
         if not stat.S_ISREG(status.st_mode):
             return Unreadable(b"it is not a regular file")
-        if status.st_size > MAX_BYTES:
-            return Unreadable(f"it is larger than {MAX_BYTES // 1_000_000} MB".encode())
+        if status.st_size > MAX_FILE_BYTES:
+            return Unreadable(f"it is larger than {MAX_FILE_BYTES // 1_000_000} MB".encode())
         return path.read_bytes()
     except FileNotFoundError:
         return Unreadable(b"the file it links to is not there") if path.is_symlink() else None

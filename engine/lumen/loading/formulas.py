@@ -15,7 +15,7 @@ from lumen.interpreters.expressions.tree import (
     Unary,
     walk,
 )
-from lumen.interpreters.inference.formulas import FUNCTIONS
+from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.loading.source import DocumentReport
 from lumen.loading.word_places import report_word
@@ -43,11 +43,11 @@ def _sound(node: ExpressionNode, text: str, names: Sequence[str], report: Docume
         case Identifier(name) if name not in (*names, "x", "pi"):
             hint = did_you_mean(name, ("x", "pi", *names), "here can stand")
             return refuse("unknown-name", node.offset, len(name), f"there is no `{name}` in this formula", hint)
-        case FunctionCall(name) if name not in FUNCTIONS:
-            hint = did_you_mean(name, FUNCTIONS, "the functions are")
+        case FunctionCall(name) if name not in FORMULA_FUNCTIONS:
+            hint = did_you_mean(name, FORMULA_FUNCTIONS, "the functions are")
             return refuse("unknown-function", node.named, len(name), f"a formula has no function `{name}`", hint)
-        case FunctionCall(name, arguments) if len(arguments) != FUNCTIONS[name]:
-            wanted = FUNCTIONS[name]
+        case FunctionCall(name, arguments) if len(arguments) != FORMULA_FUNCTIONS[name]:
+            wanted = FORMULA_FUNCTIONS[name]
             message = f"`{name}` has {len(arguments)} argument{'s' * (len(arguments) != 1)}, it takes {wanted}"
             hint = f"write {name}({', '.join('ab'[:wanted])})"
             return refuse("wrong-argument-count", node.named, len(name), message, hint)

@@ -11,7 +11,7 @@ from lumen.loading.poses import PoseReader
 from lumen.loading.source import DocumentReport
 from lumen.loading.units import seconds
 
-MAX_KEYS = 200_000
+MAX_MOTION_KEYS = 200_000
 """Of all joints together, unrolled; an hour of dancing with every joint on every beat has as many."""
 
 _CUES = ("say", "sound", "leds", "hold")
@@ -51,7 +51,7 @@ class KeyframeReader:
                 self._too_early(item, here, begin, now)
                 continue
             count += _size(part)
-            if count > MAX_KEYS:
+            if count > MAX_MOTION_KEYS:
                 self._too_many(here)
                 break
             parts.append((begin, part))
@@ -122,7 +122,7 @@ class KeyframeReader:
             hint = "its last keyframe says how long a round takes: give it a time above 0"
             self.report("zero-duration", here, "a block that is repeated needs a length", hint=hint)
             return part
-        if _size(part) * times > MAX_KEYS:
+        if _size(part) * times > MAX_MOTION_KEYS:
             self._too_many(here)
             return part
         other = mirrored(part) if mirror else part
@@ -167,7 +167,7 @@ class KeyframeReader:
 
     def _too_many(self, here: NodePath) -> None:
         hint = "use fewer keyframes, joints or rounds"
-        self.report("too-many-keys", here, f"the motion would have more than {MAX_KEYS:,} keys", hint=hint)
+        self.report("too-many-keys", here, f"the motion would have more than {MAX_MOTION_KEYS:,} keys", hint=hint)
 
 
 def _size(part: MotionDefinition) -> int:

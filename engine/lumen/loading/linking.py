@@ -12,7 +12,7 @@ from lumen.loading.source import DocumentReport
 
 M = TypeVar("M", bound=MachineDefinition)
 
-DEPTH = 16
+MAX_INVOKE_DEPTH = 16
 """How many levels of behaviours may run within one another."""
 
 
@@ -62,10 +62,16 @@ class _Linker(Generic[M]):
             hint = did_you_mean(wanted, self.names, "behaviors/ has")
             report("unknown-behavior", where, f"there is no behaviour `{wanted}`", hint=hint)
         elif wanted in self.machines:
-            if len(self.way) < DEPTH and (machine := self.machine(wanted)) and self.levels[wanted] < DEPTH:
+            if (
+                len(self.way) < MAX_INVOKE_DEPTH
+                and (machine := self.machine(wanted))
+                and self.levels[wanted] < MAX_INVOKE_DEPTH
+            ):
                 return machine
             hint = "put the states of some into one file"
-            report("too-large", where, f"more than {DEPTH} behaviours would run within one another", hint=hint)
+            report(
+                "too-large", where, f"more than {MAX_INVOKE_DEPTH} behaviours would run within one another", hint=hint
+            )
         return None
 
     def check_input(self, name: str, invoke: Invoke, machine: MachineDefinition) -> None:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 T = TypeVar("T")
 
-MAX_SLOTS = 10_000
+MAX_MEMOIZED = 10_000
 
 _last: dict[Hashable, tuple[Any, Any]] = {}
 
@@ -22,7 +22,7 @@ def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
     if known is not None and known[0] == given:
         return known[1]  # type: ignore[no-any-return]
     made = make()
-    if len(_last) >= MAX_SLOTS:
+    if len(_last) >= MAX_MEMOIZED:
         _last.clear()
     _last[slot] = given, made
     return made

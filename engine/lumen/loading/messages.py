@@ -8,9 +8,9 @@ from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place
 from lumen.loading.schema import schema_faults
-from lumen.loading.source import MAX_DEPTH, Document, DocumentReport, merge_conflict, parse
+from lumen.loading.source import MAX_NODE_DEPTH, Document, DocumentReport, merge_conflict, parse
 
-ENDING = ".schema.json"
+SCHEMA_SUFFIX = ".schema.json"
 
 _IN_PLACE = ("allOf", "anyOf", "oneOf", "not", "if", "then", "else", "$ref")
 """Keywords whose schemas look at the same value as the one they stand in."""
@@ -43,7 +43,7 @@ def _plainly_sound(data: Any, content: bytes) -> bool:
     """Whether nothing is to be said of a schema, so that nobody needs its places: they take most of the time."""
     try:
         json.loads(content, object_pairs_hook=_each_once)
-        if not isinstance(data, dict) or _depth(data) > MAX_DEPTH:
+        if not isinstance(data, dict) or _depth(data) > MAX_NODE_DEPTH:
             return False
     except (KeyError, RecursionError):
         return False

@@ -16,7 +16,7 @@ from lumen.loading.poses import PoseReader
 from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, seconds
 
-STANDING = "Stand"
+DEFAULT_POSTURE = "Stand"
 """The posture that a motion begins in where its file does not say."""
 
 MAX_KEYFRAMES = 20_000
@@ -101,7 +101,7 @@ def _finished(part: MotionDefinition, data: Mapping[str, Any], poses: PoseReader
     if "speed" in data and poses.number(data["speed"], ("speed",)):
         part = at_speed(part, data["speed"])
     part = mirrored(part) if data.get("mirror") else part
-    start = data.get("start", STANDING if STANDING in poses.body.postures else None)
+    start = data.get("start", DEFAULT_POSTURE if DEFAULT_POSTURE in poses.body.postures else None)
     end = data.get("end", start)
     origin = (poses.posture(start, ("start",)) if start else None) or {}
     home = origin if end == start else (poses.posture(end, ("end",)) if end else None) or {}

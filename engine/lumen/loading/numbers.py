@@ -8,7 +8,7 @@ from lumen.language.diagnostics import NodePath
 from lumen.loading.pruning import prune
 from lumen.loading.source import DocumentReport
 
-LEAST, GREATEST = 1e-12, 1e12
+LEAST_NUMBER, GREATEST_NUMBER = 1e-12, 1e12
 """A number of a controller is 0, or its size lies between these: their squares and quotients are floats as well."""
 
 
@@ -44,9 +44,9 @@ def _usable(number: float, report: DocumentReport, path: NodePath, endless: Call
         if endless(path):
             return True
         report("not-finite", path, "this number is infinite, and has to have an end", hint="write a number")
-    elif number and not LEAST <= abs(number) <= GREATEST:
+    elif number and not LEAST_NUMBER <= abs(number) <= GREATEST_NUMBER:
         size = "large" if abs(number) > 1 else "small"
-        hint = f"write 0, or a number between {LEAST:g} and {GREATEST:g}"
+        hint = f"write 0, or a number between {LEAST_NUMBER:g} and {GREATEST_NUMBER:g}"
         report("extreme-number", path, f"this number is too {size} to count with", hint=hint)
     else:
         return True

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place
-from lumen.loading.source import MAX_DEPTH, MAX_NODES, Document, NodeSpan
+from lumen.loading.source import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
 
 
 def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnostic]]:
@@ -28,7 +28,7 @@ class _Reader:
     def read(self, value: Any, path: NodePath) -> Any:
         place = self.place(path)
         self.spans[path] = NodeSpan(place, place)
-        if len(path) > MAX_DEPTH or len(self.spans) > MAX_NODES:
+        if len(path) > MAX_NODE_DEPTH or len(self.spans) > MAX_NODES:
             self.overflow(path)
             return None
         match value:
@@ -45,7 +45,11 @@ class _Reader:
     def overflow(self, path: NodePath) -> None:
         if not self.full:
             self.full = True
-            what = f"deeper than {MAX_DEPTH} levels" if len(path) > MAX_DEPTH else f"more than {MAX_NODES:,} values"
+            what = (
+                f"deeper than {MAX_NODE_DEPTH} levels"
+                if len(path) > MAX_NODE_DEPTH
+                else f"more than {MAX_NODES:,} values"
+            )
             self.say(
                 "too-large", path, f"this is too large to be read: {what}", "use fewer levels, and no dict in itself"
             )

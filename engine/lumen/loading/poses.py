@@ -16,7 +16,7 @@ PlacedAngles = dict[str, tuple[float, NodePath]]
 
 Handles = dict[str, tuple[tuple[float, float], tuple[float, float]]]
 
-TOLERANCE = 1e-6
+DRIVE_TOLERANCE = 1e-6
 _SIDES = {"left": "L", "right": "R"}
 
 
@@ -128,7 +128,7 @@ class PoseReader:
 
     def _fits(self, name: str, angle: float) -> bool:
         joint = self.body.joints[name]
-        return joint.minimum - TOLERANCE <= angle <= joint.maximum + TOLERANCE
+        return joint.minimum - DRIVE_TOLERANCE <= angle <= joint.maximum + DRIVE_TOLERANCE
 
     def _hands(self, hands: Mapping[str, float], path: NodePath) -> PlacedAngles:
         found: PlacedAngles = {}
@@ -149,7 +149,7 @@ class PoseReader:
     def _shared(self, angles: PlacedAngles, own: PlacedAngles) -> PlacedAngles:
         """Joints on one drive move together: what is said of one holds for both."""
         for follower, leader in self.body.shared.items():
-            if follower in own and leader in own and abs(own[follower][0] - own[leader][0]) > TOLERANCE:
+            if follower in own and leader in own and abs(own[follower][0] - own[leader][0]) > DRIVE_TOLERANCE:
                 message = f"`{leader}` and `{follower}` share one motor and can't stand at different angles"
                 self.report("shared-drive", own[follower][1], message, hint=f"give only `{leader}`")
             chosen = next((source[j] for source in (own, angles) for j in (leader, follower) if j in source), None)

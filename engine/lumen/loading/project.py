@@ -14,16 +14,14 @@ from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_files
+from lumen.loading.files import Unreadable, fingerprint
 from lumen.loading.linking import link
-from lumen.loading.messages import ENDING, build_message
+from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.settings import build_settings
 from lumen.loading.source import DocumentReport
 from lumen.loading.stories import build_story
-
-__all__ = ["FOLDERS", "MAIN_FILE", "assemble", "draft", "read_files"]
 
 T = TypeVar("T")
 
@@ -146,9 +144,9 @@ def _messages(found: ProjectDraft) -> None:
     names = set()
     for file, content in found.files.items():
         path = PurePosixPath(file)
-        if str(path.parent) != "schemas/messages" or not path.name.endswith(ENDING):
+        if str(path.parent) != "schemas/messages" or not path.name.endswith(SCHEMA_SUFFIX):
             continue
-        name = path.name.removesuffix(ENDING)
+        name = path.name.removesuffix(SCHEMA_SUFFIX)
         names.add(name)
         if isinstance(content, Unreadable):
             reason = content.decode("utf-8", "replace")

@@ -9,7 +9,7 @@ from lumen.loading.source import DocumentReport
 from lumen.loading.units import seconds
 
 DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
-LATENCY = 0.15
+DEFAULT_LATENCY = 0.15
 """How old a body without a `time` is taken to be [s], where its route does not say."""
 
 _USUAL = {COMMAND: Carried.COMMAND, STOP: Carried.STOP}
@@ -37,7 +37,7 @@ def build_route(name: str, data: Mapping[str, Any], report: DocumentReport, wher
         keep=int(data["keep"]) if "keep" in data else None,
         carried=carried,
         must_arrive=data.get("must_arrive", carried is not Carried.TELEMETRY),
-        latency=LATENCY if latency is None else latency,
+        latency=DEFAULT_LATENCY if latency is None else latency,
         where=where,
     )
 

@@ -13,7 +13,7 @@ from lumen.language.controllers import HEDGES, Antecedent, Conjunction, Disjunct
 from lumen.language.diagnostics import did_you_mean
 
 KEYWORDS = frozenset(("if", "then", "is", "and", "or", "with", *HEDGES))
-MAX_DEPTH = 50
+MAX_RULE_DEPTH = 50
 
 _TOKEN = re.compile(r"[(),]|[^\s(),]+")
 
@@ -121,7 +121,7 @@ class _Parser:
 
     def operand(self) -> Antecedent:
         self.depth += 1
-        if self.depth > MAX_DEPTH:
+        if self.depth > MAX_RULE_DEPTH:
             raise RuleSyntaxError("the rule is nested too deeply", self.word, "use fewer brackets")
         inner = self.negation() if self.accept("not") else self.bracket() if self.accept("(") else self.proposition()
         self.depth -= 1

@@ -17,10 +17,10 @@ from lumen.loading.source import Document, DocumentReport
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator
 
-KINDS = ("lumen", "behavior", "story", "controller", "motion", "body", "message")
+FILE_KINDS = ("lumen", "behavior", "story", "controller", "motion", "body", "message")
 """The kinds of file; each has a `schemas/KIND.schema.json`."""
 
-ROUNDS = 20
+MAX_PRUNING_ROUNDS = 20
 
 _ASTRAY = ("unknown-key", "one-verb")
 """What is said of keys that belong below the one above them."""
@@ -35,7 +35,7 @@ def check_schema(document: Document, kind: str, report: DocumentReport) -> Any:
     names stand in what was taken out.
     """
     said: set[NodePath] = set()
-    for _ in range(ROUNDS):
+    for _ in range(MAX_PRUNING_ROUNDS):
         try:
             if _quick(kind)(report.document.data):
                 return report.document.data

@@ -11,7 +11,7 @@ from lumen.loading.units import seconds
 Error = Any
 """A `jsonschema.ValidationError`; its stubs allow for an unset state that a validator never yields."""
 
-TYPES: Mapping[str, str] = {
+TYPE_NAMES: Mapping[str, str] = {
     "object": "a map of keys and values",
     "array": "a list",
     "string": "a text",
@@ -42,11 +42,11 @@ def kind(value: Any) -> str:
         case None:
             return "empty"
         case dict():
-            return TYPES["object"]
+            return TYPE_NAMES["object"]
         case list():
-            return TYPES["array"]
+            return TYPE_NAMES["array"]
         case str():
-            return TYPES["string"]
+            return TYPE_NAMES["string"]
     return f"the number {value:g}" if isinstance(value, float) else "a number"
 
 
@@ -136,7 +136,7 @@ def _unit(unit: str) -> str:
 
 
 def _either(types: list[str]) -> str:
-    words = [TYPES[t] for t in types if t != "null"] or [TYPES["null"]]
+    words = [TYPE_NAMES[t] for t in types if t != "null"] or [TYPE_NAMES["null"]]
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + f" or {words[-1]}"
 
 

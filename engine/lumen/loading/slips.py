@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-BACK = 3
+MAX_LINES_BACK = 3
 """Lines before the one that failed in which the slip may be: YAML notices late."""
 
 _KEY = r"[A-Za-z_][\w.]*"
@@ -65,7 +65,7 @@ _SLIPS = (
 
 def slip_near(lines: Sequence[str], index: int) -> Slip | None:
     """The slip that is nearest before the line of that index, or in it; None where there is none that is known."""
-    for i in range(min(index, len(lines) - 1), max(index - BACK, 0) - 1, -1):
+    for i in range(min(index, len(lines) - 1), max(index - MAX_LINES_BACK, 0) - 1, -1):
         for pattern, message, hint in _SLIPS:
             if found := pattern.search(lines[i]):
                 start, end = found.span("slip")

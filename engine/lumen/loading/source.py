@@ -19,7 +19,7 @@ from lumen.loading.memoization import memoize
 
 T = TypeVar("T")
 
-MAX_DEPTH = 100
+MAX_NODE_DEPTH = 100
 MAX_NODES = 200_000
 
 _NULL = frozenset(("", "~", "null", "Null", "NULL"))
@@ -222,7 +222,7 @@ class _Reader:
 
     def read(self, node: yaml.Node, path: NodePath, key: yaml.Node | None, depth: int) -> Any:
         self.spans[path] = NodeSpan(self.place(key) if key else None, self.place(node))
-        if depth > MAX_DEPTH or len(self.spans) > MAX_NODES:
+        if depth > MAX_NODE_DEPTH or len(self.spans) > MAX_NODES:
             self.overflow(node, depth)
             return None
         if node.tag not in _PLAIN:
@@ -279,7 +279,11 @@ class _Reader:
     def overflow(self, node: yaml.Node, depth: int) -> None:
         if not self.full:
             self.full = True
-            what = f"nested deeper than {MAX_DEPTH} levels" if depth > MAX_DEPTH else f"more than {MAX_NODES:,} values"
+            what = (
+                f"nested deeper than {MAX_NODE_DEPTH} levels"
+                if depth > MAX_NODE_DEPTH
+                else f"more than {MAX_NODES:,} values"
+            )
             self.say("too-large", node, f"the file is too large to be read: {what}", "split it, or use fewer aliases")
 
     def say(self, code: str, node: yaml.Node, message: str, hint: str) -> None:

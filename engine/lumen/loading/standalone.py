@@ -8,8 +8,8 @@ from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.loading.behaviors import build_machine
+from lumen.loading.context import check_memory
 from lumen.loading.linking import link
-from lumen.loading.memory import check_memory
 from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
 from lumen.loading.source import Document, DocumentReport, parse

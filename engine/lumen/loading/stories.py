@@ -23,7 +23,7 @@ from lumen.loading.routes import duration
 from lumen.loading.source import DocumentReport
 from lumen.loading.units import seconds
 
-WITHIN = 30.0
+DEFAULT_WITHIN = 30.0
 """How long an expectation waits where it does not say [s]."""
 
 S = TypeVar("S", bound=Story)
@@ -101,5 +101,5 @@ def _expect(body: Mapping[str, Any], report: DocumentReport, where: NodePath) ->
         published=message["route"],
         body=message.get("body"),
         context=body.get("context", {}),
-        within=WITHIN if within is None else within,
+        within=DEFAULT_WITHIN if within is None else within,
     )

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from math import inf, isfinite
 from typing import Any
 
-from lumen.language.controllers import TERMS, Term
+from lumen.language.controllers import TERM_PARAMETERS, Term
 from lumen.language.diagnostics import NodePath
 from lumen.loading.formulas import check_formula
 from lumen.loading.rule_parser import KEYWORDS
@@ -50,7 +50,7 @@ class _Term:
     ) -> None:
         self.name, self.shape, self.report, self.path = name, shape, report, path
         self.inputs, self.names = inputs, names
-        self.kinds = [kind for kind in shape if kind in TERMS]
+        self.kinds = [kind for kind in shape if kind in TERM_PARAMETERS]
 
     def build(self) -> Term | None:
         plain_name(self.name, self.report, self.path)
@@ -79,7 +79,7 @@ class _Term:
             self.report("no-shape", self.path, f"`{self.name}` has no shape", hint=hint, key=True)
 
     def counted(self, kind: str, parameters: tuple[float, ...]) -> bool:
-        names, count = TERMS[kind], len(parameters)
+        names, count = TERM_PARAMETERS[kind], len(parameters)
         if kind == "discrete":
             right, wanted = count >= 2, "at least one point [x, membership]"
         elif kind == "linear":
@@ -131,7 +131,11 @@ class _Term:
 
     def what(self, kind: str, i: int) -> str:
         return (
-            f"point {i + 1}" if kind == "discrete" else f"the {TERMS[kind][i]}" if i < len(TERMS[kind]) else "a number"
+            f"point {i + 1}"
+            if kind == "discrete"
+            else f"the {TERM_PARAMETERS[kind][i]}"
+            if i < len(TERM_PARAMETERS[kind])
+            else "a number"
         )
 
     def at(self, kind: str, i: int) -> NodePath:

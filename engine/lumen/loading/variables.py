@@ -5,8 +5,8 @@ from dataclasses import replace
 from math import isfinite
 from typing import Any
 
-from lumen.interpreters.inference.weighted import INVERSES
-from lumen.language.controllers import VALUES, WEIGHTED, Variable
+from lumen.interpreters.inference.weighted import INVERSE_MEMBERSHIPS
+from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, Variable
 from lumen.language.diagnostics import NodePath
 from lumen.loading.source import DocumentReport
 from lumen.loading.terms import build_terms, plain_name
@@ -63,7 +63,10 @@ class _Variables:
     def named_in(self, name: str) -> tuple[str, ...]:
         """The variables that a formula of this one's terms may ask for: with weights, what is known before it."""
         spec = self.data[self.side][name]
-        if self.side == "inputs" or {**self.operators, **spec}.get("defuzzifier", "centroid") not in WEIGHTED:
+        if (
+            self.side == "inputs"
+            or {**self.operators, **spec}.get("defuzzifier", "centroid") not in WEIGHTED_DEFUZZIFIERS
+        ):
             return ()
         outputs = list(self.data["outputs"])
         return (*self.data["inputs"], *outputs[: outputs.index(name)])
@@ -85,7 +88,7 @@ class _Variables:
         """The output with its own or the file's way to a number; weights add up where nothing else is said."""
         said = {**self.operators, **spec}
         method = said.get("defuzzifier", "centroid")
-        usual = "unbounded-sum" if method in WEIGHTED else "maximum"
+        usual = "unbounded-sum" if method in WEIGHTED_DEFUZZIFIERS else "maximum"
         return replace(
             variable,
             defuzzifier=method,
@@ -97,14 +100,16 @@ class _Variables:
     def fits(self, variable: Variable) -> None:
         """Report terms that the variable can't use: a value where a set is asked for, or the other way round."""
         output = self.side == "outputs"
-        weighted = output and variable.defuzzifier in WEIGHTED
+        weighted = output and variable.defuzzifier in WEIGHTED_DEFUZZIFIERS
         for term in variable.terms.values():
             path = (*term.where, term.kind)
-            if weighted and term.kind not in (*VALUES, "function", *INVERSES):
+            if weighted and term.kind not in (*VALUE_TERMS, "function", *INVERSE_MEMBERSHIPS):
                 message = f"`{variable.defuzzifier}` can't use `{term.kind}`, which has no single value"
-                hint = f"use one of `constant`, `linear`, `function`, {', '.join(f'`{k}`' for k in INVERSES)}"
+                hint = (
+                    f"use one of `constant`, `linear`, `function`, {', '.join(f'`{k}`' for k in INVERSE_MEMBERSHIPS)}"
+                )
                 self.report("term-without-value", path, message, hint=hint, key=True)
-            elif not weighted and term.kind in VALUES:
+            elif not weighted and term.kind in VALUE_TERMS:
                 what = f"`{variable.defuzzifier}` needs sets" if output else "an input needs sets"
                 hint = "use `defuzzifier: weighted-average`" if output else "use a shape, as `triangle`"
                 message = f"{what}, and `{term.kind}` is a single value"

@@ -8,12 +8,12 @@ from lumen.interpreters.expressions.functions import FUNCTIONS
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ROBOT_EVENTS
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.cursor import MARK, Cursor, cursor
+from lumen.lsp.cursor import CURSOR_MARK, Cursor, cursor
 from lumen.lsp.grammar import key_kind, kind_of, value_kind
 from lumen.lsp.index import NameIndex, stem
 from lumen.lsp.names import NameKind
 from lumen.lsp.schemas import keys_at, values_at
-from lumen.rules.events import FAMILIES, hears
+from lumen.rules.events import BUILT_IN_FAMILIES, hears
 
 _CALL = re.compile(r"\b(heard|lookup|In)\([^()]*?(?:\([^()]*\)[^()]*?)*['\"](\w*)$")
 _NAMED = {"heard": NameKind.PHRASE, "lookup": NameKind.ANSWERS, "In": NameKind.STATE}
@@ -81,7 +81,7 @@ class _Completion:
     def names(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[Item]:
         wide, end = len(self.here.word), ": " if key else ""
         for name, detail in self.candidates(kind, path, key=key):
-            if MARK not in name:
+            if CURSOR_MARK not in name:
                 written = f'"{name}"' if name.startswith("#") and not self.quoted() else name
                 yield Item(written + end, detail or str(kind), wide)
 
@@ -130,7 +130,7 @@ class _Completion:
         yield from ((name, "") for name in names)
         if waits:
             yield from ((name, "the robot's") for name in ROBOT_EVENTS if name not in names)
-            yield from ((f.removesuffix(".") + ".*", "the engine's") for f in FAMILIES)
+            yield from ((f.removesuffix(".") + ".*", "the engine's") for f in BUILT_IN_FAMILIES)
 
     def field(self, before: str) -> Iterator[Item]:
         route, dot, part = before.partition(".")

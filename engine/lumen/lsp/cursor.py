@@ -6,7 +6,7 @@ from typing import NamedTuple
 from lumen.language.diagnostics import NodePath
 from lumen.loading.source import Document, parse
 
-MARK = "Here0Stands1The2Cursor"
+CURSOR_MARK = "Here0Stands1The2Cursor"
 _BEFORE = re.compile(r"[^\s,\[\]{}:'\"()]*$")
 _PAIRS = {"[": "]", "{": "}"}
 
@@ -40,7 +40,7 @@ def cursor(file: str, text: str, line: int, column: int) -> Cursor | None:
         if document and (node := _marked(document)):
             path, key, value = node
             quote = head[: len(head) - len(word)][-1:]
-            return Cursor(path, key, value.partition(MARK)[0], word, quote if quote in "'\"" else "", document)
+            return Cursor(path, key, value.partition(CURSOR_MARK)[0], word, quote if quote in "'\"" else "", document)
     return None
 
 
@@ -48,12 +48,12 @@ def _attempts(head: str, tail: str) -> list[str]:
     """Lines that could be whole, the likeliest first."""
     rest = head.rstrip("\r")
     closed = _closed(rest)
-    whole = [f"{head}{MARK}{tail}"]
+    whole = [f"{head}{CURSOR_MARK}{tail}"]
     if not tail.strip():
         fresh = not rest.strip(" -") or re.fullmatch(r"[\s-]*[\w.*]*", rest)
-        tries = [f"{head}{MARK}{closed}", f"{head}{MARK}: {closed}"]
+        tries = [f"{head}{CURSOR_MARK}{closed}", f"{head}{CURSOR_MARK}: {closed}"]
         return tries[::-1] + whole if fresh else [*tries, *whole]
-    return [*whole, f"{head}{MARK}{closed}", f"{head}{MARK}: {closed}", f"{head}{MARK}: x, {tail}"]
+    return [*whole, f"{head}{CURSOR_MARK}{closed}", f"{head}{CURSOR_MARK}: {closed}", f"{head}{CURSOR_MARK}: x, {tail}"]
 
 
 def _closed(head: str) -> str:
@@ -74,11 +74,11 @@ def _closed(head: str) -> str:
 def _marked(document: Document) -> tuple[NodePath, bool, str] | None:
     """The path of the key or of the text that holds the mark."""
     for path in document.spans:
-        if path and isinstance(path[-1], str) and MARK in path[-1]:
+        if path and isinstance(path[-1], str) and CURSOR_MARK in path[-1]:
             return path, True, path[-1]
         value = document.data
         for step in path:
             value = value[step]
-        if isinstance(value, str) and MARK in value:
+        if isinstance(value, str) and CURSOR_MARK in value:
             return path, False, value
     return None

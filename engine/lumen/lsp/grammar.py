@@ -8,7 +8,7 @@ from lumen.language.verbs import VERBS
 from lumen.loading.packaged import MAIN_FILE
 from lumen.lsp.names import NameKind
 
-FILES: Mapping[str, str] = {
+FOLDER_KINDS: Mapping[str, str] = {
     "behaviors": "behavior",
     "behaviors/stories": "story",
     "fuzzy": "controller",
@@ -150,7 +150,7 @@ def kind_of(file: str) -> str:
     if file == MAIN_FILE:
         return "lumen"
     path = PurePosixPath(file)
-    return FILES.get(str(path.parent), "") if path.suffix in (".yaml", ".json") else ""
+    return FOLDER_KINDS.get(str(path.parent), "") if path.suffix in (".yaml", ".json") else ""
 
 
 def key_kind(kind: str, path: NodePath) -> NameKind | None:

@@ -6,12 +6,12 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.messages import ENDING
+from lumen.loading.messages import SCHEMA_SUFFIX
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.source import Document, DocumentReport
 from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
 from lumen.lsp.locating import DocumentText, NameInText, in_expression, in_template
-from lumen.lsp.names import FOLDERS, SCOPED, NameKind, NameUse, covers
+from lumen.lsp.names import KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers
 
 
 class NameIndex:
@@ -31,7 +31,7 @@ class NameIndex:
         for file in sorted(filter(kind_of, self.files)):
             folder = str(PurePosixPath(file).parent)
             found += [
-                NameUse(kind, "", stem(file), "", Place(file), True) for kind, f in FOLDERS.items() if f == folder
+                NameUse(kind, "", stem(file), "", Place(file), True) for kind, f in KIND_FOLDERS.items() if f == folder
             ]
         return tuple(found)
 
@@ -147,13 +147,13 @@ class _Reader:
             yield self.use(NameKind.STATE, _state_at(path), value, place)
 
     def use(self, kind: NameKind, name: str, text: str, place: Place, *, defining: bool = False) -> NameUse:
-        return NameUse(kind, self.scope if kind in SCOPED else "", name, text, place, defining)
+        return NameUse(kind, self.scope if kind in SCOPED_KINDS else "", name, text, place, defining)
 
 
 def stem(file: str) -> str:
     """What a file's thing is called."""
     name = PurePosixPath(file).name
-    return name.removesuffix(ENDING) if name.endswith(ENDING) else PurePosixPath(file).stem
+    return name.removesuffix(SCHEMA_SUFFIX) if name.endswith(SCHEMA_SUFFIX) else PurePosixPath(file).stem
 
 
 def _state_at(path: NodePath) -> str:

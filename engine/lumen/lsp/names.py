@@ -31,7 +31,7 @@ class NameKind(StrEnum):
     FIELD = "field"
 
 
-FOLDERS = {
+KIND_FOLDERS = {
     NameKind.BEHAVIOR: "behaviors",
     NameKind.STORY: "behaviors/stories",
     NameKind.MOTION: "motions",
@@ -41,7 +41,7 @@ FOLDERS = {
 }
 """The kinds that are files, and where those are."""
 
-SCOPED = frozenset((NameKind.STATE, NameKind.CONTEXT, NameKind.PHRASE, NameKind.ANSWERS, NameKind.POSE))
+SCOPED_KINDS = frozenset((NameKind.STATE, NameKind.CONTEXT, NameKind.PHRASE, NameKind.ANSWERS, NameKind.POSE))
 """The kinds whose names mean something within one file only."""
 
 

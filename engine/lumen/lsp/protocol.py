@@ -15,7 +15,7 @@ from lumen.lsp.renaming import Renaming
 from lumen.lsp.symbols import Symbol
 from lumen.rules.fixes import Edit, FileText
 
-SEVERITIES = {
+LSP_SEVERITIES = {
     Severity.ERROR: lsp.DiagnosticSeverity.Error,
     Severity.WARNING: lsp.DiagnosticSeverity.Warning,
     Severity.INFO: lsp.DiagnosticSeverity.Information,
@@ -57,7 +57,7 @@ class ProtocolEncoder:
         return lsp.Diagnostic(
             self.ranges(found.place.file).range(found.place),
             f"{found.message}: {found.hint}" if found.hint else found.message,
-            SEVERITIES[found.severity],
+            LSP_SEVERITIES[found.severity],
             code=found.code,
             source="lumen",
             related_information=related,

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from lumen.errors import UsageError
 from lumen.language.routes import MEANINGS
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.names import FOLDERS, SCOPED, NameKind, NameUse
+from lumen.lsp.names import KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse
 from lumen.rules.fixes import Edit, edited
 
 _NAMES = {
@@ -79,7 +79,7 @@ def _sound(analysis: Analysis, renaming: Renaming) -> Renaming:
 
 
 def _taken(analysis: Analysis, use: NameUse, name: str) -> bool:
-    scope = use.scope if use.kind in SCOPED else ""
+    scope = use.scope if use.kind in SCOPED_KINDS else ""
     if use.kind is NameKind.STATE:
         tree = analysis.index.outlines.get(scope)
         beside = f"{use.name.rpartition('.')[0]}.{name}".lstrip(".")
@@ -88,7 +88,7 @@ def _taken(analysis: Analysis, use: NameUse, name: str) -> bool:
 
 
 def _moved(analysis: Analysis, use: NameUse, name: str) -> tuple[str, str] | None:
-    if use.kind not in FOLDERS:
+    if use.kind not in KIND_FOLDERS:
         return None
-    old = f"{FOLDERS[use.kind]}/{use.name}.yaml"
-    return (old, f"{FOLDERS[use.kind]}/{name}.yaml") if old in analysis.files else None
+    old = f"{KIND_FOLDERS[use.kind]}/{use.name}.yaml"
+    return (old, f"{KIND_FOLDERS[use.kind]}/{name}.yaml") if old in analysis.files else None

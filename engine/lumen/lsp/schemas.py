@@ -5,7 +5,7 @@ from functools import cache
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
-from lumen.loading.schema import KINDS, load_schema
+from lumen.loading.schema import FILE_KINDS, load_schema
 
 _SAME = ("allOf", "anyOf", "oneOf")
 _BRANCHES = ("then", "else", "$ref")
@@ -13,7 +13,7 @@ _BRANCHES = ("then", "else", "$ref")
 
 @cache
 def _root(kind: str) -> Mapping[str, Any]:
-    return load_schema(kind) if kind in KINDS else {}
+    return load_schema(kind) if kind in FILE_KINDS else {}
 
 
 def schemas_at(kind: str, path: NodePath) -> list[Mapping[str, Any]]:

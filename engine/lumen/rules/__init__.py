@@ -6,8 +6,9 @@ from pathlib import Path
 from lumen.errors import ProjectError
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.projects import Project
+from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
-from lumen.loading.project import assemble, draft, read_files
+from lumen.loading.project import assemble, draft
 from lumen.rules import (
     controllers,
     effects,

@@ -8,11 +8,11 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find, first
 
-GREATEST_GAIN = 2.0
+MAX_GAIN = 2.0
 """With images and commands 100 to 200 ms on their way a loop of gain 1.5 does not overshoot, and one of 3 by 46 %."""
 
 OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "backward", "backward": "forward"}
-COUNTS = {"Yaw": "left", "Pitch": "down"}
+GROWING_ANGLE_TURNS = {"Yaw": "left", "Pitch": "down"}
 """Where a joint of that kind turns as its angle grows: NAO's, as everywhere with x ahead, y left and z up."""
 
 
@@ -65,7 +65,7 @@ def _trend(controller: ControllerDefinition, variable: Variable, output: Variabl
 
 
 def _sign(variable: Variable, binding: OutputBinding, path: NodePath, report: DocumentReport) -> None:
-    counts = next((way for kind, way in COUNTS.items() if binding.joint.endswith(kind)), "")
+    counts = next((way for kind, way in GROWING_ANGLE_TURNS.items() if binding.joint.endswith(kind)), "")
     wanted = {counts: 1, OPPOSITE.get(counts, ""): -1}.get(variable.direction, 0) if variable.direction else 0
     if wanted * binding.gain < 0:
         message = f"`{variable.name}` counts {variable.direction}, and `{binding.joint}` {counts}"
@@ -81,13 +81,13 @@ def _gain(
     report: DocumentReport,
     draft: ProjectDraft,
 ) -> None:
-    if abs(binding.gain) <= GREATEST_GAIN:
+    if abs(binding.gain) <= MAX_GAIN:
         return
     routes = draft.settings.routes if draft.settings else {}
     late = max((routes[b.route].latency for b in controller.input_bindings if b.route in routes), default=0.0)
     age = f", and what it sees is {1000 * late:.0f} ms old" if late else ""
     message = f"a gain of {binding.gain:g} overshoots: each answer turns farther than it says{age}"
-    find(report, "high-gain", path, message, f"write at most {GREATEST_GAIN:g}; 1.5 is quick and does not overshoot")
+    find(report, "high-gain", path, message, f"write at most {MAX_GAIN:g}; 1.5 is quick and does not overshoot")
 
 
 def _limits(

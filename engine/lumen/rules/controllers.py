@@ -13,7 +13,7 @@ from lumen.rules import aims, rulebooks, shapes, surfaces
 from lumen.rules.finding import find
 from lumen.rules.references import known_route
 
-SLACK = 2e-3
+LIMIT_TOLERANCE = 2e-3
 """How far a limit may lie outside the joint's own [rad]: people round."""
 
 
@@ -79,7 +79,7 @@ def _limits(
 ) -> None:
     joint = body.joints[binding.joint]
     for i, limit in enumerate((binding.minimum, binding.maximum)):
-        if limit is not None and not joint.minimum - SLACK <= limit <= joint.maximum + SLACK:
+        if limit is not None and not joint.minimum - LIMIT_TOLERANCE <= limit <= joint.maximum + LIMIT_TOLERANCE:
             low, high, given = (round(angle / controller.angle, 1) for angle in (joint.minimum, joint.maximum, limit))
             message = f"`{joint.name}` can't go to {given:g}"
             find(report, "angle-out-of-range", (*path, i), message, f"it goes from {low:g} to {high:g}")

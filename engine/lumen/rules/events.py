@@ -13,7 +13,7 @@ from lumen.rules.endings import ending_fault
 from lumen.rules.finding import find, first
 from lumen.rules.walk import action_sites
 
-FAMILIES = (
+BUILT_IN_FAMILIES = (
     "done.state.", "done.do.", "done.invoke.", "done.command.", "error.do.", "error.invoke.", "error.command.",
     "cancelled.command.", "error.execution", "error.communication",
 )  # fmt: skip
@@ -113,7 +113,7 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
             else:
                 path = _descriptor(transition.where, event)
                 lost = draft.main.lost | report.lost
-                hint = did_you_mean(event, {*known, *(f.removesuffix(".") for f in FAMILIES)} - lost)
+                hint = did_you_mean(event, {*known, *(f.removesuffix(".") for f in BUILT_IN_FAMILIES)} - lost)
                 if "mean" not in hint:
                     hint = "declare it under `events:`, or give a route of lumen.yaml this `event`"
                 cause = f"name {event}"
@@ -125,8 +125,8 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
 
 def _of_the_engine(event: str) -> bool:
     """Whether the engine could raise that: the descriptor begins the name of a family, or goes on from it."""
-    longer = tuple(family for family in FAMILIES if family.endswith("."))
-    return event.startswith(longer) or any(hears(event, family.removesuffix(".")) for family in FAMILIES)
+    longer = tuple(family for family in BUILT_IN_FAMILIES if family.endswith("."))
+    return event.startswith(longer) or any(hears(event, family.removesuffix(".")) for family in BUILT_IN_FAMILIES)
 
 
 def _descriptor(where: NodePath, event: str) -> NodePath:

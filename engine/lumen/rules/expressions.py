@@ -16,7 +16,7 @@ from lumen.rules.codes import CODES
 from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.walk import ExpressionSite, expression_sites
 
-BOOLEAN: Mapping[str, Any] = {"type": "boolean"}
+BOOLEAN_SCHEMA: Mapping[str, Any] = {"type": "boolean"}
 
 
 def check(draft: ProjectDraft) -> None:
@@ -54,7 +54,7 @@ class _Expressions:
         }
         if isinstance(spot.text, Template):
             return check_template(spot.text.text, **around)
-        expected = BOOLEAN if spot.guard else spot.expected or self.context.get(spot.key)
+        expected = BOOLEAN_SCHEMA if spot.guard else spot.expected or self.context.get(spot.key)
         return check_expression(spot.text.source, **around, expected=expected)
 
     def possible(self, transition: Transition | None) -> dict[str, Any] | None:

@@ -15,7 +15,7 @@ from lumen.rules.finding import find
 from lumen.rules.logic import always, implies, never, tree
 from lumen.rules.walk import expression_sites
 
-MOST = 60
+MAX_COMPARED_CANDIDATES = 60
 """Candidates of a state that are compared with one another."""
 
 
@@ -60,7 +60,7 @@ def _simple(node: ExpressionNode) -> bool:
 def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
     """Candidates that are never taken, or not for all that they name, because an earlier one is."""
     earlier: list[Transition] = []
-    for transition in state.transitions[:MOST]:
+    for transition in state.transitions[:MAX_COMPARED_CANDIDATES]:
         if any(_takes_all(other, transition, machine, report) for other in earlier if covers(other, transition)):
             continue
         earlier.append(transition)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from lumen.interpreters.expressions import parse_expression, unparse
 from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLiteral, Literal, Logic, Unary
 
-MOST = 24
+MAX_ALTERNATIVES = 24
 """Alternatives of a condition that are looked at; of one with more, nothing is told."""
 
 _OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
@@ -46,7 +46,7 @@ def never(*conditions: ExpressionNode) -> bool:
     if any(s is None for s in spread):
         return False
     ways = [s for s in spread if s is not None]
-    if _size(ways) > MOST:
+    if _size(ways) > MAX_ALTERNATIVES:
         return False
     return not any(_possible(frozenset().union(*way)) for way in product(*ways))
 
@@ -81,8 +81,12 @@ def _alternatives(node: ExpressionNode, value: bool) -> list[Alternative] | None
             if len(ways) < len(spread):
                 return None
             if (sign == "&&") != value:
-                return [a for way in ways for a in way][: MOST + 1] if sum(map(len, ways)) <= MOST else None
-            return [frozenset().union(*way) for way in product(*ways)] if _size(ways) <= MOST else None
+                return (
+                    [a for way in ways for a in way][: MAX_ALTERNATIVES + 1]
+                    if sum(map(len, ways)) <= MAX_ALTERNATIVES
+                    else None
+                )
+            return [frozenset().union(*way) for way in product(*ways)] if _size(ways) <= MAX_ALTERNATIVES else None
         case Binary(sign="in", left=left, right=ListLiteral(items=items)) if all(isinstance(i, Literal) for i in items):
             claims = [Claim(unparse(left), "==" if value else "!=", i.value) for i in items if isinstance(i, Literal)]
             return [frozenset((c,)) for c in claims] if value else [frozenset(claims)]

@@ -16,7 +16,7 @@ from lumen.rules.codes import CODES
 _FOLDERS = {"mesh": "meshdir", "skin": "meshdir", "texture": "texturedir", "hfield": "meshdir"}
 
 
-class XmlElement(NamedTuple):
+class ModelElement(NamedTuple):
     """The beginning of an XML element, and where it stands."""
 
     name: str
@@ -37,17 +37,17 @@ def check(draft: ProjectDraft) -> None:
         _joints(draft, draft.body.mjcf, robot)
 
 
-def _read(draft: ProjectDraft, name: str) -> list[XmlElement]:
+def _read(draft: ProjectDraft, name: str) -> list[ModelElement]:
     """The elements of a model, none where it can't be read; what is wrong with it is reported."""
     file = f"models/{name}"
     content = draft.files.get(file)
     if content is None or isinstance(content, Unreadable):
         return []
-    elements: list[XmlElement] = []
+    elements: list[ModelElement] = []
     parser = expat.ParserCreate()
 
     def begin(name: str, attributes: Mapping[str, str]) -> None:
-        elements.append(XmlElement(name, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1))
+        elements.append(ModelElement(name, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1))
 
     parser.StartElementHandler = begin
     try:
@@ -69,7 +69,7 @@ def _read(draft: ProjectDraft, name: str) -> list[XmlElement]:
     return elements
 
 
-def _assets(draft: ProjectDraft, file: str, elements: list[XmlElement]) -> None:
+def _assets(draft: ProjectDraft, file: str, elements: list[ModelElement]) -> None:
     """Files that a model names; where the project lies in no folder, nobody knows whether they are there."""
     folders: dict[str, str] = {}
     for element in elements:
@@ -98,7 +98,7 @@ def _there(path: Path) -> bool:
         return False
 
 
-def _joints(draft: ProjectDraft, name: str, elements: list[XmlElement]) -> None:
+def _joints(draft: ProjectDraft, name: str, elements: list[ModelElement]) -> None:
     """Joints that the description of the body has, and its model has not."""
     assert draft.body is not None
     assert draft.settings is not None

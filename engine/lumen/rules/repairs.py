@@ -9,13 +9,13 @@ from lumen.language.diagnostics import Diagnostic, Severity, has_errors
 from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.fixes import Edit, Fix, edited, fixes
 
-FileContents = Mapping[str, bytes]
-FileLinter = Callable[[FileContents], Sequence[Diagnostic]]
+ProjectFiles = Mapping[str, bytes]
+FileLinter = Callable[[ProjectFiles], Sequence[Diagnostic]]
 
 _HIDING = frozenset(("tab", "yaml-syntax", "duplicate-key"))
 """What hides the rest of a file: repaired, it may show more."""
 
-ROUNDS = 100
+MAX_REPAIR_ROUNDS = 100
 """What one finding stands for may be many: of one cause only the first is told."""
 
 
@@ -27,14 +27,14 @@ class Repair(NamedTuple):
 
 
 def repaired(
-    files: FileContents, check: FileLinter, wanted: Callable[[Diagnostic], bool]
-) -> tuple[FileContents, list[Repair]]:
+    files: ProjectFiles, check: FileLinter, wanted: Callable[[Diagnostic], bool]
+) -> tuple[ProjectFiles, list[Repair]]:
     """The files with every fix of a wanted finding that leaves them better, and what was done.
 
     Better is: the finding is gone and none has come. All at once where that goes well, else by halves.
     """
     found, done = check(files), list[Repair]()
-    for _ in range(ROUNDS):
+    for _ in range(MAX_REPAIR_ROUNDS):
         before = len(done)
         steps = _steps(found, files, wanted)
         while steps:
@@ -52,7 +52,7 @@ def repaired(
 
 
 def _steps(
-    found: Sequence[Diagnostic], files: FileContents, wanted: Callable[[Diagnostic], bool]
+    found: Sequence[Diagnostic], files: ProjectFiles, wanted: Callable[[Diagnostic], bool]
 ) -> list[list[Repair]]:
     """What to try, the last one first: the likeliest fix of each finding together, then the others one by one."""
     proposals = [(d, fixes(d, files)) for d in found if wanted(d)]
@@ -60,7 +60,7 @@ def _steps(
     return [*reversed(others), [Repair(d, proposed[0]) for d, proposed in proposals if proposed]]
 
 
-def applied(files: FileContents, repairs: Iterable[Repair]) -> dict[str, bytes]:
+def applied(files: ProjectFiles, repairs: Iterable[Repair]) -> dict[str, bytes]:
     """The files with the edits of these repairs."""
     edits: dict[str, list[Edit]] = {}
     for repair in repairs:

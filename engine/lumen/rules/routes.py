@@ -24,8 +24,8 @@ from lumen.rules.events import descriptors, hears
 from lumen.rules.finding import References, find
 from lumen.rules.walk import action_sites
 
-PREFIXES = ("avatar", "lumen")
-MAX_BYTES = 255
+KEY_PREFIXES = ("avatar", "lumen")
+MAX_ROUTING_KEY_BYTES = 255
 """Of a routing key (AMQP 0-9-1, 3.1.1: a short string)."""
 
 _WORD = re.compile(r"[^\s.*#{}]+|\{robot\}")
@@ -127,11 +127,11 @@ def _fault(key: str) -> tuple[str, str]:
         return f"`{key}` holds a blank", f"write dots between its words: {'.'.join(key.replace('.', ' ').split())}"
     if bad := [word for word in words if not _WORD.fullmatch(word)]:
         return f"`{bad[0]}` can't be a word of a routing key", "`{robot}` stands for the robot's name, as a whole word"
-    if words[0] not in PREFIXES:
-        hint = did_you_mean(words[0], PREFIXES)
+    if words[0] not in KEY_PREFIXES:
+        hint = did_you_mean(words[0], KEY_PREFIXES)
         return f"`{key}` begins with `{words[0]}`", hint if "mean" in hint else "keys begin with `avatar` or `lumen`"
-    if len(key.encode("utf-8", "replace")) > MAX_BYTES:
-        return f"the key is longer than {MAX_BYTES} bytes", "shorten it"
+    if len(key.encode("utf-8", "replace")) > MAX_ROUTING_KEY_BYTES:
+        return f"the key is longer than {MAX_ROUTING_KEY_BYTES} bytes", "shorten it"
     return "", ""
 
 

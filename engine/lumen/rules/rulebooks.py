@@ -17,8 +17,8 @@ from lumen.language.controllers import (
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
-SHOWN = 3
-MOST = 10_000
+MAX_SHOWN_CASES = 3
+MAX_COMPARISONS = 10_000
 """Pairs of rules that are compared, and cells of a table that are looked for."""
 
 
@@ -58,7 +58,7 @@ def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentR
             conjunctions.setdefault(rule.consequents[0], []).append((parts, rule))
     if block.operators.activation.method == "general":
         for concluded, found in conjunctions.items():
-            if controller.outputs[concluded.variable].aggregation == "maximum" and len(found) ** 2 <= MOST:
+            if controller.outputs[concluded.variable].aggregation == "maximum" and len(found) ** 2 <= MAX_COMPARISONS:
                 _subsumed(found, report)
 
 
@@ -120,7 +120,12 @@ def _missing(block: RuleBlock, controller: ControllerDefinition, report: Documen
         for name in names:
             cells *= len(controller.inputs[name].terms)
         said = {tuple(cell[name] for name in names) for _, cell in found}
-        if len(said) * 2 > cells and cells <= MOST and len(said) < cells and not _others(block, output, found):
+        if (
+            len(said) * 2 > cells
+            and cells <= MAX_COMPARISONS
+            and len(said) < cells
+            and not _others(block, output, found)
+        ):
             gaps = [gap for gap in product(*(controller.inputs[name].terms for name in names)) if gap not in said]
             _absent(output, names, gaps, found[-1][0], report)
 
@@ -142,8 +147,8 @@ def _others(block: RuleBlock, output: str, found: list[tuple[Rule, Mapping[str, 
 
 
 def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Rule, report: DocumentReport) -> None:
-    shown = [" and ".join(f"{n} is {t}" for n, t in zip(names, gap, strict=True)) for gap in gaps[:SHOWN]]
-    more = f", and in {len(gaps) - SHOWN} more cases" if len(gaps) > SHOWN else ""
+    shown = [" and ".join(f"{n} is {t}" for n, t in zip(names, gap, strict=True)) for gap in gaps[:MAX_SHOWN_CASES]]
+    more = f", and in {len(gaps) - MAX_SHOWN_CASES} more cases" if len(gaps) > MAX_SHOWN_CASES else ""
     message = f"no rule says what `{output}` is where {'; or '.join(shown)}{more}"
     find(report, "missing-rule", last.where, message, f"write below it: if {shown[0]} then {output} is …")
 

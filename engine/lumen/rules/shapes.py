@@ -7,15 +7,15 @@ from math import isfinite
 from lumen.interpreters.inference.arithmetic import NUMBERS
 from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.survey import grid
-from lumen.language.controllers import VALUES, WEIGHTED, ControllerDefinition, Term, Variable
+from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Term, Variable
 from lumen.language.scales import ranks
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
-EPSILON = 0.01
+MIN_MEMBERSHIP = 0.01
 """A membership below this counts as none."""
 
-POINTS = 129
+GRID_POINTS = 129
 
 SampledTerm = tuple[Term, list[float]]
 
@@ -23,10 +23,10 @@ SampledTerm = tuple[Term, list[float]]
 def check(controller: ControllerDefinition, report: DocumentReport) -> None:
     """Report terms out of the order of their names or of reach, and gaps between them."""
     for variable in (*controller.inputs.values(), *controller.outputs.values()):
-        weighted = variable.name in controller.outputs and variable.defuzzifier in WEIGHTED
+        weighted = variable.name in controller.outputs and variable.defuzzifier in WEIGHTED_DEFUZZIFIERS
         if not (isfinite(variable.minimum) and isfinite(variable.maximum)):
             continue
-        xs = list(grid(variable, POINTS))
+        xs = list(grid(variable, GRID_POINTS))
         rows = [] if weighted else [(term, _memberships(term, xs)) for term in variable.terms.values()]
         _order(variable, rows, xs, report)
         sets = [row for row in rows if _reached(variable, row, report)]
@@ -42,7 +42,7 @@ def _memberships(term: Term, xs: list[float]) -> list[float]:
 def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report: DocumentReport) -> None:
     """Report each term that stands on the wrong side of the one before it by name."""
     places = {term.name: _top(degrees, xs) for term, degrees in rows}
-    places |= {term.name: term.parameters[0] for term in variable.terms.values() if term.kind == VALUES[0]}
+    places |= {term.name: term.parameters[0] for term in variable.terms.values() if term.kind == VALUE_TERMS[0]}
     scale = ranks(tuple(places))
     ordered = sorted(scale, key=lambda name: scale[name])
     for before, after in pairwise(ordered):
@@ -77,7 +77,7 @@ def _reached(variable: Variable, row: SampledTerm, report: DocumentReport) -> bo
 def _gaps(variable: Variable, rows: list[SampledTerm], xs: list[float], report: DocumentReport) -> None:
     """Report where no term of an input is true, though terms lie around it or end before its range does."""
     whole = [max(degrees) for degrees in zip(*(degrees for _, degrees in rows), strict=True)]
-    for first, last in _runs([degree < EPSILON for degree in whole]):
+    for first, last in _runs([degree < MIN_MEMBERSHIP for degree in whole]):
         low, high = xs[max(first - 1, 0)], xs[min(last + 1, len(xs) - 1)]
         if first == last and (first in (0, len(xs) - 1) or _narrow(rows)):
             continue
@@ -88,7 +88,7 @@ def _gaps(variable: Variable, rows: list[SampledTerm], xs: list[float], report: 
 
 def _narrow(rows: list[SampledTerm]) -> bool:
     """Whether a term may slip between two points of the grid."""
-    return any(sum(degree > EPSILON for degree in degrees) < 2 for _, degrees in rows)
+    return any(sum(degree > MIN_MEMBERSHIP for degree in degrees) < 2 for _, degrees in rows)
 
 
 def _runs(flags: list[bool]) -> Iterator[tuple[int, int]]:

@@ -14,10 +14,10 @@ from lumen.rules.codes import CODES
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import action_sites
 
-FEW = 4
+MIN_TEXTS_FOR_LANGUAGE = 4
 """With fewer texts it is the texts that lack a language; with more it is the language that has none."""
 
-MOST = 200
+MAX_COMPARED_ROWS = 200
 """Rows of an answers table that are compared with one another."""
 
 
@@ -64,7 +64,7 @@ def _silent(draft: ProjectDraft, languages: tuple[str, ...]) -> dict[str, tuple[
     near = {language: nearest(language, strangers) for language in silent}
     if len(silent) == len(strangers) == 1 and len(languages) > 1:
         near = {silent[0]: strangers[0]}
-    if not spoken or (count < FEW and not any(near.values())):
+    if not spoken or (count < MIN_TEXTS_FOR_LANGUAGE and not any(near.values())):
         return {}
     return {
         language: (meant, [Related(found[meant], f"this is said in `{meant}`")] if meant else [])
@@ -141,7 +141,7 @@ def _listed(names: list[str]) -> str:
 
 def _late(report: DocumentReport, table: str, rows: Sequence[Answer]) -> None:
     """Rows of an answers table in each of whose phrases one of a row above is heard: the first row wins."""
-    for i, row in enumerate(rows[:MOST]):
+    for i, row in enumerate(rows[:MAX_COMPARED_ROWS]):
         phrases = [phrase for texts in row.phrases.values() for phrase in texts]
         takers = [next((j for j in range(i) if is_heard(p, rows[j].phrases)), None) for p in phrases]
         if phrases and None not in takers:

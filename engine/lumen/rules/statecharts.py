@@ -11,10 +11,10 @@ from lumen.rules.finding import find
 from lumen.rules.logic import never, tree
 from lumen.rules.walk import nested
 
-LONGEST = 3
+MAX_ALWAYS_LOOP = 3
 """Transitions of a round of guarded `always` that is looked for."""
 
-MOST = 4
+MAX_FOLLOWED_ALWAYS = 4
 """Guarded `always` of a state that are followed."""
 
 _LEADS = frozenset(("on", "always", "after", "onDone", "onError", "onReload", "target", "initial"))
@@ -127,7 +127,7 @@ def _rounds(
     machine: MachineDefinition, onward: Onward, begin: str, path: str, way: tuple[Transition, ...]
 ) -> Iterator[tuple[Transition, ...]]:
     """The ways of at most LONGEST transitions back to `begin` whose guards can all be true at once."""
-    for transition, target in onward.get(path, ())[:MOST]:
+    for transition, target in onward.get(path, ())[:MAX_FOLLOWED_ALWAYS]:
         longer = (*way, transition)
         if _assigns(machine.states[target].entry) or _assigns(machine.states[path].exit):
             continue
@@ -135,7 +135,7 @@ def _rounds(
             continue
         if target == begin:
             yield longer
-        elif len(longer) < LONGEST and all(t.source != target for t in longer):
+        elif len(longer) < MAX_ALWAYS_LOOP and all(t.source != target for t in longer):
             yield from _rounds(machine, onward, begin, target, longer)
 
 

@@ -6,17 +6,17 @@ from math import isnan
 from typing import NamedTuple
 
 from lumen.interpreters.inference.survey import Slice, SurfaceJump, Survey, asked, grid
-from lumen.language.controllers import INTEGRAL, WEIGHTED, ControllerDefinition, Variable
+from lumen.language.controllers import INTEGRAL_DEFUZZIFIERS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Variable
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
-STEP, TURN, REST = 0.1, 0.02, 0.02
+STEP_SHARE, TURN_SHARE, REST_SHARE = 0.1, 0.02, 0.02
 """Shares of an output's range: what is a step, what is a turning back, what is not zero."""
 
-REACH = 0.2
+MIN_RANGE_SHARE = 0.2
 """An output that uses less of its declared range than this was meant otherwise."""
 
-FINER = 4
+RESOLUTION_FACTOR = 4
 """By how much the resolution is raised to see how far off it is."""
 
 CORNERS = 5, 400
@@ -38,8 +38,12 @@ def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
     """The surface of a controller."""
     survey = Survey(controller)
     slices = list(survey.slices())
-    smooth = [s for s in slices if controller.outputs[s.output].defuzzifier in ("centroid", "bisector", *WEIGHTED)]
-    steps = [(s, step) for s in smooth if (step := survey.step(s, STEP))]
+    smooth = [
+        s
+        for s in slices
+        if controller.outputs[s.output].defuzzifier in ("centroid", "bisector", *WEIGHTED_DEFUZZIFIERS)
+    ]
+    steps = [(s, step) for s in smooth if (step := survey.step(s, STEP_SHARE))]
     corners = [(point, survey.at(point)) for point in _corners(controller)]
     reach, silent = {}, {}
     for name in controller.outputs:
@@ -75,11 +79,13 @@ def _all(
 
 def _off(controller: ControllerDefinition, slices: list[Slice]) -> dict[str, float]:
     """How far an output with a stated accuracy lies from what four times the resolution gives."""
-    exact = {n: v for n, v in controller.outputs.items() if v.accuracy is not None and v.defuzzifier in INTEGRAL}
+    exact = {
+        n: v for n, v in controller.outputs.items() if v.accuracy is not None and v.defuzzifier in INTEGRAL_DEFUZZIFIERS
+    }
     if not exact:
         return {}
     most = max(v.resolution for v in exact.values())
-    survey, finer = Survey(controller, most), Survey(_finer(controller), FINER * most)
+    survey, finer = Survey(controller, most), Survey(_finer(controller), RESOLUTION_FACTOR * most)
     found: dict[str, float] = {}
     for s in slices:
         if s.output in exact:
@@ -92,7 +98,7 @@ def _off(controller: ControllerDefinition, slices: list[Slice]) -> dict[str, flo
 def _finer(controller: ControllerDefinition) -> ControllerDefinition:
     from dataclasses import replace
 
-    outputs = {n: replace(v, resolution=FINER * v.resolution) for n, v in controller.outputs.items()}
+    outputs = {n: replace(v, resolution=RESOLUTION_FACTOR * v.resolution) for n, v in controller.outputs.items()}
     return replace(controller, outputs=outputs)
 
 
@@ -136,7 +142,7 @@ def _reached(
     if over > 1e-6 * width and not variable.lock_range:
         message = f"`{variable.name}` goes from {low:.4g} to {high:.4g}, beyond its range"
         find(report, "attainable-range", where, message, f"write [{low:.4g}, {high:.4g}], or `lock-range: true`")
-    elif 1e-9 * width < high - low < REACH * width and len(concluded) > 1:
+    elif 1e-9 * width < high - low < MIN_RANGE_SHARE * width and len(concluded) > 1:
         message = f"`{variable.name}` only goes from {low:.4g} to {high:.4g}, a small part of its range"
         find(report, "attainable-range", where, message, "move its terms outwards, or narrow the range")
 
@@ -148,14 +154,14 @@ def _coarse(variable: Variable, report: DocumentReport, seen: SurfaceSamples) ->
             f"with {variable.resolution:,} points `{variable.name}` is off by {off:.2g}, and {variable.accuracy:g} is"
             " stated"
         )
-        hint = f"raise `resolution` to {FINER * variable.resolution:,}, or state a greater `accuracy`"
+        hint = f"raise `resolution` to {RESOLUTION_FACTOR * variable.resolution:,}, or state a greater `accuracy`"
         find(report, "coarse-resolution", (*variable.where, "accuracy"), message, hint)
 
 
 def _turns(controller: ControllerDefinition, found: Slice, report: DocumentReport) -> None:
     """Over an input with a neutral point an output may only rise or only fall."""
     output = controller.outputs[found.output]
-    least = TURN * (output.maximum - output.minimum)
+    least = TURN_SHARE * (output.maximum - output.minimum)
     extremes = list(_extremes(found, least))
     if len(extremes) > 2:
         x, y = extremes[1]
@@ -193,7 +199,7 @@ def _height(point: tuple[float, float]) -> float:
 def _rests(controller: ControllerDefinition, found: Slice, report: DocumentReport, seen: SurfaceSamples) -> None:
     output, variable = controller.outputs[found.output], controller.inputs[found.input]
     value = seen.rest[output.name]
-    if abs(value) > REST * (output.maximum - output.minimum) and output.minimum <= 0.0 <= output.maximum:
+    if abs(value) > REST_SHARE * (output.maximum - output.minimum) and output.minimum <= 0.0 <= output.maximum:
         message = f"at rest, with `{variable.name}` at {variable.neutral:g}, `{output.name}` is {value:.3g} and not 0"
         hint = "the term in the middle of the input should lead to the one around 0"
         others = [(variable.where, "its neutral point")]

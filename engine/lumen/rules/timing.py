@@ -12,7 +12,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
-SAY, CHARACTER, POSTURE, SPEED = 0.4, 0.06, 2.0, 0.1
+SECONDS_PER_TEXT, SECONDS_PER_CHARACTER, SECONDS_PER_POSTURE, WALKING_SPEED = 0.4, 0.06, 2.0, 0.1
 """What the recording robot takes: for a text [s], for each of its characters [s], for a posture [s], walking [m/s]."""
 
 
@@ -52,13 +52,15 @@ def duration(block: Iterable[PlacedAction], motions: Mapping[str, MotionDefiniti
 def _one(step: PlacedAction, motions: Mapping[str, MotionDefinition]) -> float:
     match step.action:
         case SayText(texts):
-            return SAY + CHARACTER * max(_length(text.text) for said in texts.values() for text in said)
+            return SECONDS_PER_TEXT + SECONDS_PER_CHARACTER * max(
+                _length(text.text) for said in texts.values() for text in said
+            )
         case Play(name):
             return motions[name].duration if name in motions else 0.0
         case Posture():
             return 0.0  # it may stand there already
         case Walk(x, y):
-            return hypot(x, y) / SPEED
+            return hypot(x, y) / WALKING_SPEED
         case Wait(seconds):
             return seconds
         case If(then=then, otherwise=otherwise):

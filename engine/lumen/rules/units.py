@@ -15,10 +15,10 @@ from lumen.loading.units import ANGLES, LENGTHS
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import action_sites
 
-FAR = 20.0
+MAX_WALK_DISTANCE = 20.0
 """No walk at an exhibition is longer [m]."""
 
-ROUNDING = 1.05
+SPEED_TOLERANCE = 1.05
 """How far a speed may lie above the greatest: people round."""
 
 _PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for digits in (2, 3, 4))
@@ -112,7 +112,7 @@ def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length
         ("vy", move.vy, most.y, length, LENGTHS[length]),
         ("vtheta", move.vtheta, most.theta, angle, ANGLES[angle]),
     ):
-        if abs(value) > limit * ROUNDING:
+        if abs(value) > limit * SPEED_TOLERANCE:
             message = f"the robot does not walk at {value / size:g} {unit}/s: {limit / size:.2g} {unit}/s at most"
             find(
                 report,
@@ -124,7 +124,7 @@ def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length
 
 
 def _walk(report: DocumentReport, path: NodePath, value: float, unit: str, room: tuple[float, float] | None) -> None:
-    most = room[1] - room[0] if room else FAR
+    most = room[1] - room[0] if room else MAX_WALK_DISTANCE
     if abs(value) <= most + 1e-6:
         return
     where = "the stage is" if room else "a hall is at the most"

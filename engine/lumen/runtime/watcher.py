@@ -10,7 +10,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
 
-from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_files
+from lumen.loading.files import PROJECT_FOLDERS, Unreadable, fingerprint, read_files
 
 QUIET = 0.3
 LOOK = 1.0
@@ -172,7 +172,7 @@ def _folders(root: Path) -> dict[Path, tuple[int, int]]:
 
     Where the project's folder is a link, the one that the link is in counts too.
     """
-    wanted = [root, *(root / name for name in (*FOLDERS, *INSIDE))]
+    wanted = [root, *(root / name for name in (*PROJECT_FOLDERS, *INSIDE))]
     if root.is_symlink():
         wanted.append(root.absolute().parent)
     found = {}

@@ -6,7 +6,7 @@ Lint finds in a wrong example what its page is about, at the marked word and not
 import pytest
 from scripts.rule_pages import BASE, DOCS, said, written
 
-from lumen.loading.project import read_files
+from lumen.loading.files import read_files
 from lumen.rules import check_files
 from lumen.rules.codes import CODES
 from lumen.rules.pages import _HERE, page

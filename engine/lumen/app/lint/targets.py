@@ -9,9 +9,8 @@ from typing import Protocol
 from lumen.app.lint.findings import Findings
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.files import counts
+from lumen.loading.files import counts, read_files
 from lumen.loading.packaged import MAIN_FILE, find_project
-from lumen.loading.project import read_files
 from lumen.rules import check_files
 
 Wanted = Callable[[Diagnostic], bool]

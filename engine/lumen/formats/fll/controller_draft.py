@@ -8,7 +8,7 @@ from typing import Any
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.fll.fuzzylite_names import plain
 from lumen.formats.fll.rule_text import rule_text
-from lumen.language.controllers import TERMS
+from lumen.language.controllers import TERM_PARAMETERS
 from lumen.language.diagnostics import Place
 from lumen.loading.rule_parser import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
 
@@ -65,7 +65,7 @@ class ControllerDraft:
         ours = self.fresh(name, terms, place)
         self.terms[variable][name] = ours  # of two that are called alike FuzzyLite's rules mean the last
         height = None
-        if kind not in ("function", "constant", "linear", "discrete") and len(values) == len(TERMS[kind]) + 1:
+        if kind not in ("function", "constant", "linear", "discrete") and len(values) == len(TERM_PARAMETERS[kind]) + 1:
             *values, height = values
         terms[ours] = {kind: _shape(kind, values)}
         if height is not None and height != 1.0:
@@ -78,7 +78,7 @@ class ControllerDraft:
             return "a parameter is no number"
         if len(values) > MAX_TERM_PARAMETERS:
             return f"it has more than {MAX_TERM_PARAMETERS:,} numbers"
-        wanted = TERMS[kind]
+        wanted = TERM_PARAMETERS[kind]
         fits = len(values) - len(wanted) in (0, 1) or kind in ("linear", "discrete")
         if kind == "discrete" and (len(values) < 2 or len(values) % 2):
             fits = False

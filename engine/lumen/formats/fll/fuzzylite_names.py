@@ -3,15 +3,15 @@
 from collections.abc import Mapping
 from math import inf
 
-from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, S_NORMS, T_NORMS, TERMS
-from lumen.loading.numbers import LEAST
+from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, S_NORMS, T_NORMS, TERM_PARAMETERS
+from lumen.loading.numbers import LEAST_NUMBER
 
 
 def _camel(word: str) -> str:
     return "".join(part.capitalize() for part in word.split("-"))
 
 
-SHAPES: Mapping[str, str] = {_camel(kind): kind for kind in TERMS}
+SHAPES: Mapping[str, str] = {_camel(kind): kind for kind in TERM_PARAMETERS}
 NORMS: Mapping[str, str] = {_camel(norm): norm for norm in (*T_NORMS, *S_NORMS)}
 METHODS: Mapping[str, str] = {_camel(method): method for method in DEFUZZIFIERS}
 ACTIVATED: Mapping[str, str] = {_camel(method): method for method in ACTIVATIONS}
@@ -32,6 +32,6 @@ def written(value: float) -> str:
 
 def plain(value: float) -> int | float:
     """A number as the YAML says it: whole ones without a point, and 0 for what rounding left of it."""
-    if abs(value) < LEAST:
+    if abs(value) < LEAST_NUMBER:
         return 0
     return int(value) if abs(value) < 1e15 and value == int(value) else value

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions import ExpressionNode, parse_expression, unparse
 from lumen.interpreters.expressions.tree import Binary, Conditional, FunctionCall, Identifier, Literal, Logic, Unary
-from lumen.interpreters.inference.formulas import FUNCTIONS
+from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][\w.]*)"
@@ -117,7 +117,7 @@ class _Parser:
         if text in _COMPARISONS and len(arguments) == 2:
             return Binary(_COMPARISONS[text], *arguments)
         function = {"fabs": "abs"}.get(text, text)
-        if FUNCTIONS.get(function) != len(arguments):
+        if FORMULA_FUNCTIONS.get(function) != len(arguments):
             raise ExpressionError(f"there is no function `{text}` of {len(arguments)}", offset)
         return FunctionCall(function, tuple(arguments))
 

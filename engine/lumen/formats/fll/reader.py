@@ -11,7 +11,7 @@ from lumen.formats.fll.controller_draft import ControllerDraft, operators, range
 from lumen.formats.fll.fll_lines import FllLine, FllLineReader, FllPart
 from lumen.formats.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES, plain
 from lumen.formats.fll.infix_formulas import read_formula
-from lumen.language.controllers import ACTIVATIONS, S_NORMS, T_NORMS, WEIGHTED
+from lumen.language.controllers import ACTIVATIONS, S_NORMS, T_NORMS, WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.rule_parser import RuleWord
 
@@ -96,7 +96,7 @@ class _Reader(FllLineReader):
         if (line := said.get("lock-previous")) and line.value == "true":
             spec["lock-previous"] = True
         method = self.defuzzifier(spec, said.get("defuzzifier"))
-        usual = "unbounded-sum" if method in WEIGHTED else "maximum"
+        usual = "unbounded-sum" if method in WEIGHTED_DEFUZZIFIERS else "maximum"
         aggregation = self.norm(said.get("aggregation"), S_NORMS)
         spec.update(operators({"aggregation": aggregation}, {"aggregation": usual}))
 
@@ -110,11 +110,11 @@ class _Reader(FllLineReader):
         if method != "centroid":
             spec["defuzzifier"] = method
         for word in words[1:]:
-            if word.isdigit() and 10 <= int(word) <= 100_000 and method not in WEIGHTED:
+            if word.isdigit() and 10 <= int(word) <= 100_000 and method not in WEIGHTED_DEFUZZIFIERS:
                 spec.update({} if int(word) == 1000 else {"resolution": int(word)})
-            elif word == "Tsukamoto" and method in WEIGHTED:
+            elif word == "Tsukamoto" and method in WEIGHTED_DEFUZZIFIERS:
                 continue  # which our terms tell
-            elif word not in ("Automatic", "TakagiSugeno") or method not in WEIGHTED:
+            elif word not in ("Automatic", "TakagiSugeno") or method not in WEIGHTED_DEFUZZIFIERS:
                 self.lost(line, f"`{word}` can't be said of a defuzzifier")
         return method
 

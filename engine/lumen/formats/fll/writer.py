@@ -8,8 +8,8 @@ from lumen.formats.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES,
 from lumen.formats.fll.infix_formulas import write_formula
 from lumen.formats.fll.rule_text import negations, rule_text
 from lumen.language.controllers import (
-    VALUES,
-    WEIGHTED,
+    VALUE_TERMS,
+    WEIGHTED_DEFUZZIFIERS,
     Activation,
     ControllerDefinition,
     Rule,
@@ -71,14 +71,14 @@ class _Writer:
                 yield f"  term: {self.terms[variable.name][term.name]} {shape}"
 
     def output(self, variable: Variable) -> Iterator[str]:
-        weighted = variable.defuzzifier in WEIGHTED
+        weighted = variable.defuzzifier in WEIGHTED_DEFUZZIFIERS
         usual = weighted and variable.aggregation == "unbounded-sum"
         yield f"  aggregation: {'none' if usual else foreign(NORMS, variable.aggregation)}"
         method = foreign(METHODS, variable.defuzzifier)
         yield f"  defuzzifier: {method}" if weighted else f"  defuzzifier: {method} {variable.resolution}"
         yield f"  default: {'nan' if variable.default is None else written(variable.default)}"
         yield f"  lock-previous: {str(variable.lock_previous).lower()}"
-        if weighted and len({term.kind in (*VALUES, "function") for term in variable.terms.values()}) > 1:
+        if weighted and len({term.kind in (*VALUE_TERMS, "function") for term in variable.terms.values()}) > 1:
             message = f"`{variable.name}` mixes terms that have a value with terms that are read backwards"
             self.report.lost(f"{message}: FuzzyLite can't", variable.where, "make them two outputs")
 
@@ -93,7 +93,7 @@ class _Writer:
         elif term.kind == "linear":
             parameters += ["0"] * (len(self.controller.inputs) + 1 - len(parameters))
         if term.height != 1.0:
-            if term.kind in (*VALUES, "function"):
+            if term.kind in (*VALUE_TERMS, "function"):
                 self.report.lost(f"`{term.kind}` has no height there", term.where)
             else:
                 parameters.append(written(term.height))

@@ -14,7 +14,14 @@ from lumen.language.controllers import Activation
 
 Degrees = list[Number]
 
-COMPARE: Mapping[str, Callable[[Any, Any], Any]] = {"<": lt, "<=": le, "==": eq, "!=": ne, ">=": ge, ">": gt}
+COMPARISON_FUNCTIONS: Mapping[str, Callable[[Any, Any], Any]] = {
+    "<": lt,
+    "<=": le,
+    "==": eq,
+    "!=": ne,
+    ">=": ge,
+    ">": gt,
+}
 
 
 def general(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
@@ -65,11 +72,11 @@ def proportional(m: Arithmetic, activation: Activation, degrees: Degrees) -> Deg
 
 def threshold(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
     """Those whose degree compares with `threshold` as `comparison` says."""
-    compare = COMPARE[activation.comparison]
+    compare = COMPARISON_FUNCTIONS[activation.comparison]
     return [m.where(compare(degree, activation.threshold), degree, nan) for degree in degrees]
 
 
-METHODS: Mapping[str, Callable[[Arithmetic, Activation, Degrees], Degrees]] = {
+ACTIVATE: Mapping[str, Callable[[Arithmetic, Activation, Degrees], Degrees]] = {
     "general": general,
     "first": first,
     "last": last,

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from lumen.interpreters.inference.arithmetic import NUMBERS
-from lumen.interpreters.inference.layers import MOST_TERMS, LayeredCentroid
+from lumen.interpreters.inference.layers import MAX_LAYERED_TERMS, LayeredCentroid
 from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.program import Conclusion
 from lumen.interpreters.inference.sampled import Sampled
 from lumen.interpreters.inference.weighted import Weighted
-from lumen.language.controllers import WEIGHTED, Term, Variable
+from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS, Term, Variable
 
 if TYPE_CHECKING:
     from lumen.interpreters.inference.arithmetic import Array
@@ -33,14 +33,14 @@ def defuzzifier(
     names = list(dict.fromkeys(conclusion.term for conclusion in conclusions))
     which = [names.index(conclusion.term) for conclusion in conclusions]
     terms = [variable.terms[name] for name in names]
-    if variable.defuzzifier in WEIGHTED:
+    if variable.defuzzifier in WEIGHTED_DEFUZZIFIERS:
         average = variable.defuzzifier == "weighted-average"
         return Weighted(terms, which, variable.aggregation, average, known, inputs)
     points = midpoints(variable)
     memberships = [sampled(term, points) for term in terms]
     implications = [conclusion.implication for conclusion in conclusions]
     clipped = set(implications) <= {"minimum"} and variable.aggregation == "maximum"
-    if clipped and variable.defuzzifier == "centroid" and len(terms) <= MOST_TERMS:
+    if clipped and variable.defuzzifier == "centroid" and len(terms) <= MAX_LAYERED_TERMS:
         return LayeredCentroid(points, memberships, which)
     return Sampled(points, memberships, which, implications, variable.aggregation, variable.defuzzifier)
 

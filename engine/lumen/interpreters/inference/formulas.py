@@ -19,7 +19,7 @@ Formula = Callable[[Number, Sequence[Number]], Number]
 
 FormulaPart = Callable[[Number, Sequence[Number]], Any]
 
-FUNCTIONS: Mapping[str, int] = {
+FORMULA_FUNCTIONS: Mapping[str, int] = {
     **dict.fromkeys(("abs", "sqrt", "exp", "log", "log10", "log1p", "floor", "ceil", "round", "sin", "cos", "tan"), 1),
     **dict.fromkeys(("asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh"), 1),
     **dict.fromkeys(("min", "max", "pow", "atan2", "fmod"), 2),

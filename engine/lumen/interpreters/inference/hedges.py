@@ -14,7 +14,7 @@ def _seldom(m: Arithmetic, x: Number) -> Number:
     return m.where(x <= 0.5, low, 1.0 - high)
 
 
-HEDGES: Mapping[str, Callable[[Arithmetic, Number], Number]] = {
+HEDGE_FUNCTIONS: Mapping[str, Callable[[Arithmetic, Number], Number]] = {
     "any": lambda m, x: 1.0,
     "not": lambda m, x: m.maximum(1.0 - x, 0.0),
     "extremely": _extremely,
@@ -27,5 +27,5 @@ HEDGES: Mapping[str, Callable[[Arithmetic, Number], Number]] = {
 def hedged(m: Arithmetic, hedges: tuple[str, ...], degree: Number) -> Number:
     """The degree after its hedges; the one next to the term acts first."""
     for hedge in reversed(hedges):
-        degree = HEDGES[hedge](m, degree)
+        degree = HEDGE_FUNCTIONS[hedge](m, degree)
     return degree

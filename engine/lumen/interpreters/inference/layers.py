@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from lumen.interpreters.inference.arithmetic import Array
 
-MOST_TERMS = 6
+MAX_LAYERED_TERMS = 6
 """Layers are kept for every union of terms that occurs: at most 2^6."""
 
 _BINS = 1 << 14  # of the degrees' range, in which a batch looks for the corner before it searches

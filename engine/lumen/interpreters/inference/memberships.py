@@ -13,16 +13,18 @@ from lumen.language.controllers import Term
 
 Membership = Callable[[Number], Number]
 
-TINY = 1e-300
+LEAST_DENOMINATOR = 1e-300
 """A denominator or an exponent's base that must not be zero; far below every membership that matters."""
 
-LARGE = 700.0
+MAX_EXPONENT = 700.0
 """The largest exponent: e^700 is still a float."""
 
 
 def membership(m: Arithmetic, term: Term) -> Membership:
     """The membership function of a term, its height included; not for `constant` and `linear`, which have none."""
-    shape = function(m, term.formula) if term.kind == "function" else SHAPES[term.kind](m, *term.parameters)
+    shape = (
+        function(m, term.formula) if term.kind == "function" else MEMBERSHIP_FUNCTIONS[term.kind](m, *term.parameters)
+    )
     if term.height == 1.0:
         return shape
     return lambda x: term.height * shape(x)
@@ -79,8 +81,8 @@ def bell(m: Arithmetic, center: float, width: float, slope: float) -> Membership
         return _half
 
     def shape(x: Number) -> Number:
-        exponent = 2.0 * slope * m.log(m.maximum(m.abs((x - center) / width), TINY))
-        return 1.0 / (1.0 + m.exp(m.clamp(exponent, -LARGE, LARGE)))
+        exponent = 2.0 * slope * m.log(m.maximum(m.abs((x - center) / width), LEAST_DENOMINATOR))
+        return 1.0 / (1.0 + m.exp(m.clamp(exponent, -MAX_EXPONENT, MAX_EXPONENT)))
 
     return shape
 
@@ -88,7 +90,7 @@ def bell(m: Arithmetic, center: float, width: float, slope: float) -> Membership
 def sigmoid(m: Arithmetic, inflection: float, slope: float) -> Membership:
     if slope == 0.0:
         return _half
-    return lambda x: 1.0 / (1.0 + m.exp(m.clamp(slope * (inflection - x), -LARGE, LARGE)))
+    return lambda x: 1.0 / (1.0 + m.exp(m.clamp(slope * (inflection - x), -MAX_EXPONENT, MAX_EXPONENT)))
 
 
 def _half(x: Number) -> Number:
@@ -182,7 +184,7 @@ def discrete(m: Arithmetic, *points: float) -> Membership:
     return lambda x: m.interpolate(x, xs, ys)
 
 
-SHAPES: Mapping[str, Callable[..., Membership]] = {
+MEMBERSHIP_FUNCTIONS: Mapping[str, Callable[..., Membership]] = {
     "triangle": triangle,
     "trapezoid": trapezoid,
     "gaussian": gaussian,

@@ -41,7 +41,7 @@ def _nilpotent_maximum(m: Arithmetic, a: Number, b: Number) -> Number:
     return m.where(a + b < 1.0, m.maximum(a, b), 1.0)
 
 
-NORMS: Mapping[str, Norm] = {
+NORM_FUNCTIONS: Mapping[str, Norm] = {
     "minimum": lambda m, a, b: m.minimum(a, b),
     "algebraic-product": lambda m, a, b: a * b,
     "bounded-difference": lambda m, a, b: m.maximum(a + b - 1.0, 0.0),
@@ -67,5 +67,5 @@ def norm(m: Arithmetic, name: str) -> Callable[[Number, Number], Number]:
         return m.minimum
     if name == "maximum":
         return m.maximum
-    function = NORMS[name]
+    function = NORM_FUNCTIONS[name]
     return lambda a, b: function(m, a, b)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from functools import reduce
 from typing import Any, NamedTuple
 
-from lumen.interpreters.inference.activations import METHODS
+from lumen.interpreters.inference.activations import ACTIVATE
 from lumen.interpreters.inference.arithmetic import Arithmetic
 from lumen.interpreters.inference.hedges import hedged
 from lumen.interpreters.inference.memberships import membership
@@ -80,7 +80,7 @@ class InferenceProgram:
         slots = [self._degree(rule, operators) for rule in rules]
         if operators.activation.method == "general":
             return slots
-        m, method, activation = self._m, METHODS[operators.activation.method], operators.activation
+        m, method, activation = self._m, ACTIVATE[operators.activation.method], operators.activation
         whole = self._add(lambda tape: method(m, activation, [tape[slot] for slot in slots]))
         return [self._part(whole, i) for i in range(len(slots))]
 

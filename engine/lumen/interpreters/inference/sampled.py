@@ -34,7 +34,7 @@ class Sampled:
         self._terms = terms
         self._implications = [norm(arrays(), name) for name in implications]
         self._aggregation = norm(arrays(), aggregation)
-        self._method = METHODS[method]
+        self._method = DEFUZZIFY[method]
 
     def crisp(self, degrees: Sequence[float], values: Sequence[float] = ()) -> float:
         """The output; NaN where the set is empty."""
@@ -86,7 +86,7 @@ def _highest(whole: "Array") -> "NDArray[np.bool_]":
     return whole == whole.max(axis=1, keepdims=True)  # type: ignore[no-any-return]
 
 
-METHODS: Mapping[str, "Callable[[Array, Array], Array]"] = {
+DEFUZZIFY: Mapping[str, "Callable[[Array, Array], Array]"] = {
     "centroid": _centroid,
     "bisector": _bisector,
     "smallest-of-maximum": lambda y, whole: y[_highest(whole).argmax(axis=1)],

@@ -22,9 +22,9 @@ from lumen.language.controllers import (
     Variable,
 )
 
-POINTS = 65
-RESOLUTION = 200
-HALVINGS = 14
+SLICE_POINTS = 65
+SURVEY_RESOLUTION = 200
+STEP_HALVINGS = 14
 
 
 class Slice(NamedTuple):
@@ -47,7 +47,7 @@ class SurfaceJump(NamedTuple):
 class Survey:
     """A controller to be asked point by point; `rest` is where its inputs are while others move."""
 
-    def __init__(self, controller: ControllerDefinition, resolution: int = RESOLUTION) -> None:
+    def __init__(self, controller: ControllerDefinition, resolution: int = SURVEY_RESOLUTION) -> None:
         self.controller = controller
         self._evaluator = Evaluator(silent(controller, resolution))
         self.rest = {name: resting(variable) for name, variable in controller.inputs.items()}
@@ -73,7 +73,7 @@ class Survey:
         gaps = [(abs(b - a), i) for i, (a, b) in enumerate(zip(found.ys, found.ys[1:], strict=False))]
         _, i = max((gap for gap in gaps if not isnan(gap[0])), default=(0.0, 0))
         low, high, a, b = found.xs[i], found.xs[i + 1], found.ys[i], found.ys[i + 1]
-        for _ in range(HALVINGS):
+        for _ in range(STEP_HALVINGS):
             if not abs(b - a) > least:
                 return None
             middle = (low + high) / 2
@@ -91,7 +91,7 @@ def silent(controller: ControllerDefinition, resolution: int) -> ControllerDefin
     return replace(controller, outputs=outputs)
 
 
-def grid(variable: Variable, points: int = POINTS) -> tuple[float, ...]:
+def grid(variable: Variable, points: int = SLICE_POINTS) -> tuple[float, ...]:
     """Evenly spread values of a variable, both ends of its range among them."""
     width = variable.maximum - variable.minimum
     return tuple(variable.minimum + width * i / (points - 1) for i in range(points))

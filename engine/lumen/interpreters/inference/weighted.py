@@ -46,7 +46,7 @@ def _arc(m: Arithmetic, h: float, s: float, e: float) -> Callable[[Number], Numb
     return lambda w: m.where(w > h, nan, e - r * m.sqrt(m.maximum(1.0 - (w / h) * (w / h), 0.0)))
 
 
-INVERSES: Mapping[str, Callable[..., Callable[[Number], Number]]] = {
+INVERSE_MEMBERSHIPS: Mapping[str, Callable[..., Callable[[Number], Number]]] = {
     "ramp": lambda m, h, s, e: lambda w: s + (e - s) * w / h,
     "sigmoid": _sigmoid,
     "s-shape": _s_shape,
@@ -71,7 +71,7 @@ def value(m: Arithmetic, term: Term, names: Sequence[str] = (), inputs: int = 0)
         return lambda w, values: _line(term.parameters, values[:inputs])
     if term.kind == "function":
         return formula(m, term.formula, names)
-    inverse = INVERSES[term.kind](m, term.height, *term.parameters)
+    inverse = INVERSE_MEMBERSHIPS[term.kind](m, term.height, *term.parameters)
     return lambda w, values: inverse(w)
 
 

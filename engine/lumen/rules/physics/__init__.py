@@ -28,11 +28,11 @@ class CaseResult:
 
     def succeeded(self, outcome: Outcome) -> bool:
         """Whether the robot came to the end of it, and a passage at its first attempt."""
-        late = self.case.passage and outcome.at > self.case.motion.duration + AGAIN
+        late = self.case.passage and outcome.at > self.case.motion.duration + RETRIED_AFTER
         return outcome.answer == DONE and not late
 
 
-AGAIN = 1.5
+RETRIED_AFTER = 1.5
 """A passage that takes so much longer than its motion was tried again [s]."""
 
-__all__ = ["AGAIN", "DONE", "FELL", "Case", "CaseResult", "Outcome", "SubjectFactory", "attempt"]
+__all__ = ["DONE", "FELL", "RETRIED_AFTER", "Case", "CaseResult", "Outcome", "SubjectFactory", "attempt"]

@@ -12,7 +12,7 @@ from lumen.language.projects import Project
 from lumen.ports import Perform, RobotCommand
 
 MOTIONS, PASSAGES = "motions", "models/passages"
-FIRST = "Stand"
+FIRST_POSTURE = "Stand"
 """The posture in which a robot begins."""
 
 Before = tuple[RobotCommand, ...]
@@ -44,13 +44,13 @@ class Case:
                 return f"from {posture}"
             case (Perform(motion),):
                 return f"after {motion.name}"
-        return f"from {FIRST}"
+        return f"from {FIRST_POSTURE}"
 
 
 def cases(project: Project) -> list[Case]:
     """Every motion from its start and from wherever the behaviours lead to it, then every passage."""
     motions = project.motions
-    ways: dict[str, list[Before]] = {name: [_to(motion.start or FIRST)] for name, motion in motions.items()}
+    ways: dict[str, list[Before]] = {name: [_to(motion.start or FIRST_POSTURE)] for name, motion in motions.items()}
     blocks = [block for machine in project.behaviors.values() for block in _blocks(machine)]
     ends = [end for block in blocks for step in block if (end := _end(motions, step.action)) is not None]
     anywhere = [end for end in ends if _upright(end)]
@@ -67,7 +67,7 @@ def cases(project: Project) -> list[Case]:
 
 
 def _to(posture: str) -> Before:
-    return () if posture == FIRST else (Posture(posture, 1.0),)
+    return () if posture == FIRST_POSTURE else (Posture(posture, 1.0),)
 
 
 def _end(motions: Mapping[str, MotionDefinition], action: object) -> Before | None:
@@ -79,7 +79,7 @@ def _end(motions: Mapping[str, MotionDefinition], action: object) -> Before | No
             return ()
         case Play(name) if name in motions:
             motion = motions[name]
-            return _to(motion.end) if motion.end else (*_to(motion.start or FIRST), Perform(motion))
+            return _to(motion.end) if motion.end else (*_to(motion.start or FIRST_POSTURE), Perform(motion))
     return None
 
 

@@ -9,23 +9,23 @@ from lumen.language.events import Event
 from lumen.ports import RobotCommand, Sole, Strain, Subject
 from lumen.rules.physics.cases import Case
 
-LOOK = 0.02
+POLL_INTERVAL = 0.02
 """Between two looks at the robot [s]."""
 
-PATIENCE = 60.0
+STUCK_AFTER = 60.0
 """How much longer than its motion a command may take until it counts as stuck [s]."""
 
-BEFORE, AFTER = 0.3, 0.5
+REST_BEFORE, REST_AFTER = 0.3, 0.5
 """How long the robot comes to rest before and after [s]."""
 
-LEANS, FALLS = 15.0, 30.0
+LEANING_TILT, FALLING_TILT = 15.0, 30.0
 """A torso that falls was falling since it leaned that far [degrees]; what happens beyond the second is the fall's."""
 
 DONE, FELL = "done", "fell"
-SLID = 0.01
+MAX_FOOT_SLIDE = 0.01
 """How far a foot that bears load may slide [m]."""
 
-BEARING = 5.0
+BEARING_FORCE = 5.0
 """A foot bears load from here on [N]."""
 
 TimedAmount = tuple[float, float]
@@ -66,7 +66,7 @@ def attempt(case: Case, robot: Subject) -> Outcome:
     """What comes of the motion; `answer` is empty where the robot did not even come to its beginning."""
     if any(_perform(robot, command) != DONE for command in case.before):
         return Outcome()
-    robot.advance(BEFORE)
+    robot.advance(REST_BEFORE)
     robot.poll()
     watch = _Watch(case.passage)
     watch.outcome.answer = _perform(robot, case.command, watch, case.motion.duration)
@@ -77,9 +77,9 @@ def _perform(robot: Subject, command: RobotCommand, watch: "_Watch | None" = Non
     """A command to its end: `done`, `fell`, or why not."""
     robot.start("it", command)
     waited = 0.0
-    while waited < duration + PATIENCE:
-        robot.advance(LOOK)
-        waited += LOOK
+    while waited < duration + STUCK_AFTER:
+        robot.advance(POLL_INTERVAL)
+        waited += POLL_INTERVAL
         if watch:
             watch.look(robot.strain(), waited)
         events = robot.poll()
@@ -109,9 +109,9 @@ class _Watch:
         tilt = degrees(strain.tilt)
         if tilt > self.outcome.tilt:
             self.outcome.tilt, self.outcome.leaned = tilt, round(self._now, 3)
-        if tilt < LEANS:
+        if tilt < LEANING_TILT:
             self._steady = self._now
-        if not self._passage and tilt < FALLS and strain.played > 0.0:
+        if not self._passage and tilt < FALLING_TILT and strain.played > 0.0:
             self._press(strain)
             self._exhaust(strain)
             self._delay(strain)
@@ -120,7 +120,7 @@ class _Watch:
     def closed(self, robot: Subject) -> Outcome:
         """The whole, a moment after it was over."""
         if self.outcome.answer == DONE:
-            robot.advance(AFTER)
+            robot.advance(REST_AFTER)
             self.outcome.tilt = max(self.outcome.tilt, degrees(robot.strain().tilt))
             if any(event.name == "fallen" for event in robot.poll()):
                 self.outcome.answer = FELL
@@ -131,7 +131,7 @@ class _Watch:
     def _press(self, strain: Strain) -> None:
         for one, other in strain.touching:
             begin, lasted = self.outcome.collisions.get(f"{one} and {other}", (round(self._now, 3), 0.0))
-            self.outcome.collisions[f"{one} and {other}"] = begin, round(lasted + LOOK, 3)
+            self.outcome.collisions[f"{one} and {other}"] = begin, round(lasted + POLL_INTERVAL, 3)
 
     def _exhaust(self, strain: Strain) -> None:
         """The longest time without a pause that a motor gave all it could."""
@@ -146,13 +146,13 @@ class _Watch:
     def _slide(self, soles: Mapping[str, Sole]) -> None:
         """How far each foot came from where it was when it began to bear load."""
         for side, sole in soles.items():
-            if sole.load < BEARING:
+            if sole.load < BEARING_FORCE:
                 self._stands.pop(side, None)
                 continue
             stands = self._stands.setdefault(side, sole)
             far = hypot(sole.x - stands.x, sole.y - stands.y)
             since, most = self.outcome.slid.get(side, (0.0, 0.0))
-            _most(self.outcome.slid, side, since if most >= SLID else self._now, far)
+            _most(self.outcome.slid, side, since if most >= MAX_FOOT_SLIDE else self._now, far)
 
 
 def _most(found: dict[str, TimedAmount], what: str, at: float, value: float) -> None:

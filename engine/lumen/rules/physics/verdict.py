@@ -7,18 +7,18 @@ from lumen.language.diagnostics import Diagnostic, NodePath, Places
 from lumen.language.motions import Keyframe
 from lumen.rules.codes import CODES
 from lumen.rules.physics import FELL, CaseResult, Outcome
-from lumen.rules.physics.trial import FALLS, SLID, TimedAmount
+from lumen.rules.physics.trial import FALLING_TILT, MAX_FOOT_SLIDE, TimedAmount
 
-TOUCH = 0.04
+MAX_CONTACT_TIME = 0.04
 """How long two links have to press into each other [s]."""
 
-EXHAUSTED = 0.3
+MAX_FULL_TORQUE_TIME = 0.3
 """For how long a motor may give all it can [s]."""
 
-LATE = 0.35
+MAX_JOINT_LAG = 0.35
 """How far a joint may be from where the motion has it [rad]."""
 
-MOST_FAILED = 0.1
+MAX_FAILED_SHARE = 0.1
 """Of a passage, which the robot tries again, so many attempts may fail."""
 
 _FEET = {"L": "the left foot", "R": "the right foot"}
@@ -46,22 +46,22 @@ class _Judge:
             yield from self._failure(failed, failed[0] is self._rehearsal.outcomes[0])
         if self._case.passage:
             return
-        if not failed and (leans := max(outcome.tilt for outcome in tried)) >= FALLS:
+        if not failed and (leans := max(outcome.tilt for outcome in tried)) >= FALLING_TILT:
             message = (
                 f"the torso leans {leans:.0f} deg when the robot plays this {self._case.way}: at 45 it counts as fallen"
             )
             most = max(tried, key=lambda outcome: outcome.tilt)
             yield self._found("unsteady", message, "bow less deep", self._keys(most.leaned, _LEGS))
             return  # the rest comes of it
-        worst = [*self._worst("self-collision", lambda o: o.collisions, TOUCH)]
+        worst = [*self._worst("self-collision", lambda o: o.collisions, MAX_CONTACT_TIME)]
         if worst or (failed and failed[0] is self._rehearsal.outcomes[0]):
             yield from worst
             return  # the rest comes of it
-        slides = [*self._worst("feet-slide", lambda o: o.slid, SLID)]
+        slides = [*self._worst("feet-slide", lambda o: o.slid, MAX_FOOT_SLIDE)]
         yield from slides
         spared = _LEGS if slides else ()
-        late = [*self._worst("comes-late", lambda o: o.behind, LATE, spared)]
-        yield from late or self._worst("overloaded", lambda o: o.exhausted, EXHAUSTED, spared)
+        late = [*self._worst("comes-late", lambda o: o.behind, MAX_JOINT_LAG, spared)]
+        yield from late or self._worst("overloaded", lambda o: o.exhausted, MAX_FULL_TORQUE_TIME, spared)
 
     def _failure(self, failed: list[Outcome], itself: bool) -> Iterator[Diagnostic]:
         """It falls, or does not come to its end: with the robot itself, or with some others."""
@@ -79,7 +79,7 @@ class _Judge:
             yield self._found("falls", message, hint, self._keys(worst.at, _LEGS))
             return
         tried = len(self._rehearsal.tried)
-        if len(failed) <= (MOST_FAILED * tried if self._case.passage else 0):
+        if len(failed) <= (MAX_FAILED_SHARE * tried if self._case.passage else 0):
             return
         message = f"{len(failed)} of {tried} robots, each a little different, {_plural(what)} here"
         if not self._case.passage:
