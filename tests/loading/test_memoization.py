@@ -33,7 +33,7 @@ def test_equal_input_is_answered_from_memory_and_other_input_anew() -> None:
 
 
 def test_memory_does_not_grow_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(recollection, "MAX_SLOTS", 3)
+    monkeypatch.setattr(recollection, "MAX_MEMOIZED", 3)
     monkeypatch.setattr(recollection, "_last", {})
     for i in range(10):
         memoize(("slot", i), i, int)
