@@ -13,7 +13,7 @@ from lumen.app.whole_node import WholeNode
 from lumen.cli.main import main
 from lumen.errors import BusError
 from lumen.loading.files import read_files
-from lumen.runtime.crash_counter import DEATHS, MOST, CrashCounter
+from lumen.runtime.crash_counter import DEATHS, MAX_KNOWN_BUNDLES, CrashCounter
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.journal import Journal
 from tests.live.shows import Live
@@ -128,9 +128,12 @@ def test_a_start_on_newer_files_is_a_reload_and_journaled(copy: Path, run: list[
 def test_how_often_files_did_not_last_is_remembered_of_the_latest(tmp_path: Path) -> None:
     home = Home(tmp_path)
     trials = CrashCounter(home)
-    for number in range(2 * MOST):
+    for number in range(2 * MAX_KNOWN_BUNDLES):
         trials.begin(f"bundle {number}")
-    assert [trials.count(f"bundle {number}") for number in (0, MOST - 1, MOST, 2 * MOST - 1)] == [0, 0, 1, 1]
+    assert [
+        trials.count(f"bundle {number}")
+        for number in (0, MAX_KNOWN_BUNDLES - 1, MAX_KNOWN_BUNDLES, 2 * MAX_KNOWN_BUNDLES - 1)
+    ] == [0, 0, 1, 1]
     trials.begin("bundle 39")
     trials.annul("bundle 39")
     assert trials.count("bundle 39") == 1

@@ -13,7 +13,7 @@ from lumen.ports import Aim, Message, Perform
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import DelegatedTracking
-from lumen.runtime.presence import MOST, Presence
+from lumen.runtime.presence import MAX_PEERS, Presence
 from tests.exhibits import BODY, JOINTS, messages, project
 
 PROJECT = project(messages=messages())
@@ -94,12 +94,12 @@ def test_a_robot_of_another_name_and_nonsense_are_nobody(hall: Hall) -> None:
         hall.bus.publish("lumen.presence", body)
     hall.live(0.2, brain)
     assert brain.peers() == []
-    for i in range(3 * MOST):
+    for i in range(3 * MAX_PEERS):
         hall.bus.publish("lumen.presence", {**good, "session": str(i)})
     hall.live(3.0, brain)
     hall.bus.publish("lumen.presence", good)
     hall.live(0.2, brain)
-    assert len(brain._peers) <= MOST
+    assert len(brain._peers) <= MAX_PEERS
 
 
 def test_a_robot_rests_when_its_brain_is_gone_and_tells_the_next_one(hall: Hall) -> None:

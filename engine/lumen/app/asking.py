@@ -8,11 +8,11 @@ from typing import Any
 from lumen.errors import BusUnreachableError
 from lumen.ports import Bus
 
-PATIENCE = 10.0
+FIRST_ANSWER_TIMEOUT = 10.0
 """How long the first answer may take [s]: files are loaded for it."""
 
 
-def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = PATIENCE) -> Iterator[Any]:
+def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_ANSWER_TIMEOUT) -> Iterator[Any]:
     """The answers to a message, as they come; who takes them decides which is the last.
 
     Raises BusError where there is none within `first` [s].

@@ -8,7 +8,7 @@ from lumen.language.projects import Project
 from lumen.ports import Bus, Message
 from lumen.runtime.presence import HERE, KEY, PERIOD, ROBOT, ROUTE
 
-PATIENCE = 4 * PERIOD
+PRESENCE_TIMEOUT = 4 * PERIOD
 
 
 class RobotAttendance:
@@ -22,7 +22,7 @@ class RobotAttendance:
 
     def robot(self) -> bool:
         """Whether it is there; waits for as long as it may take to say so."""
-        return self._here.wait(PATIENCE)
+        return self._here.wait(PRESENCE_TIMEOUT)
 
     def _hear(self, message: Message) -> None:
         match message.body:

@@ -23,6 +23,7 @@ from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
 from lumen.runtime.home import home_of
 from lumen.runtime.loop import Observer
 from lumen.runtime.sending import send
+from lumen.runtime.visitor import VisitorActor
 
 
 class Exhibition:
@@ -70,6 +71,11 @@ class Exhibition:
     def project(self) -> Project:
         """The bundle that runs."""
         return self.node.project
+
+    @property
+    def visitor(self) -> VisitorActor | None:
+        """Whoever stands in the hall, to be made to `arrive`, `speak` and `leave`; None where there is no hall."""
+        return self.node.visitor.actor if self.node.visitor else None
 
     @property
     def configuration(self) -> frozenset[str]:

@@ -18,7 +18,7 @@ from lumen.runtime.coverage import Gap, described
 from lumen.runtime.visitor import SPEECH
 
 HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
-PATIENCE = "2min"
+ROBOT_TIMEOUT = "2min"
 """How long the story waits until the robot has done something."""
 
 
@@ -97,7 +97,7 @@ def _steps(project: Project, way: tuple[PathStep, ...]) -> Iterator[str]:
         if move.kind is StimulusKind.TIME and not changed:
             yield f"wait: {move.waited:g}s"
         elif changed:
-            within = {StimulusKind.TIME: f"{move.waited + 1:g}s", StimulusKind.DONE: PATIENCE}.get(move.kind)
+            within = {StimulusKind.TIME: f"{move.waited + 1:g}s", StimulusKind.DONE: ROBOT_TIMEOUT}.get(move.kind)
             yield _expect(stay.states, before.states, {"within": within} if within else {})
 
 

@@ -18,6 +18,9 @@ from lumen.runtime.loop import TICK
 from lumen.runtime.presence import HERE, ROBOT, Presence, told
 from lumen.runtime.trace_publisher import KEY
 
+ROUNDING = 1e-6
+"""How far the sum of many ticks may be off [s]."""
+
 
 class Node:
     """Ticks its parts in their order until one is over or somebody ends it.
@@ -95,7 +98,7 @@ class Node:
         began = self.now
         scheduler = GcScheduler()
         self.closing.append(scheduler.close)
-        while not self.over and (period is None or self.now - began < period):
+        while not self.over and (period is None or self.now - began < period - ROUNDING):
             self.tick()
             scheduler()
         return self.now - began

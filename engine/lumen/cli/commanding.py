@@ -8,7 +8,7 @@ from lumen.app.asking import ask
 from lumen.cli.reach import reach
 
 ANSWERS = "lumen.operator.answer"
-PATIENCE = 30.0
+COMMAND_TIMEOUT = 30.0
 
 
 def command(options: argparse.Namespace, body: Any, done: str, first: tuple[str, Any] | None = None) -> int:
@@ -20,7 +20,7 @@ def command(options: argparse.Namespace, body: Any, done: str, first: tuple[str,
     try:
         if first:
             reached.bus.publish(*first)
-        answer = str(next(ask(reached.bus, reached.command, body, ANSWERS, first=PATIENCE)))
+        answer = str(next(ask(reached.bus, reached.command, body, ANSWERS, first=COMMAND_TIMEOUT)))
     finally:
         reached.bus.close()
     if answer == "command finished":

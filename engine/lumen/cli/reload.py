@@ -8,7 +8,7 @@ from lumen.app.asking import ask
 from lumen.app.reload.requests import COMMAND, STATUS
 from lumen.cli.reach import configure_reach, reach
 
-VERBS = {
+REQUESTS = {
     "status": "say which files run, what is staged, and what came of the last ones",
     "apply": "put in force what is staged",
     "rollback": "go back to the files that ran before",
@@ -19,7 +19,7 @@ VERBS = {
 def configure(parser: argparse.ArgumentParser) -> None:
     configure_reach(parser)
     which = parser.add_mutually_exclusive_group()
-    for verb, summary in VERBS.items():
+    for verb, summary in REQUESTS.items():
         which.add_argument(f"--{verb}", dest="command", action="store_const", const=verb, help=summary)
     parser.add_argument("--now", action="store_true", help="do not wait for what the robot is doing: cancel it")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")

@@ -23,7 +23,7 @@ from lumen.loading.units import seconds
 from lumen.ports import Bus, Message
 from lumen.rules import check_files
 
-VERBS = {
+TOPIC_VERBS = {
     "list": "the routes, and what comes on them meanwhile",
     "echo PATTERN": "messages as they come",
     "pub KEY BODY": "send a message, checked against its route's schema; a BODY that is no JSON is a text",
@@ -47,8 +47,8 @@ class Heard(NamedTuple):
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = "Look at the messages of a running exhibition, on a broker or on this machine, or send one."
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.epilog = "\n".join(["what to do:", *(f"  {verb:14} {what}" for verb, what in VERBS.items())])
-    parser.add_argument("what", metavar="WHAT", choices=[verb.split()[0] for verb in VERBS], help="see below")
+    parser.epilog = "\n".join(["what to do:", *(f"  {verb:14} {what}" for verb, what in TOPIC_VERBS.items())])
+    parser.add_argument("what", metavar="WHAT", choices=[verb.split()[0] for verb in TOPIC_VERBS], help="see below")
     parser.add_argument("words", metavar="WORD", nargs="*", help="a PATTERN, or a KEY and a BODY")
     parser.add_argument("--count", metavar="N", type=int, default=0, help="echo: end after so many")
     parser.add_argument("--for", dest="span", metavar="TIME", help="listen so long (default: 3s; echo: until Ctrl-C)")
@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _check_words(options: argparse.Namespace) -> None:
-    wanted = next(verb.split()[1:] for verb in VERBS if verb.split()[0] == options.what)
+    wanted = next(verb.split()[1:] for verb in TOPIC_VERBS if verb.split()[0] == options.what)
     if len(options.words) != len(wanted):
         raise UsageError(f"write `lumen topic {' '.join([options.what, *wanted])}`")
 

@@ -8,7 +8,7 @@ TRIALS = "trials.json"
 VERSION = 1
 DEATHS = 2
 """How often a bundle may end the exhibition within its probation before a start does something else."""
-MOST = 20
+MAX_KNOWN_BUNDLES = 20
 """How many bundles are remembered, the latest."""
 
 
@@ -51,5 +51,5 @@ class CrashCounter:
             return {}
 
     def _write(self, counts: dict[str, int]) -> None:
-        latest = dict(list(counts.items())[-MOST:])
+        latest = dict(list(counts.items())[-MAX_KNOWN_BUNDLES:])
         self._home.write(TRIALS, json.dumps({"version": VERSION, "bundles": latest}).encode())

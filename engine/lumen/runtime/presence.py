@@ -22,7 +22,7 @@ PERIOD = 0.5
 LOST = 2.5
 """How long one has to be silent to be lost [s]."""
 LASTING = 2.0
-MOST = 100
+MAX_PEERS = 100
 """How many processes are known at most: nobody fills the memory."""
 
 ASKS, HERE, LEAVES = "asks", "here", "leaves"
@@ -159,7 +159,7 @@ class Presence:
             return
         known = self._peers.get(session)
         if known is None:
-            if len(self._peers) >= MOST:
+            if len(self._peers) >= MAX_PEERS:
                 self._peers = {s: p for s, p in self._peers.items() if now - p.heard <= LOST}
             known = self._peers[session] = Peer(session, tuple(map(str, parts)), now, now, state, body)
             self.came.append(known)

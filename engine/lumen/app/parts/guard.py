@@ -8,7 +8,7 @@ from lumen.language.events import Event
 from lumen.ports import Robot
 from lumen.runtime.presence import BRAIN, HERE, LEAVES, LOST, ROBOT, Peer, Presence, told
 
-PATIENCE = 5.0
+BRAIN_TIMEOUT = 5.0
 """How long a brain may be silent before its robot rests [s]."""
 
 
@@ -50,9 +50,9 @@ class BrainGuard:
         gone = followed is None or followed.state == LEAVES or at - followed.heard > LOST
         if gone and (brain := self._presence.find(BRAIN)) and brain.state == HERE:
             self._follow(brain, now)
-        elif gone and self._last is not None and not self._resting and at - self._last > PATIENCE:
+        elif gone and self._last is not None and not self._resting and at - self._last > BRAIN_TIMEOUT:
             self._resting = True
-            self._tell(f"rests: its brain is gone for {PATIENCE:g} s")
+            self._tell(f"rests: its brain is gone for {BRAIN_TIMEOUT:g} s")
             self._robot.start("guard", Rest())
 
     def _wake(self, at: float) -> None:

@@ -7,10 +7,10 @@ from typing import Any
 from lumen.app.reload.validator import Validation, told
 from lumen.interpreters.changes import Change, Risk, risk, summary
 from lumen.interpreters.migration import MigrationDelay, Refusal
-from lumen.language.diagnostics import Severity
+from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.language.projects import Project
 
-MOST = 100
+MAX_LISTED = 100
 """Changes and diagnostics that a bulletin lists."""
 OPEN = ("waiting", "judging")
 """Verdicts after which another one follows."""
@@ -47,6 +47,11 @@ class ReloadReport:
         return replace(self, validation=validation)
 
     @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything wrong with the files; where one is an error, they were refused."""
+        return self.validation.diagnostics if self.validation else ()
+
+    @property
     def restart(self) -> list[str]:
         """What comes into force only when the exhibition is started anew."""
         return [str(change) for change in self.changes if change.risk is Risk.RESTART and self.who != START]
@@ -55,7 +60,7 @@ class ReloadReport:
         """What a person is told, the reasons before the verdict."""
         if self.validation:
             errors = (d for d in self.validation.diagnostics if d.severity is Severity.ERROR)
-            yield from map(str, list(errors)[:MOST])
+            yield from map(str, list(errors)[:MAX_LISTED])
             yield from (f"{told(rehearsal)}" for rehearsal in self.validation.failed)
         yield from (said := list(self._verdict()))
         yield from self.notes
@@ -114,10 +119,10 @@ class ReloadReport:
         }
         if self.changes or self.verdict in ("applied", "staged", "dry run"):
             found["risk"] = str(risk(self.changes))
-            found["changes"] = [str(change) for change in self.changes[:MOST]]
+            found["changes"] = [str(change) for change in self.changes[:MAX_LISTED]]
             found["restart"] = self.restart
         if self.validation:
-            found["diagnostics"] = [d.to_json() for d in self.validation.diagnostics[:MOST]]
+            found["diagnostics"] = [d.to_json() for d in self.validation.diagnostics[:MAX_LISTED]]
             found["stories"] = [told(rehearsal) for rehearsal in self.validation.failed]
         if took := self._took():
             found["took"] = took

@@ -9,13 +9,13 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.ports import Bus, Message
 
 COMMAND, STATUS = "lumen.config.command", "lumen.config.status"
-VERBS = ("reload", "apply", "rollback", "dry-run", "status", "stop")
+REQUESTS = ("reload", "apply", "rollback", "dry-run", "status", "stop")
 WAITING = 100
 
 
 @dataclass(frozen=True)
 class ReloadRequest:
-    """`verb` is one of `VERBS`; `now` does not wait for what is under way. `answer` sends a body to who asked."""
+    """`verb` is one of `REQUESTS`; `now` does not wait for what is under way. `answer` sends a body to who asked."""
 
     verb: str
     now: bool
@@ -26,9 +26,9 @@ def request_from(message: Message, bus: Bus) -> ReloadRequest:
     """The order that a message is; raises UsageError that says what would be right."""
     body = message.body
     if not isinstance(body, dict) or not isinstance(verb := body.get("command"), str):
-        raise UsageError(f'a body such as {{"command": "reload"}} is expected, with one of {", ".join(VERBS)}')
-    if verb not in VERBS:
-        raise UsageError(f"there is no command `{verb[:40]}`: {did_you_mean(verb[:40], VERBS, 'there are')}")
+        raise UsageError(f'a body such as {{"command": "reload"}} is expected, with one of {", ".join(REQUESTS)}')
+    if verb not in REQUESTS:
+        raise UsageError(f"there is no command `{verb[:40]}`: {did_you_mean(verb[:40], REQUESTS, 'there are')}")
     if not isinstance(body.get("now", False), bool):
         raise UsageError("`now` is true or false")
     return ReloadRequest(verb, body.get("now", False), answering(message, bus))
