@@ -15,8 +15,6 @@ from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.waiting import Collector, until
 
-pytestmark = pytest.mark.xdist_group("rabbitmq")
-
 
 @pytest.fixture
 def bus(broker: RabbitMQ) -> Iterator[Bus]:

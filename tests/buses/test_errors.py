@@ -25,8 +25,6 @@ from tests.exhibits import project
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
 
-pytestmark = pytest.mark.xdist_group("rabbitmq")
-
 
 class World(NamedTuple):
     """A broker, a local bus in a folder, and where neither is."""

@@ -18,8 +18,6 @@ from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.waiting import Collector, until
 
-pytestmark = pytest.mark.xdist_group("rabbitmq")
-
 WAYS = {
     "lumen.fault.command": Route(
         "command", "lumen.fault.command", Direction.IN, carried=Carried.COMMAND, must_arrive=True, ttl=600.0

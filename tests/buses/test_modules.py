@@ -16,8 +16,6 @@ from tests.guarded import PIPE, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector
 
-pytestmark = pytest.mark.xdist_group("rabbitmq")
-
 ROOT = Path(__file__).parents[2]
 MODULES = ROOT / "examples/modules"
 

@@ -16,8 +16,6 @@ from tests.certificates import certify
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 
-pytestmark = pytest.mark.xdist_group("rabbitmq")
-
 
 @pytest.fixture(scope="module")
 def secure(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RabbitMQ]:

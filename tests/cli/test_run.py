@@ -97,7 +97,6 @@ def test_the_tour_in_indonesian(copy: Path, capsys: pytest.CaptureFixture[str]) 
     assert "Selamat pagi!" in capsys.readouterr().out
 
 
-@pytest.mark.xdist_group("rabbitmq")
 def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> None:
     """At ten times real time, for a broker does not hurry when simulated time does."""
     story = project.stories["visitor"]

@@ -46,7 +46,7 @@ class Exhibition:
                 self._bus.publish(key, body)
 
 
-@pytest.fixture(params=["embedded", pytest.param("broker", marks=pytest.mark.xdist_group("rabbitmq"))])
+@pytest.fixture(params=["embedded", pytest.param("broker", marks=pytest.mark.broker)])
 def exhibition(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Exhibition]:
     monkeypatch.delenv("LUMEN_BUS", raising=False)
     shown: Project = project()
@@ -151,7 +151,6 @@ def test_the_doctor_finds_what_is_silent(run: Run, monkeypatch: pytest.MonkeyPat
     assert {"what", "severity", "text"} == set(found["findings"][0])
 
 
-@pytest.mark.xdist_group("rabbitmq")
 def test_the_doctor_finds_what_a_user_may_not(
     broker: RabbitMQ, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -164,7 +163,6 @@ def test_the_doctor_finds_what_a_user_may_not(
     assert "nobody serves `command` (avatar.NAO.command)" in out
 
 
-@pytest.mark.xdist_group("rabbitmq")
 def test_who_may_not_send_is_told_so_in_one_line(broker: RabbitMQ, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["topic", "pub", "--project", str(ROOT), "--bus", broker.url_of("eyes")]
     assert main([*words, "command", '{"method": "rest"}']) == 2
@@ -175,7 +173,6 @@ def test_who_may_not_send_is_told_so_in_one_line(broker: RabbitMQ, capsys: pytes
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.xdist_group("rabbitmq")
 @pytest.mark.parametrize(
     ("url", "says"),
     [

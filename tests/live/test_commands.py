@@ -190,7 +190,6 @@ def test_stop_is_heard_by_the_behaviour(live: Live) -> None:
     assert any(isinstance(command, Say) for _, command in live.robot.performed)
 
 
-@pytest.mark.xdist_group("rabbitmq")
 def test_the_same_on_a_broker_for_which_no_tick_waits(
     copy: Path, broker: RabbitMQ, monkeypatch: pytest.MonkeyPatch
 ) -> None:

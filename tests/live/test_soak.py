@@ -18,7 +18,7 @@ def test_fifty_edits_under_load() -> None:
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize("url", ["memory", pytest.param("amqp", marks=pytest.mark.xdist_group("rabbitmq"))])
+@pytest.mark.parametrize("url", ["memory", pytest.param("amqp", marks=pytest.mark.broker)])
 def test_a_thousand_edits_under_load(url: str, request: pytest.FixtureRequest) -> None:
     found = soak(1000, "memory://" if url == "memory" else request.getfixturevalue("broker").url)
     holds(found)

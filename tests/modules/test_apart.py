@@ -15,8 +15,6 @@ from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded, run_guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 
-pytestmark = pytest.mark.xdist_group("rabbitmq")
-
 POSTER = Path(__file__).parents[2] / "examples/modules/poster.py"
 FACT = "lumen.NAO.persistence.fact"
 BEGUN = 120.0

@@ -21,8 +21,6 @@ from tests.processes.troupe import SPEED, Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 
-pytestmark = pytest.mark.xdist_group("rabbitmq")
-
 SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
 Start = Callable[..., Guarded[str]]
 

@@ -10,8 +10,6 @@ from tests.processes.troupe import Troupe, alone, deeds
 from tests.relay import Relay
 from tests.waiting import Collector
 
-pytestmark = pytest.mark.xdist_group("rabbitmq")
-
 
 def test_four_parts_do_what_one_process_does(troupe: Troupe) -> None:
     photo = troupe.folder / "motions" / "photo.yaml"

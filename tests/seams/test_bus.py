@@ -13,7 +13,7 @@ from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus
 from tests.waiting import Collector
 
-KINDS = ["memory", "local", pytest.param("amqp", marks=pytest.mark.xdist_group("rabbitmq"))]
+KINDS = ["memory", "local", pytest.param("amqp", marks=pytest.mark.broker)]
 
 Connect = Callable[[], Bus]
 

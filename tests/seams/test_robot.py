@@ -75,9 +75,9 @@ def project() -> Project:
     return lumen.load(ROOT)
 
 
-@pytest.fixture(params=list(ROBOTS))
+@pytest.fixture(params=ROBOTS.values(), ids=list(ROBOTS))
 def robot(request: pytest.FixtureRequest, project: Project) -> Iterator[Body]:
-    one = ROBOTS[request.param](project)
+    one = request.param(project)
     yield one
     one.close()
 

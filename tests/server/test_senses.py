@@ -21,6 +21,7 @@ from lumen.language.routes import SIZES
 from lumen.ports import Message, Reading, Sense
 from lumen.robots.server import RobotServer
 from tests.exhibits import TACTILE, messages, project
+from tests.rabbitmq import RabbitMQ
 from tests.server.stand import DATE, FRAME, NAMES, PATIENT, PROJECT, Puppet, Stand, without
 from tests.waiting import Collector, until
 
@@ -262,9 +263,7 @@ def test_closing_ends_the_threads_and_may_be_repeated() -> None:
     assert threading.active_count() == before
 
 
-@pytest.mark.xdist_group("rabbitmq")
-def test_the_same_server_on_a_broker(request: pytest.FixtureRequest) -> None:
-    broker = request.getfixturevalue("broker")
+def test_the_same_server_on_a_broker(broker: RabbitMQ) -> None:
     bus, module = connect(broker.url, PROJECT), connect(broker.url)
     senses, answers = Collector(), Collector()
     module.subscribe("avatar.NAO.data.*", senses)

@@ -1,0 +1,76 @@
+"""Tests are marked by what they name, through whatever helpers; the functions here are looked through, never called."""
+
+from collections.abc import Iterator
+from functools import cache
+from typing import Any
+
+import mujoco
+import pytest
+from hypothesis import given, strategies
+
+from lumen.robots.simulation import SimulatedRobot
+from tests.fetched import fetched
+from tests.marking import marks
+from tests.rabbitmq import RabbitMQ
+
+
+def starts() -> RabbitMQ:
+    return RabbitMQ()
+
+
+def in_a_function_within() -> Iterator[Any]:
+    yield lambda: [starts() for _ in range(2)]
+
+
+@cache
+def remembered() -> object:
+    return mujoco.MjSpec()
+
+
+@given(strategies.integers())
+def property_of(number: int) -> None:
+    assert fetched(str(number))
+
+
+class Stand:
+    def __init__(self, robot: object) -> None:
+        self.robot = robot
+
+    @property
+    def another(self) -> object:
+        return SimulatedRobot
+
+    @classmethod
+    def make(cls) -> "Stand":
+        return cls(remembered())
+
+
+def by_name_only(robot: SimulatedRobot, broker: RabbitMQ) -> object:
+    """Annotations need nothing: the robot may be the recording one in a test of everything."""
+    return robot or broker
+
+
+def everything() -> object:
+    return Stand, starts, property_of
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("starts", "broker"),
+        ("in_a_function_within", "broker"),
+        ("remembered", "physics"),
+        ("property_of", "npm"),
+        ("Stand", "physics"),
+        ("by_name_only", ""),
+        ("everything", "broker npm physics"),
+    ],
+)
+def test_marks_come_from_what_is_named(name: str, expected: str) -> None:
+    assert " ".join(sorted(marks(globals()[name]))) == expected
+
+
+@pytest.mark.parametrize("name", ["starts"])
+def test_and_not_from_strings(name: str, request: pytest.FixtureRequest) -> None:
+    """Or this one would need a broker."""
+    assert {mark.name for mark in request.node.iter_markers()} == {"parametrize"}

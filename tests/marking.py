@@ -1,0 +1,83 @@
+"""Which tests need a broker, physics or what npm fetches: marked by what their code names, so that none is forgotten.
+
+Looked through are a test, its fixtures and parameters, and what they name of the helpers of tests. Not seen is what a
+test reaches by a string (`getfixturevalue`, the words of a command line): such a test is marked by hand, as are `slow`
+ones.
+"""
+
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from functools import cache
+from operator import attrgetter
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import pytest
+
+from tests.fetched import fetched
+from tests.rabbitmq import RabbitMQ
+
+PHYSICS = ("lumen.robots.simulation", "mujoco", "dm_control")
+"""What lives in MuJoCo's world."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if isinstance(item, pytest.Function):
+            fixtures = item._fixtureinfo.name2fixturedefs.values()
+            used = [item.function, *(definition.func for found in fixtures for definition in found)]
+            used += [value for value in parameters(item) if isinstance(value, FunctionType | type)]
+            for mark in {mark for thing in used for mark in marks(thing)}:
+                item.add_marker(mark)
+        if item.get_closest_marker("broker"):
+            item.add_marker(pytest.mark.xdist_group("rabbitmq"))  # one worker starts it, for all of them
+
+
+def parameters(item: pytest.Function) -> Iterable[Any]:
+    return item.callspec.params.values() if hasattr(item, "callspec") else ()
+
+
+@cache
+def marks(thing: Any) -> frozenset[str]:
+    """What a function or a class of the tests needs."""
+    found, seen, left = set(), set(), [thing]
+    while left:
+        one = left.pop()
+        if id(one) in seen:
+            continue
+        seen.add(id(one))
+        if one is RabbitMQ:
+            found.add("broker")
+        elif one is fetched:
+            found.add("npm")
+        elif home(one).startswith(PHYSICS):
+            found.add("physics")
+        elif home(one).startswith("tests."):
+            left += named(one)
+    return frozenset(found)
+
+
+def home(thing: Any) -> str:
+    """The module that a function, class or module comes from; empty for anything else."""
+    return thing.__name__ if isinstance(thing, ModuleType) else str(getattr(thing, "__module__", None) or "")
+
+
+def named(thing: Any) -> Iterator[Any]:
+    """What the code of a function, or of a class's functions, names of its module."""
+    for wrapper in ("hypothesis.inner_test", "__wrapped__"):
+        with suppress(AttributeError):
+            thing = attrgetter(wrapper)(thing)
+    if isinstance(thing, type):
+        for member in vars(thing).values():
+            yield from named(getattr(member, "fget", member))
+    elif isinstance(thing, FunctionType):
+        yield from (thing.__globals__[name] for name in names(thing.__code__) if name in thing.__globals__)
+
+
+def names(code: CodeType) -> Iterator[str]:
+    """The names in a function's code, and in that of functions within it."""
+    yield from code.co_names
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from names(constant)
