@@ -10,8 +10,10 @@ from lumen.interpreters.inference import Evaluator, Explanation, explain
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import has_errors
 from lumen.loading.controllers import build_controller
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Document, DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 
 if TYPE_CHECKING:
     import numpy as np

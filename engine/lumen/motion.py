@@ -11,13 +11,15 @@ from lumen.interpreters.trajectory import Trajectory
 from lumen.language import motions
 from lumen.language.diagnostics import has_errors
 from lumen.language.robots import Body
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import read_files
 from lumen.loading.motions import build_motion, countable
 from lumen.loading.packaged import MAIN_FILE, find_project, shipped_root
 from lumen.loading.project import draft
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Document, DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 
 __all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]
 

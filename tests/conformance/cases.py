@@ -14,7 +14,7 @@ from typing import Any
 from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.scxml import read_scxml
 from lumen.language.diagnostics import Diagnostic, Severity
-from lumen.loading.source import parse
+from lumen.loading.yaml_reader import parse
 from lumen.statechart import Event, Machine, Snapshot, Step, due, initial, step
 from tests.fetched import fetched
 

@@ -5,8 +5,9 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lumen.loading.document import Document
 from lumen.loading.expressions import place_within
-from lumen.loading.source import Document, parse
+from lumen.loading.yaml_reader import parse
 
 WRITTEN = {
     "plain": "a: one HERE two\n",

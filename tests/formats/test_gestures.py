@@ -16,10 +16,11 @@ from lumen.formats.yaml_document import document_yaml
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.motions import MotionDefinition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.motions import build_motion
 from lumen.loading.packaged import shipped_root
 from lumen.loading.schema import check_schema
-from lumen.loading.source import DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 
 BODY = lumen.load(shipped_root()).body
 

@@ -13,8 +13,9 @@ from lumen.fuzzy import Controller
 from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
 from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS, formula
 from lumen.loading.controllers import build_controller
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import check_schema, load_schema
-from lumen.loading.source import DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 
 TABLE = """inputs:
   a: {range: [0, 10]}

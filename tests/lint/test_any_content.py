@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lumen.loading.files import read_files
-from lumen.loading.source import parse
+from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 
 BASE = read_files(Path(__file__).parent / "base")

@@ -13,7 +13,7 @@ import pytest
 
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import read_files
-from lumen.loading.source import parse
+from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 
 HERE = Path(__file__).parent

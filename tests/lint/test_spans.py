@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.source import parse
+from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 from tests.lint.test_cases import HERE, cases, changed
 

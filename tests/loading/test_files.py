@@ -10,7 +10,7 @@ import lumen
 from lumen.errors import ProjectError, UsageError
 from lumen.loading.files import Unreadable, fingerprint, read_files
 from lumen.loading.packaged import find_project, shipped_root
-from lumen.loading.source import parse
+from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 
 BASE = Path(__file__).parents[1] / "lint" / "base"

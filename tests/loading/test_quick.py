@@ -9,10 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
+from lumen.loading.document import Document
 from lumen.loading.files import read_files
 from lumen.loading.quick import quick
 from lumen.loading.schema import FILE_KINDS, load_schema
-from lumen.loading.source import Document, parse
+from lumen.loading.yaml_reader import parse
 from lumen.lsp.grammar import kind_of
 
 SHIPPED = read_files(Path(__file__).parents[2])

@@ -6,9 +6,10 @@ from typing import Any
 import jsonschema
 import pytest
 
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import schema_folder
 from lumen.loading.schema import FILE_KINDS, check_schema, load_schema
-from lumen.loading.source import DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 
 
 def check(text: str, kind: str = "behavior") -> tuple[Any, DocumentReport]:

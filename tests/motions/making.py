@@ -9,9 +9,10 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
 from lumen.loading.bodies import build_body
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
-from lumen.loading.source import DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = ("goodbye", "dance", "sing", "photo")

@@ -7,9 +7,10 @@ import pytest
 
 from lumen.errors import ProjectError
 from lumen.language.diagnostics import Severity
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.motions import build_motions
 from lumen.loading.schema import check_schema
-from lumen.loading.source import DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 from lumen.motion import Motion
 from tests.motions.making import nao, read
 

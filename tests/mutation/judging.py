@@ -15,7 +15,7 @@ from lumen.language.commands import Command, Play, Start
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.source import Document
+from lumen.loading.document import Document
 from lumen.rules import check_files
 from lumen.rules.codes import CODES
 from lumen.runtime.loop import Observer

@@ -1,7 +1,8 @@
 """A YAML file as text that can be cut and joined at its nodes: a mutant keeps the rest as its author wrote it."""
 
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.source import Document, parse
+from lumen.loading.document import Document
+from lumen.loading.yaml_reader import parse
 
 
 class Sheet:

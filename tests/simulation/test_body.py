@@ -10,7 +10,9 @@ import pytest
 
 from lumen.language.robots import Body
 from lumen.loading.bodies import build_body
-from lumen.loading.source import Document, DocumentReport, parse
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.yaml_reader import parse
 
 ROOT = Path(__file__).parents[2]
 NAOQI = [

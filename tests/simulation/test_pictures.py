@@ -89,7 +89,8 @@ def test_without_opengl_there_are_no_images_and_a_remedy() -> None:
     script = f"""
 import pathlib
 from lumen.loading.bodies import build_body
-from lumen.loading.source import DocumentReport, parse
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.yaml_reader import parse
 from lumen.ports import Sense
 from lumen.robots.simulation import SimulatedRobot, available
 models = pathlib.Path({str(MODELS)!r})

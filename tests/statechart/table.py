@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.language.commands import Cancel, Command, Log, Publish, Start
-from lumen.loading.source import parse
+from lumen.loading.yaml_reader import parse
 from lumen.statechart import Interpreter, Machine, Step
 
 CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))

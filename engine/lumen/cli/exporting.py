@@ -21,8 +21,9 @@ from lumen.formats.xstate import write_xstate
 from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
+from lumen.loading.document import Document
 from lumen.loading.packaged import find_project
-from lumen.loading.source import Document, parse
+from lumen.loading.yaml_reader import parse
 
 Writer = Callable[[MachineDefinition, PlaceOfPath], tuple[str, list[Diagnostic]]]
 

@@ -28,9 +28,10 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.robots import Body
 from lumen.loading.behaviors import build_machine
 from lumen.loading.controllers import build_controller
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
-from lumen.loading.source import DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 
 Reader = Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]
 

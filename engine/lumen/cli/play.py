@@ -18,9 +18,10 @@ from lumen.language.events import Event
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Document, DocumentReport
 from lumen.ports import Perform, RobotCommand
 from lumen.runtime.loop import TICK
 

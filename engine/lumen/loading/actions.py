@@ -21,9 +21,9 @@ from lumen.language.actions import (
 from lumen.language.commands import VerbCommand
 from lumen.language.diagnostics import NodePath
 from lumen.language.verbs import Quantity, Verb, verb_named
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.numbers import finite
-from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, LENGTHS, seconds
 
 DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"

@@ -8,11 +8,11 @@ from typing import Any, TypeVar
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.machines import Answer, MachineDefinition, State, StateKind
 from lumen.loading.actions import Actions
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import check_ids, invocations
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.shapes import check_shapes
-from lumen.loading.source import DocumentReport
 from lumen.loading.transitions import TransitionReader
 
 M = TypeVar("M", bound=MachineDefinition)

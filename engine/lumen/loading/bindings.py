@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.language.controllers import InputBinding, OutputBinding, Variable
 from lumen.language.diagnostics import NodePath, Severity, did_you_mean
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.units import ANGLES
 
 

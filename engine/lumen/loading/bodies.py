@@ -8,7 +8,7 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body, Camera, CoupledLimit, Joint, LinkInertia, Ultrasound
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.units import ANGLES, LENGTHS
 
 COMMON_POSTURES = ("Stand", "Crouch")

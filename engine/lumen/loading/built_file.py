@@ -5,9 +5,10 @@ from pathlib import PurePosixPath
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from lumen.language.diagnostics import Diagnostic
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.memoization import memoize
 from lumen.loading.schema import check_schema
-from lumen.loading.source import DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 
 T = TypeVar("T")
 B = TypeVar("B", covariant=True)

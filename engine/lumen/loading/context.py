@@ -6,9 +6,9 @@ from typing import Any
 from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.messages import examine
 from lumen.loading.numbers import finite
-from lumen.loading.source import DocumentReport
 
 
 def check_memory(machine: MachineDefinition, report: DocumentReport) -> list[tuple[str, str]]:

@@ -6,9 +6,9 @@ from typing import Any, TypeVar
 from lumen.language.controllers import ControllerDefinition, TrackingSettings
 from lumen.language.diagnostics import NodePath
 from lumen.loading.bindings import Bindings
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import without_extremes
 from lumen.loading.rulebook import Rulebook
-from lumen.loading.source import DocumentReport
 from lumen.loading.table import spread, termless
 from lumen.loading.units import ANGLES, seconds
 from lumen.loading.variables import build_variables

@@ -11,9 +11,9 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.language.stories import Story
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.settings import Settings
-from lumen.loading.source import DocumentReport
 
 
 @dataclass

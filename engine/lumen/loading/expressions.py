@@ -6,9 +6,10 @@ from typing import Any
 from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, did_you_mean
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import finite
 from lumen.loading.scalars import within
-from lumen.loading.source import Document, DocumentReport
 
 
 class Expressions:

@@ -17,7 +17,7 @@ from lumen.interpreters.expressions.tree import (
 )
 from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.word_places import report_word
 
 _PLAIN = (Identifier, Unary, Logic, Conditional)

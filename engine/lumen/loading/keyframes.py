@@ -7,8 +7,8 @@ from typing import Any
 from lumen.interpreters.choreography import at_speed, joined, mirrored, placed
 from lumen.language.diagnostics import NodePath, did_you_mean, has_errors
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.poses import PoseReader
-from lumen.loading.source import DocumentReport
 from lumen.loading.units import seconds
 
 MAX_MOTION_KEYS = 200_000

@@ -8,7 +8,7 @@ from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import Invoke, MachineDefinition
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 
 M = TypeVar("M", bound=MachineDefinition)
 

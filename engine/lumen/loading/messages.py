@@ -7,8 +7,11 @@ from functools import lru_cache
 from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place
+from lumen.loading.document import MAX_NODE_DEPTH, Document
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import schema_faults
-from lumen.loading.source import MAX_NODE_DEPTH, Document, DocumentReport, merge_conflict, parse
+from lumen.loading.yaml_errors import merge_conflict
+from lumen.loading.yaml_reader import parse
 
 SCHEMA_SUFFIX = ".schema.json"
 

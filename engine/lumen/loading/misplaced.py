@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 
 
 class _Kind(NamedTuple):

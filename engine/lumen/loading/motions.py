@@ -11,9 +11,9 @@ from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.motions import Interpolation, MotionDefinition
 from lumen.language.robots import Body
 from lumen.loading.built_file import unless_too_deep
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.keyframes import KeyframeReader
 from lumen.loading.poses import PoseReader
-from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, seconds
 
 DEFAULT_POSTURE = "Stand"

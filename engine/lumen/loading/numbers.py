@@ -5,8 +5,8 @@ from math import isfinite, isinf, isnan
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.pruning import prune
-from lumen.loading.source import DocumentReport
 
 LEAST_NUMBER, GREATEST_NUMBER = 1e-12, 1e12
 """A number of a controller is 0, or its size lies between these: their squares and quotients are floats as well."""

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.language.diagnostics import MAX_COMPARED_NAMES, NodePath, did_you_mean, nearest
 from lumen.language.machines import StateKind
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 
 
 @dataclass(slots=True)

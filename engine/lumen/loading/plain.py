@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place
-from lumen.loading.source import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
+from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
 
 
 def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnostic]]:

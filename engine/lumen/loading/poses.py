@@ -8,7 +8,7 @@ from typing import Any
 from lumen.interpreters.choreography import mirrored_joint
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.units import ANGLES, seconds
 
 PlacedAngles = dict[str, tuple[float, NodePath]]

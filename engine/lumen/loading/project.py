@@ -13,6 +13,7 @@ from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.controllers import build_controller
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import Unreadable, fingerprint
 from lumen.loading.linking import link
@@ -20,7 +21,6 @@ from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.settings import build_settings
-from lumen.loading.source import DocumentReport
 from lumen.loading.stories import build_story
 
 T = TypeVar("T")

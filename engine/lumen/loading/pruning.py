@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
-from lumen.loading.source import Document, DocumentReport, NodeSpan
+from lumen.loading.document import Document, NodeSpan
+from lumen.loading.document_report import DocumentReport
 
 
 def prune(report: DocumentReport, doomed: set[NodePath]) -> None:

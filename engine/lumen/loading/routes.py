@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.routes import COMMAND, STOP, Carried, Direction, Route, Size
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.units import seconds
 
 DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"

@@ -5,8 +5,8 @@ from typing import Any
 
 from lumen.language.controllers import Activation, Operators, Rule, RuleBlock, Variable
 from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.rule_parser import Mention, RuleSyntaxError, RuleWord, parse_rule
-from lumen.loading.source import DocumentReport
 from lumen.loading.word_places import report_word
 
 

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 from lumen.errors import LumenError
 from lumen.language.diagnostics import NodePath
 from lumen.loading.complaints import Complaint, complaints
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
 from lumen.loading.quick import Quick, quick
-from lumen.loading.source import Document, DocumentReport
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator

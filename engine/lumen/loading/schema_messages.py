@@ -5,8 +5,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.loading.source import resolve
 from lumen.loading.units import seconds
+from lumen.loading.yaml_scalars import resolve
 
 Error = Any
 """A `jsonschema.ValidationError`; its stubs allow for an unset state that a validator never yields."""

@@ -8,8 +8,8 @@ from typing import Any
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.routes import build_routes, duration
-from lumen.loading.source import DocumentReport
 from lumen.loading.units import LENGTHS
 
 

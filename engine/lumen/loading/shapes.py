@@ -2,8 +2,8 @@
 
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import StateKind
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.outline import BehaviorOutline, OutlinedState
-from lumen.loading.source import DocumentReport
 
 _COMMON = {"id", "description", "type"}
 _HISTORY = {*_COMMON, "history", "target"}

@@ -9,10 +9,12 @@ from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.loading.behaviors import build_machine
 from lumen.loading.context import check_memory
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.linking import link
 from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
-from lumen.loading.source import Document, DocumentReport, parse
+from lumen.loading.yaml_reader import parse
 
 M = TypeVar("M", bound=MachineDefinition)
 Read = Callable[[str], tuple[Document | None, list[Diagnostic]]]

@@ -19,8 +19,8 @@ from lumen.language.stories import (
     Visitor,
     VisitorAction,
 )
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.routes import duration
-from lumen.loading.source import DocumentReport
 from lumen.loading.units import seconds
 
 DEFAULT_WITHIN = 30.0

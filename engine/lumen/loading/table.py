@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.loading.source import Document, DocumentReport, NodeSpan
+from lumen.loading.document import Document, NodeSpan
+from lumen.loading.document_report import DocumentReport
 
 
 def spread(report: DocumentReport) -> Any:

@@ -6,9 +6,9 @@ from typing import Any
 
 from lumen.language.controllers import TERM_PARAMETERS, Term
 from lumen.language.diagnostics import NodePath
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.formulas import check_formula
 from lumen.loading.rule_parser import KEYWORDS
-from lumen.loading.source import DocumentReport
 
 _POSITIVE: Mapping[str, tuple[int, ...]] = {
     "gaussian": (1,), "gaussian-product": (1, 3), "bell": (1,), "spike": (1,), "cosine": (1,),

@@ -7,10 +7,10 @@ from typing import Any
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import StateKind, Transition
 from lumen.loading.actions import Actions
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import invoked
 from lumen.loading.outline import BehaviorOutline, OutlinedState
-from lumen.loading.source import DocumentReport
 
 PlacedValue = tuple[NodePath, Any]
 

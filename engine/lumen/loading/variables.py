@@ -8,7 +8,7 @@ from typing import Any
 from lumen.interpreters.inference.weighted import INVERSE_MEMBERSHIPS
 from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, Variable
 from lumen.language.diagnostics import NodePath
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.terms import build_terms, plain_name
 
 

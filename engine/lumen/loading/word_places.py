@@ -3,7 +3,8 @@
 from dataclasses import replace
 
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.source import Document, DocumentReport
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
 
 
 def report_word(

@@ -5,10 +5,11 @@ from functools import cached_property
 from pathlib import Path
 
 from lumen.language.diagnostics import Diagnostic
+from lumen.loading.document import Document
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.project import draft
-from lumen.loading.source import Document, parse
+from lumen.loading.yaml_reader import parse
 from lumen.lsp.grammar import kind_of
 from lumen.lsp.index import NameIndex
 from lumen.rules import check_files

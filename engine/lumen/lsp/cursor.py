@@ -4,7 +4,8 @@ import re
 from typing import NamedTuple
 
 from lumen.language.diagnostics import NodePath
-from lumen.loading.source import Document, parse
+from lumen.loading.document import Document
+from lumen.loading.yaml_reader import parse
 
 CURSOR_MARK = "Here0Stands1The2Cursor"
 _BEFORE = re.compile(r"[^\s,\[\]{}:'\"()]*$")

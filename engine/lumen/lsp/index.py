@@ -6,9 +6,10 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, Place
+from lumen.loading.document import Document
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.messages import SCHEMA_SUFFIX
 from lumen.loading.outline import BehaviorOutline, OutlinedState
-from lumen.loading.source import Document, DocumentReport
 from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
 from lumen.lsp.locating import DocumentText, NameInText, in_expression, in_template
 from lumen.lsp.names import KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers

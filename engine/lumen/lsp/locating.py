@@ -8,7 +8,7 @@ from typing import NamedTuple
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.tokens import Token, tokenize
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.source import Document
+from lumen.loading.document import Document
 from lumen.lsp.names import NameKind
 
 _TEMPLATE = re.compile(r"\{\{(.*?)\}\}", re.DOTALL)

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
-from lumen.loading.source import Document
+from lumen.loading.document import Document
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import defines, key_kind, kind_of
 from lumen.lsp.names import NameKind

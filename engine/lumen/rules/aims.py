@@ -4,8 +4,8 @@ from lumen.language.controllers import ControllerDefinition, OutputBinding, Prop
 from lumen.language.diagnostics import NodePath
 from lumen.language.robots import Body
 from lumen.language.scales import ranks
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find, first
 
 MAX_GAIN = 2.0

@@ -6,9 +6,9 @@ from typing import Any
 from lumen.language.controllers import ControllerDefinition, InputBinding, OutputBinding
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import memoize
-from lumen.loading.source import DocumentReport
 from lumen.rules import aims, rulebooks, shapes, surfaces
 from lumen.rules.finding import find
 from lumen.rules.references import known_route

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from lumen.language.actions import Raise, Send
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 from lumen.rules.statecharts import reachable
 from lumen.rules.walk import nested

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
 

@@ -7,8 +7,8 @@ from lumen.language.actions import Raise, Send
 from lumen.language.diagnostics import NodePath, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import MachineDefinition, StateKind, Transition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.endings import ending_fault
 from lumen.rules.finding import find, first
 from lumen.rules.walk import action_sites

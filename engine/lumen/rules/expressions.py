@@ -9,9 +9,9 @@ from lumen.interpreters.expressions import ExpressionFinding, check_expression, 
 from lumen.language.actions import Template
 from lumen.language.diagnostics import Diagnostic, Related
 from lumen.language.machines import MachineDefinition, Transition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import cause_of, place_within
-from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.walk import ExpressionSite, expression_sites

@@ -8,8 +8,8 @@ from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Li
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition, State, Transition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.events import hears
 from lumen.rules.finding import find
 from lumen.rules.logic import always, implies, never, tree

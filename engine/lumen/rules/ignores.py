@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, Severity, did_you_mean, has_errors
-from lumen.loading.source import Document
+from lumen.loading.document import Document
 from lumen.rules.codes import CODES
 
 _COMMENT = re.compile(r"(?<!\S)#[ \t]*lumen:[ \t]*ignore\b[ \t]*(?:\[(?P<codes>[^\]]*)\])?[ \t]*(?P<reason>.*)")

@@ -10,9 +10,9 @@ from lumen.interpreters.trajectory import Trajectory
 from lumen.language.diagnostics import NodePath
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import memoize
-from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES
 from lumen.rules.finding import find, value_at
 

@@ -5,8 +5,8 @@ from lumen.language.commands import VerbCommand
 from lumen.language.diagnostics import Diagnostic, NodePath, Related, did_you_mean
 from lumen.language.routes import Direction
 from lumen.language.verbs import verb_of
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 from lumen.rules.finding import References, find, first
 from lumen.rules.walk import ActionSite, action_sites

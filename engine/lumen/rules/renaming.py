@@ -1,8 +1,8 @@
 """What `renamed` says of the past: nothing that is still there can have got another name."""
 
 from lumen.language.machines import MachineDefinition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
 

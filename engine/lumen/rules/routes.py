@@ -18,8 +18,8 @@ from lumen.language.routes import (
     Direction,
     Route,
 )
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.events import descriptors, hears
 from lumen.rules.finding import References, find
 from lumen.rules.walk import action_sites

@@ -14,7 +14,7 @@ from lumen.language.controllers import (
     Rule,
     RuleBlock,
 )
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 from lumen.rules.finding import find
 
 MAX_SHOWN_CASES = 3

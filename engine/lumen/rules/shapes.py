@@ -9,7 +9,7 @@ from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.survey import grid
 from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Term, Variable
 from lumen.language.scales import ranks
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 from lumen.rules.finding import find
 
 MIN_MEMBERSHIP = 0.01

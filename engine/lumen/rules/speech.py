@@ -8,8 +8,8 @@ from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related, did_you_mean, nearest
 from lumen.language.machines import Answer, MachineDefinition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.codes import CODES
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import action_sites

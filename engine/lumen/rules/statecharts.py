@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from lumen.language.actions import Assign, PlacedAction
 from lumen.language.diagnostics import MAX_COMPARED_NAMES, nearest
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 from lumen.rules.logic import never, tree
 from lumen.rules.walk import nested

@@ -9,9 +9,9 @@ from lumen.interpreters.statechart.types import fits, refusal, type_checks
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect, Happen, SendMessage, Story, TouchSensor
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.schema import faults
-from lumen.loading.source import DocumentReport
 from lumen.rules.events import declared, descriptors, hears, raised
 from lumen.rules.finding import References, find, first
 from lumen.rules.references import known_route

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from lumen.interpreters.inference.survey import Slice, SurfaceJump, Survey, asked, grid
 from lumen.language.controllers import INTEGRAL_DEFUZZIFIERS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Variable
-from lumen.loading.source import DocumentReport
+from lumen.loading.document_report import DocumentReport
 from lumen.rules.finding import find
 
 STEP_SHARE, TURN_SHARE, REST_SHARE = 0.1, 0.02, 0.02

@@ -8,8 +8,8 @@ from lumen.language.actions import If, Parallel, PlacedAction, SayText, Wait
 from lumen.language.commands import Play, Posture, Walk
 from lumen.language.machines import MachineDefinition, State
 from lumen.language.motions import MotionDefinition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find
 
 SECONDS_PER_TEXT, SECONDS_PER_CHARACTER, SECONDS_PER_POSTURE, WALKING_SPEED = 0.4, 0.06, 2.0, 0.1

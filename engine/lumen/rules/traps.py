@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from lumen.language.actions import SayText
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import action_sites
 

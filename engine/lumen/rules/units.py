@@ -9,8 +9,8 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.loading.units import ANGLES, LENGTHS
 from lumen.rules.finding import find, value_at
 from lumen.rules.walk import action_sites

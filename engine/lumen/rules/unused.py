@@ -8,8 +8,8 @@ from lumen.language.diagnostics import NodePath, Severity, has_errors, nearest
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect
 from lumen.language.verbs import names_in
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.source import DocumentReport
 from lumen.rules.codes import FAMILIES as CODES_OF
 from lumen.rules.events import descriptors, hears
 from lumen.rules.finding import find

@@ -11,9 +11,9 @@ from lumen.formats.xstate.json_source import JsonSource
 from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.loading.behaviors import build_machine
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
-from lumen.loading.source import DocumentReport
 
 ActionData = dict[str, Any]
 

@@ -6,7 +6,8 @@ from typing import Any
 
 from lumen.formats.conversion_findings import broken
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.source import Document, parse
+from lumen.loading.document import Document
+from lumen.loading.yaml_reader import parse
 
 MAX_JSON_BYTES = 4_000_000
 MAX_JSON_LEVELS = 95

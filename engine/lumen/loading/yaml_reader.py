@@ -1,0 +1,164 @@
+"""YAML 1.2 with a place for every node.
+
+PyYAML reads YAML 1.1 (`on:` is true there, `12:30` is 750); here only its parser is used, and scalars are resolved by
+the YAML 1.2 core schema.
+"""
+
+import re
+from collections.abc import Iterator
+from itertools import chain
+from typing import Any
+
+import yaml
+
+from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related
+from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
+from lumen.loading.memoization import memoize
+from lumen.loading.yaml_errors import merge_conflict, not_utf8, syntax_error
+from lumen.loading.yaml_scalars import resolve
+
+_WHOLE, _DECIMALS = re.compile(r"[-+]?[0-9]+"), re.compile(r"[0-9]+(ms|s|min|h)?")
+_TAGS = {"!include": "write here what stands in that file: one file can't include another"}
+_PLAIN = frozenset(("tag:yaml.org,2002:str", "tag:yaml.org,2002:seq", "tag:yaml.org,2002:map"))
+
+
+class _Loader(yaml.CSafeLoader):
+    """Parses and composes; resolves nothing."""
+
+
+_Loader.yaml_implicit_resolvers = {}
+
+
+def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
+    """The document in `content`, or None, and what is wrong with it; never raises for what the file holds.
+
+    It depends on nothing else, so that a file that did not change is not read again.
+    """
+    document, found = memoize(("parse", file), content, lambda: _read(file, content))
+    return document, [*found]
+
+
+def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        return None, [not_utf8(file, content, error.start)]
+    loader = _Loader(text)
+    try:
+        node = loader.get_single_node()
+    except (yaml.MarkedYAMLError, yaml.reader.ReaderError, RecursionError) as error:
+        return None, [syntax_error(file, text, error)]
+    finally:
+        loader.dispose()
+    if node is None:
+        return None, [Diagnostic("empty-file", "the file is empty", Place(file), "write its content, or delete it")]
+    reader = _Reader(file)
+    data = reader.read(node, (), None, 0)
+    if "<<<<<<< " in text and (conflict := merge_conflict(file, text)):
+        reader.diagnostics.append(conflict)
+    return Document(file, data, reader.spans, text, frozenset(reader.dropped)), reader.diagnostics
+
+
+class _Reader:
+    """Turns composed nodes into plain data, remembering where each stood."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.spans: dict[NodePath, NodeSpan] = {}
+        self.diagnostics: list[Diagnostic] = []
+        self.full = False
+        self.dropped: set[str] = set()
+
+    def read(self, node: yaml.Node, path: NodePath, key: yaml.Node | None, depth: int) -> Any:
+        self.spans[path] = NodeSpan(self.place(key) if key else None, self.place(node))
+        if depth > MAX_NODE_DEPTH or len(self.spans) > MAX_NODES:
+            self.overflow(node, depth)
+            return None
+        if node.tag not in _PLAIN:
+            self.say(
+                "yaml-tag",
+                node,
+                "a tag (a word that begins with `!`) means nothing here",
+                _TAGS.get(node.tag, "delete the tag"),
+            )
+        if isinstance(node, yaml.ScalarNode):
+            return node.value if node.style else resolve(node.value)
+        if isinstance(node, yaml.SequenceNode):
+            return [self.read(child, (*path, i), None, depth + 1) for i, child in enumerate(node.value)]
+        return self.mapping(node, path, depth)
+
+    def mapping(self, node: yaml.Node, path: NodePath, depth: int) -> dict[str, Any]:
+        data: dict[str, Any] = {}
+        last: yaml.Node | None = None
+        for key, value in node.value:
+            before, last = last, value
+            if before is not None and data and (number := _decimal(before, key, value)):
+                self.comma(before, key, number)
+                data[next(reversed(data))] = resolve(number)
+            elif not isinstance(key, yaml.ScalarNode):
+                hint = "put quotes around a text that begins with `{`"
+                self.say("complex-key", key, "a key has to be a single word or text", hint)
+            elif key.value in data:
+                self.duplicate(key, path)
+                if data[key.value] is None:  # the line was doubled, and the second one goes on
+                    data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
+                else:
+                    self.dropped.update(_texts_below(value))
+            else:
+                data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
+        return data
+
+    def comma(self, before: yaml.Node, key: yaml.Node, number: str) -> None:
+        """Report a number that was written with a comma."""
+        start, end = before.start_mark, key.end_mark
+        place = Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+        message = f"a comma ends the number {before.value}, and `{key.value}` would be a key"
+        self.diagnostics.append(Diagnostic("decimal-comma", message, place, f"write a point: {number}"))
+
+    def duplicate(self, key: yaml.Node, path: NodePath) -> None:
+        """Report a key that stands a second time; those of one map are one finding."""
+        first = self.spans[(*path, key.value)].key
+        hint = f"the first one stands in line {first.line}" if first else ""
+        related = (Related(first, "the first one stands here"),) if first else ()
+        message, cause = f"`{key.value}` stands twice in the same place", f"{self.file} twice in {path}"
+        self.diagnostics.append(
+            Diagnostic("duplicate-key", message, self.place(key), hint, related=related, cause=cause)
+        )
+
+    def overflow(self, node: yaml.Node, depth: int) -> None:
+        if not self.full:
+            self.full = True
+            what = (
+                f"nested deeper than {MAX_NODE_DEPTH} levels"
+                if depth > MAX_NODE_DEPTH
+                else f"more than {MAX_NODES:,} values"
+            )
+            self.say("too-large", node, f"the file is too large to be read: {what}", "split it, or use fewer aliases")
+
+    def say(self, code: str, node: yaml.Node, message: str, hint: str) -> None:
+        self.diagnostics.append(Diagnostic(code, message, self.place(node), hint))
+
+    def place(self, node: yaml.Node) -> Place:
+        start, end = node.start_mark, node.end_mark
+        return Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+
+
+def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
+    """The number that a value and an empty key behind its comma were meant to be; empty where they are none."""
+    near = key.start_mark.index == before.end_mark.index + 1 and value.start_mark.index == value.end_mark.index
+    plain = near and all(isinstance(node, yaml.ScalarNode) and not node.style for node in (before, key, value))
+    if plain and _WHOLE.fullmatch(before.value) and _DECIMALS.fullmatch(key.value):
+        return f"{before.value}.{key.value}"
+    return ""
+
+
+def _texts_below(node: yaml.Node) -> Iterator[str]:
+    """Every key and text below a node, each part of the file once."""
+    waiting, seen = [node], set[int]()
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, yaml.ScalarNode):
+            yield item.value
+        elif id(item) not in seen:
+            seen.add(id(item))
+            waiting += chain.from_iterable(item.value) if isinstance(item, yaml.MappingNode) else item.value
