@@ -101,7 +101,7 @@ def test_where_there_is_no_way_back_it_begins_anew(live: Live, monkeypatch: pyte
     live.speak("my name is Ada", "how_are_you")
     live.edit(SORRY, PARDON)
     live.until_told("in force")
-    monkeypatch.setattr(live.show, "plan", lambda *_, **__: MigrationDelay("no way", "how_are_you"))
+    monkeypatch.setattr(live.show.behavior, "plan", lambda *_, **__: MigrationDelay("no way", "how_are_you"))
     commands = live.show.loop.rescue(ZeroDivisionError("a fault"))
     assert commands
     assert "idle" in live.states
