@@ -201,7 +201,7 @@ class Soak:
         self._done.set()
 
     def wait(self, hash: str, saved: float, seen: int) -> None:
-        """Until there is a verdict on these files, and what was good is in force."""
+        """Until there is a verdict on these files, and what was good is active."""
         outcome, deadline = self.outcome, saved + PATIENCE
         first = True
         while time.monotonic() < deadline:

@@ -73,9 +73,9 @@ def steps(visit: Visit) -> None:
     visit.types("dance")
     visit.until("plays dance")
     visit.does(f"sed -i 's/Do you have a question for me?/Is there anything you wonder about?/' {TOUR}")
-    visit.until("in force")
+    visit.until("active")
     visit.does("sed -i 's/any_question/more_questions/g' behaviors/*.yaml behaviors/stories/*.yaml")
-    visit.until("in force")
+    visit.until("active")
     visit.does(f"sed -i 's/onDone: more_questions/onDone: more_qestions/' {TOUR}")
     visit.until("refused")
     visit.does(f"sed -i 's/more_qestions/more_questions/' {TOUR}")
@@ -87,7 +87,7 @@ def steps(visit: Visit) -> None:
     visit.does(f"sed -i 's/- {{play: dance}}/- {{play: photo}}/' {TOUR}")
     visit.until("waiting for")
     visit.does("lumen reload --status")
-    visit.until("in force")
+    visit.until("active")
 
 
 def main() -> None:

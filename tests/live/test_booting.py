@@ -83,7 +83,7 @@ def test_what_a_start_has_left_aside_is_taken_once_it_changes(copy: Path) -> Non
     assert one.show.loop.project is before
     assert one.verdicts == []
     save(copy, PARDON, "en: What was that?")
-    one.until_told("in force")
+    one.until_told("are active")
     one.show.close()
 
 
@@ -158,7 +158,7 @@ def test_what_was_replaced_has_ended_nothing_and_what_failed_has(live: Live) -> 
     trials, exhibition = live.records.trials, live.show.loop
     assert trials
     live.edit(SORRY, PARDON)
-    live.until_told("in force")
+    live.until_told("are active")
     first = exhibition.project.hash
     assert trials.count(first) == 1
     live.edit(PARDON, "en: What was that?")

@@ -40,7 +40,7 @@ def manual(copy: Path) -> Iterator[Live]:
 def test_a_saved_text_is_in_force_told_and_journaled(live: Live) -> None:
     before = live.show.loop.project.hash
     live.edit(SORRY, PARDON)
-    live.until_told("the saved files are in force")
+    live.until_told("the saved files are active")
     told = live.status.bodies[-1]
     after = live.show.loop.project.hash
     assert (told["verdict"], told["who"], told["before"], told["after"]) == ("applied", "files", before, after)
@@ -65,9 +65,9 @@ def test_a_rollback_brings_back_what_ran_before_and_stays(live: Live) -> None:
     before = live.show.loop.project.hash
     assert "nothing to go back to" in live.ask("rollback")["reason"]
     live.edit(SORRY, PARDON)
-    live.until_told("in force")
+    live.until_told("are active")
     assert live.ask("rollback")["verdict"] == "applied"
-    assert "the files before are in force again" in live.transcript
+    assert "the files before are active again" in live.transcript
     assert live.show.loop.project.hash == before
     live.live(5.0)
     assert live.show.loop.project.hash == before
@@ -81,7 +81,7 @@ def test_a_dry_run_says_what_would_be_and_changes_nothing(manual: Live) -> None:
     manual.until_told("staged: ")
     answer = manual.ask("dry-run")
     assert answer["verdict"] == "dry run"
-    assert "it would be in force at once" in answer["lines"][0]
+    assert "it would be active at once" in answer["lines"][0]
     assert manual.show.loop.project is before
 
 
@@ -140,7 +140,7 @@ def test_it_waits_for_what_the_robot_does_and_now_does_not(waving: Live) -> None
 
 def test_patience_ends(waving: Live) -> None:
     waving.edit("reload: {patience: 60s}", "reload: {patience: 10ms}", "lumen.yaml")
-    waving.until_told("in force")
+    waving.until_told("are active")
     waving.greet()
     waving.until(lambda: "goodbye" in waving.states)
     waving.edit(WAVE, WAVE.replace("goodbye", "photo"))
@@ -150,7 +150,7 @@ def test_patience_ends(waving: Live) -> None:
 
 def test_what_needs_a_restart_is_named(live: Live) -> None:
     live.edit("stage: {x: [-0.4, 0.4]", "stage: {x: [-0.3, 0.4]", "lumen.yaml")
-    live.until_told("the saved files are good: the stage changed: in force from the next start on")
+    live.until_told("the saved files are good: the stage changed: active from the next start on")
     assert live.transcript.count("the stage changed") == 1
     assert live.status.bodies[-1]["restart"]
     assert live.show.loop.project.stage
@@ -168,14 +168,14 @@ def test_a_story_saved_with_the_files_is_played_and_refuses_them(live: Live) -> 
 def test_a_story_that_no_longer_holds_is_told_after_the_files_are_in_force(live: Live) -> None:
     refusal = "{guard: \"heard(event.data.result, 'no_more')\", target: offer}"
     live.edit(refusal, refusal.replace("offer", "how_are_you"))
-    live.until_told("in force")
+    live.until_told("are active")
     live.until_told("the story `refuses` does not hold with these files")
 
 
 def test_the_same_in_another_process(copy: Path) -> None:
     one = Live(copy, apart=True)
     one.edit(SORRY, PARDON)
-    one.until_told("in force")
+    one.until_told("are active")
     one.edit("steps:\n", "steps:\n  - expect: {state: dance, within: 2s}\n", "behaviors/stories/refuses.yaml")
     one.until_told("behaviors/stories/refuses.yaml:")
     one.edit("onDone: any_question", "onDone: any_questoin")
@@ -198,7 +198,7 @@ def test_the_same_on_a_broker_for_which_no_tick_waits(
     usual = Consumer._await
     monkeypatch.setattr(Consumer, "_await", lambda *given: (waiting.append(threading.current_thread()), usual(*given)))
     one.edit("routes:\n", "routes:\n  load: {key: lumen.load, direction: in, event: load}\n", "lumen.yaml")
-    one.until_told("in force")
+    one.until_told("are active")
     assert waiting
     assert one.ask("status")["revision"] == 1
     one.edit("key: lumen.load,", "key: lumen.burden,", "lumen.yaml")

@@ -1,4 +1,4 @@
-"""Files saved while a show runs: a good one is in force with the next sentence, a broken one changes nothing."""
+"""Files saved while a show runs: a good one is active with the next sentence, a broken one changes nothing."""
 
 import shutil
 from pathlib import Path
@@ -11,7 +11,7 @@ from tests.live.shows import Live
 
 def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
     live.edit("en: I am sorry, I did not understand that.", "en: Come again, please?")
-    live.until_told("in force")
+    live.until_told("are active")
     walker = live.show.visitor
     assert walker
     walker.actor.arrive(Visitor())
@@ -31,7 +31,7 @@ def test_the_visitors_name_survives(live: Live) -> None:
     live.until(lambda: "how_are_you" in live.states)
     live.edit("en: [I am glad to hear that.,", 'en: ["Wonderful, {{ context.visitor }}!",')
     live.edit('"That is good to hear, {{ context.title_en }}."]', '"Wonderful, {{ context.visitor }}!"]')
-    live.until_told("in force")
+    live.until_told("are active")
     assert "how_are_you" in live.states
     walker.actor.speak("fine")
     live.until_told("“Wonderful, Ada!”")
@@ -56,7 +56,7 @@ def test_a_broken_file_is_reported_with_its_place_and_changes_nothing(
     assert live.show.loop.project is before
     live.edit(new, old)
     live.edit("en: Never mind.", "en: No problem.")
-    live.until_told("in force")
+    live.until_told("are active")
 
 
 @pytest.fixture
@@ -82,5 +82,5 @@ def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
         live.edit(old, new)
     live.until_told("waiting for `ask_name`: `ask_name` is active and gone")
     walker.actor.speak("my name is Ada")
-    live.until_told("in force")
+    live.until_told("are active")
     assert "how_are_you" in live.states

@@ -26,7 +26,7 @@ def test_a_fault_leaves_the_old_bundle_running(live: Live, monkeypatch: pytest.M
         live.until_told("refused: Lumen failed on these files: ZeroDivisionError('a fault of ours')")
     assert live.show.loop.project is before
     live.edit("en: Never mind.", "en: No problem.")
-    live.until_told("the saved files are in force")
+    live.until_told("the saved files are active")
 
 
 def test_a_bus_that_refuses_is_told(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -50,7 +50,7 @@ def test_a_bundle_that_fails_in_its_probation_is_taken_back_and_no_event_lost(
     live.greet()
     before, usual = live.show.loop.project.hash, runtime.step
     live.edit(SORRY, PARDON)
-    live.until_told("in force")
+    live.until_told("are active")
     bad = live.show.loop.project.machine
 
     def step(machine: Any, snapshot: Any, event: Event) -> Any:
@@ -69,7 +69,7 @@ def test_a_bundle_that_fails_in_its_probation_is_taken_back_and_no_event_lost(
 def test_after_its_probation_a_bundle_is_on_its_own(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     live.greet()
     live.edit(SORRY, PARDON)
-    live.until_told("in force")
+    live.until_told("are active")
     live.live(11.0)
     after = live.show.loop.project.hash
     assert live.records.keeper
@@ -83,7 +83,7 @@ def test_after_its_probation_a_bundle_is_on_its_own(live: Live, monkeypatch: pyt
 def test_what_performs_may_fail_too(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     before = live.show.loop.project.hash
     live.edit(SORRY, PARDON)
-    live.until_told("in force")
+    live.until_told("are active")
     usual = live.show.loop._performer.perform
 
     def perform(project: Any, *rest: Any) -> None:
@@ -100,7 +100,7 @@ def test_where_there_is_no_way_back_it_begins_anew(live: Live, monkeypatch: pyte
     live.greet()
     live.speak("my name is Ada", "how_are_you")
     live.edit(SORRY, PARDON)
-    live.until_told("in force")
+    live.until_told("are active")
     monkeypatch.setattr(live.show.behavior, "plan", lambda *_, **__: MigrationDelay("no way", "how_are_you"))
     commands = live.show.loop.rescue(ZeroDivisionError("a fault"))
     assert commands

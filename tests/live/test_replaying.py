@@ -37,7 +37,7 @@ def test_a_trace_replays_across_reloads_to_the_same_steps(copy: Path, monkeypatc
     monkeypatch.setattr(runtime, "apply", applied)
     live.greet()
     live.edit(FINE, "en: [How wonderful.,")
-    live.until_told("in force")
+    live.until_told("are active")
     live.speak("my name is Ada", "how_are_you")
     live.edit("en: Never mind.", "en: No problem.")
     live.until(lambda: live.verdicts.count("applied") == 2)

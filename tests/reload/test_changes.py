@@ -101,7 +101,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     (
         "the stage",
         [("lumen.yaml", "x: [-0.4, 0.4]", "x: [-0.3, 0.4]")],
-        ["the stage changed: in force from the next start on"],
+        ["the stage changed: active from the next start on"],
         Risk.RESTART,
     ),
     (

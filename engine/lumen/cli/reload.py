@@ -10,7 +10,7 @@ from lumen.cli.reach import configure_reach, reach
 
 REQUESTS = {
     "status": "say which files run, what is staged, and what came of the last ones",
-    "apply": "put in force what is staged",
+    "apply": "activate what is staged",
     "rollback": "go back to the files that ran before",
     "dry-run": "only say what the saved files would change",
 }
@@ -26,7 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where the files are in force or staged, 1 where they were refused; while they wait, so does this."""
+    """0 where the files are active or staged, 1 where they were refused; while they wait, so does this."""
     body = {"command": options.command or "reload", "now": options.now}
     reached = reach(options)
     try:

@@ -1,4 +1,4 @@
-"""The files of the other processes follow the brain's: what it has put in force is loaded here too."""
+"""The files of the other processes follow the brain's: what it has made active is loaded here too."""
 
 import queue
 import sys
@@ -36,7 +36,7 @@ class BundleFollower:
             if isinstance(found, str):
                 self._tell(found)
             else:
-                self._tell("the files that the brain has put in force are in force here, too")
+                self._tell("the files that the brain has made active are active here, too")
                 self._use(found)
 
     def close(self) -> None:

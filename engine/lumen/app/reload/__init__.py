@@ -1,1 +1,1 @@
-"""Saved files on a running exhibition: judged beside it, staged, and in force between two of its steps."""
+"""Saved files on a running exhibition: judged beside it, staged, and active between two of its steps."""

@@ -1,4 +1,4 @@
-"""Good files on their way: in force at the first tick at which the running state allows it."""
+"""Good files on their way: active at the first tick at which the running state allows it."""
 
 import logging
 import time
@@ -22,7 +22,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass
 class StagedBundle:
-    """A good bundle on its way: `going` is whether it is to be put in force, `since` when that was asked [s].
+    """A good bundle on its way: `going` is whether it is to be made active, `since` when that was asked [s].
 
     `asked` is the snapshot from which it could not go on; `told` what it was said to wait for.
     """
@@ -41,9 +41,9 @@ class StagedBundle:
 
 
 class MigrationQueue:
-    """Holds at most one bundle, `staged`; `tick` puts it in force, waits for what it has to wait for, or refuses it.
+    """Holds at most one bundle, `staged`; `tick` makes it active, waits for what it has to wait for, or refuses it.
 
-    `revision` counts how often another bundle came in force, `applied` is told of it. What has just come is on
+    `revision` counts how often another bundle became active, `applied` is told of it. What has just come is on
     `probation`.
     """
 
@@ -60,7 +60,7 @@ class MigrationQueue:
         return self._behavior.loop.project
 
     def stage(self, staged: StagedBundle, order: ReloadRequest | None = None) -> None:
-        """Have a bundle put in force as soon as may be."""
+        """Have a bundle made active as soon as may be."""
         if self.staged and self.staged is not staged:
             staged.orders += self.staged.orders
         if order:
@@ -70,7 +70,7 @@ class MigrationQueue:
         self.staged = staged
 
     def hold(self, staged: StagedBundle) -> None:
-        """Keep a bundle until somebody has it put in force."""
+        """Keep a bundle until somebody has it made active."""
         self.staged = staged
         self._notifier.tell(self._about(staged, "staged"))
 
@@ -84,7 +84,7 @@ class MigrationQueue:
         report = self._about(staged, "dry run")
         match verdict:
             case MigrationPlan(notes=notes):
-                report.reason, report.notes = "it would be in force at once", notes
+                report.reason, report.notes = "it would be active at once", notes
             case MigrationDelay(reason, what):
                 report.reason = f"it would wait for `{what}`: {reason}"
             case Refusal(hint=hint):
@@ -139,7 +139,7 @@ class MigrationQueue:
         self._behavior.apply(staged.project, plan, begun)
 
     def _tell_all(self, report: ReloadReport, orders: list[ReloadRequest]) -> None:
-        """Let everybody know of another bundle that is in force; a fault of ours in that changes nothing about it."""
+        """Let everybody know of another bundle that is active; a fault of ours in that changes nothing about it."""
         try:
             self._notifier.tell(report, orders)
             if report.verdict == "applied":
@@ -149,7 +149,7 @@ class MigrationQueue:
             self._applied(self.running)
             self._records.prune(self.running, self.rollback_guard.before, self.rollback_guard.good)
         except Exception:
-            _log.exception("other files are in force, and not everybody was told")
+            _log.exception("other files are active, and not everybody was told")
 
     def _give_up(self, staged: StagedBundle, verdict: MigrationDelay | Refusal) -> None:
         """It has waited long enough, or can't go on from here at all."""

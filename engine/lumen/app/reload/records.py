@@ -39,7 +39,7 @@ class RunRecords:
             self.keeper.store(files)
 
     def begin(self, hash: str) -> None:
-        """This bundle is in force now, and on trial; the one before has ended nothing."""
+        """This bundle is active now, and on trial; the one before has ended nothing."""
         self.annul()
         self._trial = hash
         if self.trials:

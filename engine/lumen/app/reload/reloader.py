@@ -36,7 +36,7 @@ class Reloader:
     """Has saved files judged, and stages every good bundle; hears what operators ask for.
 
     `apart` is whether files are judged in another process. `quiet` [s] and `budget` [s] are those of the watcher and of
-    stories; `applied` is told of each bundle that comes in force. `seen` is the hash of files that are there and not to
+    stories; `applied` is told of each bundle that becomes active. `seen` is the hash of files that are there and not to
     be taken until they change, where those are not the ones that run.
     """
 

@@ -22,7 +22,7 @@ class ReloadReport:
     """One verdict on files: `unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run`, `status`.
 
     `who` asked for it: `files`, `command`, `probation`, or the `start` of a run on other files than those before.
-    `before` and `after` are hashes of bundles, `restart` sentences about what comes into force only then, `took` times
+    `before` and `after` are hashes of bundles, `restart` sentences about what becomes active only then, `took` times
     [s] by what took them. `back`: the files ran before.
     """
 
@@ -53,7 +53,7 @@ class ReloadReport:
 
     @property
     def restart(self) -> list[str]:
-        """What comes into force only when the exhibition is started anew."""
+        """What becomes active only when the exhibition is started anew."""
         return [str(change) for change in self.changes if change.risk is Risk.RESTART and self.who != START]
 
     def lines(self) -> Iterator[str]:
@@ -79,7 +79,7 @@ class ReloadReport:
             case "waiting":
                 yield f"waiting for `{self.waiting_for}`: {self.reason} (`lumen reload --now` does not wait)"
             case "staged":
-                yield f"staged: {self._what()}; `lumen reload --apply` puts it in force"
+                yield f"staged: {self._what()}; `lumen reload --apply` makes it active"
             case "unchanged":
                 yield self.reason or "the saved files are those that run"
             case "dry run":
@@ -89,9 +89,9 @@ class ReloadReport:
 
     def _taken(self) -> str:
         if self.back:
-            return "the files before are in force again"
+            return "the files before are active again"
         all_later = 0 < len(self.changes) == len(self.restart)
-        return "the saved files are good" if all_later else "the saved files are in force"
+        return "the saved files are good" if all_later else "the saved files are active"
 
     def _what(self) -> str:
         return f"{summary(self.changes)} (risk: {risk(self.changes)})"

@@ -143,7 +143,7 @@ def _read(pipe: IO[bytes]) -> Any:
 
 
 def _serve(question: Sequence[Any], project: Project | None, sender: DeltaEncoder) -> tuple[Any, Project | None]:
-    """The answer, and the project that is in force after it."""
+    """The answer, and the project that is active after it."""
     match question:
         case ["load", str(root), dict(files)]:
             project, diagnostics = check_files(Path(root), files)

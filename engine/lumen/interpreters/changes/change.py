@@ -16,7 +16,7 @@ class Risk(IntEnum):
     WIRING = 3
     """Routes and message schemas: other modules have to fit."""
     RESTART = 4
-    """The robot's model, the hall, the stage, the broker: in force only when the exhibition is started anew."""
+    """The robot's model, the hall, the stage, the broker: active only when the exhibition is started anew."""
 
     def __str__(self) -> str:
         return self.name.lower()

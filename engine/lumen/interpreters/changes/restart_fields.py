@@ -13,9 +13,9 @@ RESTART_FIELDS: Mapping[str, str] = {
     "bus": "the broker's address",
     "modules": "what is said of the modules",
 }
-"""Fields of `Project` that are in force only from the next start on, and what they are called."""
+"""Fields of `Project` that are active only from the next start on, and what they are called."""
 
 
 def live(old: Project, new: Project) -> Project:
-    """The new bundle as far as it can be in force at once: what is `FIXED` is as in the old one."""
+    """The new bundle as far as it can be active at once: what is `FIXED` is as in the old one."""
     return replace(new, **{name: getattr(old, name) for name in RESTART_FIELDS})
