@@ -10,7 +10,7 @@ from hypothesis import given, settings
 
 from lumen.formats.conversion_findings import dotted
 from lumen.formats.scxml import write_scxml
-from lumen.formats.scxml.xml_elements import SCXML_NAMESPACE
+from lumen.formats.scxml.namespaces import SCXML_NAMESPACE
 from lumen.statechart import Machine
 from tests.formats.making import charts
 

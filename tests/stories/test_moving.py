@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from lumen.formats.action_data import plain_action
+from lumen.formats.behavior_data import plain_action
 from lumen.interpreters.statechart import initial
 from lumen.language.commands import Move, Start, Walk
 from lumen.robots.recording import RecordingRobot

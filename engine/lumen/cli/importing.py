@@ -14,13 +14,12 @@ from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.formats.conversion_findings import ForeignFileError
+from lumen.formats.conversion_findings import MAX_FILE_BYTES, ForeignFileError
 from lumen.formats.fcl import read_fcl
 from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll
 from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
 from lumen.formats.scxml import read_scxml
-from lumen.formats.scxml.xml_elements import MAX_XML_BYTES
 from lumen.formats.xstate import read_xstate
 from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import Diagnostic, has_errors
@@ -87,8 +86,8 @@ def _gesture(body: Body, timeline: str, file: str, content: bytes, _: str) -> tu
 def foreign_content(path: Path) -> bytes:
     """What the file holds; raises UsageError where it can't be read, or is too large to be one of these."""
     try:
-        if path.is_file() and path.stat().st_size > MAX_XML_BYTES:
-            raise UsageError(f"{path} is larger than {MAX_XML_BYTES // 1_000_000} MB: too large to be imported")
+        if path.is_file() and path.stat().st_size > MAX_FILE_BYTES:
+            raise UsageError(f"{path} is larger than {MAX_FILE_BYTES // 1_000_000} MB: too large to be imported")
         return path.read_bytes()
     except OSError as error:
         raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None

@@ -4,6 +4,9 @@ from collections.abc import Callable
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, Severity
 
+MAX_FILE_BYTES = 4_000_000
+"""Of a file of another tool; those that people draw are a hundredth of that."""
+
 PlaceOfPath = Callable[[NodePath], Place]
 """Where the node at that path of a behaviour's file stands."""
 
@@ -44,6 +47,21 @@ class ConversionFindings:
     def changed(self, place: Place, message: str, hint: str = "") -> None:
         """Something is there in another form."""
         self._found[Diagnostic(CHANGED, message, place, hint, Severity.WARNING)] = None
+
+
+def check_size(file: str, content: bytes) -> None:
+    """Raise ForeignFileError for a file that is too large to be read."""
+    if len(content) > MAX_FILE_BYTES:
+        hint = f"at most {MAX_FILE_BYTES // 1_000_000} MB are read"
+        raise broken(Place(file), "too-large", f"the file has {len(content) / 1e6:.0f} MB", hint)
+
+
+def decoded(file: str, content: bytes) -> str:
+    """The file's text; raises ForeignFileError where it is not UTF-8."""
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise broken(Place(file), "not-utf8", "the file is not text", "save it as UTF-8") from None
 
 
 def broken(place: Place, code: str, message: str, hint: str = "") -> ForeignFileError:

@@ -5,6 +5,8 @@ from collections.abc import Container, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from lumen.formats.unused_names import unused_name
+
 MAX_STATE_LEVELS = 40
 """Of nested states; a YAML file has two levels for each."""
 
@@ -71,17 +73,13 @@ def clean_id(text: str) -> str:
 def free_key(parent: ForeignState, wanted: str, id: str, ids: Container[str]) -> str:
     """A key like the one wanted that no other child has, and whose path is not the id of another state."""
     stem = _UNFIT_KEY.sub("_", wanted) or "state"
-    number, key = 1, stem
-    while key in parent.keys or (parent.below(key) != id and parent.below(key) in ids):
-        number += 1 if number < 100 else len(parent.keys)
-        key = f"{stem}_{number}"
-    return key
+
+    def is_taken(key: str) -> bool:
+        return key in parent.keys or (parent.below(key) != id and parent.below(key) in ids)
+
+    return unused_name(stem, is_taken, len(parent.keys))
 
 
 def passing_key(home: ForeignState, taken: Container[str]) -> str:
     """A key for a state that is passed through on the way into `home`."""
-    number, key = 1, "begin"
-    while key in home.keys or key in taken:
-        number += 1
-        key = f"begin_{number}"
-    return key
+    return unused_name("begin", lambda key: key in home.keys or key in taken, len(home.keys))

@@ -1,13 +1,14 @@
 """A controller file in the making: variables, terms and rules of another tool, under names that our rules can say."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from math import inf, isfinite, isnan
 from typing import Any
 
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.fll.fuzzylite_names import plain
 from lumen.formats.fll.rule_text import rule_text
+from lumen.formats.unused_names import unused_name
 from lumen.language.controllers import TERM_PARAMETERS
 from lumen.language.diagnostics import Place
 from lumen.loading.rule_parser import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
@@ -44,14 +45,11 @@ class ControllerDraft:
         self.sides[side][ours] = spec
         return spec
 
-    def fresh(self, name: str, taken: Any, place: Place) -> str:
+    def fresh(self, name: str, taken: Collection[str], place: Place) -> str:
         """A name like that one which our rules can say and nobody has."""
         stem = _UNFIT.sub("_", name).strip("-") or "unnamed"
         stem = f"{stem}_" if stem.lower() in KEYWORDS else stem
-        ours, number = stem, 1
-        while ours in taken:
-            number += 1 if number < 100 else len(taken)
-            ours = f"{stem}_{number}"
+        ours = unused_name(stem, taken.__contains__, len(taken))
         if ours != name:
             self.findings.changed(place, f"`{name}` is called `{ours}`", "rules can't say that name, or it is taken")
         return ours

@@ -6,7 +6,7 @@ FuzzyLite 6 to 8 (fuzzylite.com): an engine is its head, then input variables, o
 from math import inf, isfinite, nan
 from typing import Any
 
-from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.conversion_findings import ConversionFindings, broken, decoded
 from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
 from lumen.formats.fll.fll_lines import FllLine, FllLineReader, FllPart
 from lumen.formats.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES, plain
@@ -21,11 +21,7 @@ _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "mi
 
 def read_fll(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
     """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no engine."""
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise broken(Place(file), "not-utf8", "the file is not text", "save it as UTF-8") from None
-    findings = ConversionFindings()
+    text, findings = decoded(file, content), ConversionFindings()
     return _Reader(file, findings).engine(text), findings.diagnostics
 
 

@@ -7,6 +7,7 @@ from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
 from lumen.formats.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES, foreign, written
 from lumen.formats.fll.infix_formulas import write_formula
 from lumen.formats.fll.rule_text import negations, rule_text
+from lumen.formats.unused_names import unused_name
 from lumen.language.controllers import (
     VALUE_TERMS,
     WEIGHTED_DEFUZZIFIERS,
@@ -136,9 +137,5 @@ def _fresh(names: Mapping[str, object]) -> dict[str, str]:
     found: dict[str, str] = {}
     for name in names:
         stem = _UNFIT.sub("_", name) or "_"
-        clean, number = stem, 1
-        while clean in found.values():
-            number += 1
-            clean = f"{stem}_{number}"
-        found[name] = clean
+        found[name] = unused_name(stem, lambda clean: clean in found.values(), len(found))
     return found

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lumen.formats.conversion_findings import LOST, ConversionFindings, broken
+from lumen.formats.conversion_findings import LOST, ConversionFindings, broken, decoded
 from lumen.formats.gestures.choregraphe import read_choregraphe
 from lumen.formats.gestures.joint_curves import JointCurves, MotionWriter
 from lumen.formats.gestures.naoqi import read_naoqi
@@ -37,8 +37,5 @@ def read_gesture(
 def _curves(file: str, content: bytes, findings: ConversionFindings, timeline: str) -> JointCurves:
     if file.lower().endswith(".xar"):
         return read_choregraphe(file, content, findings, timeline)
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise broken(Place(file), "not-utf8", "the file is not text", "save it as UTF-8") from None
+    text = decoded(file, content)
     return (read_naoqi if file.lower().endswith(".py") else read_webots)(file, text, findings)

@@ -9,7 +9,7 @@ from math import radians
 
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves, number
-from lumen.formats.scxml.xml_elements import XmlElement, parse_xml
+from lumen.formats.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import did_you_mean
 
 MAX_CHOREGRAPHE_ELEMENTS = 1_000_000
@@ -20,7 +20,7 @@ Timelines = dict[str, XmlElement]
 
 def read_choregraphe(file: str, content: bytes, findings: ConversionFindings, timeline: str = "") -> JointCurves:
     """The curves of the timeline of that name; of the only one without a name. Raises ForeignFileError."""
-    root = parse_xml(file, content, MAX_CHOREGRAPHE_ELEMENTS)
+    root = parse_xml(file, content, most=MAX_CHOREGRAPHE_ELEMENTS)
     if _tag(root) != "ChoregrapheProject":
         raise broken(root.place, "not-a-motion", f"this is no behaviour of Choregraphe: it begins with `{_tag(root)}`")
     timelines = dict(_timelines(root))

@@ -1,10 +1,10 @@
 """Executable content of SCXML (section 4) as our actions."""
 
 import json
-import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import Any
 
+from lumen.formats.behavior_data import ActionData, quoted
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.durations import duration, milliseconds
 from lumen.formats.ecmascript import ScriptError, parse_script, read_condition, read_value
@@ -12,11 +12,9 @@ from lumen.formats.ecmascript.constants import constant
 from lumen.formats.scxml.assignments import assignments
 from lumen.formats.scxml.data_model import ScxmlDataModel, written
 from lumen.formats.scxml.log_templates import plain_template, template_of
-from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, XmlElement
+from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
+from lumen.formats.xml_elements import XmlElement
 from lumen.interpreters.expressions import unparse
-from lumen.interpreters.expressions.tree import Literal
-
-ActionData = dict[str, Any]
 
 PROCESSORS = ("", "scxml", "http://www.w3.org/TR/scxml/#SCXMLEventProcessor", "http://www.w3.org/TR/scxml/")
 _NOT_CONSTANT = object()
@@ -185,20 +183,6 @@ class ScxmlActionReader:
                 raise LeftOutError("`<content>` is XML", "write it as JSON")
             return self.value(content.get("expr")) if "expr" in content.attributes else quoted(written(content.text))
         return None
-
-
-def quoted(value: Any) -> Any:
-    """A value of ours that is this JSON: its texts become expressions."""
-    match value:
-        case str():
-            return unparse(Literal(value))
-        case list():
-            return [quoted(item) for item in value]
-        case Mapping():
-            return {str(key): quoted(item) for key, item in value.items()}
-        case float() if not math.isfinite(value):
-            return None
-    return value
 
 
 def own(element: XmlElement) -> Any:

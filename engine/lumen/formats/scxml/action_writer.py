@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from lumen.formats.action_data import plain_action, plain_value
+from lumen.formats.behavior_data import plain_action, plain_value
 from lumen.formats.conversion_findings import ExportReport
 from lumen.formats.durations import duration
 from lumen.formats.ecmascript import ScriptError, Vocabulary, write_expression

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+from lumen.formats.behavior_data import TransitionData, single
 from lumen.interpreters.expressions import parse_expression, unparse
 from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH, MAX_TREE_DEPTH
 from lumen.interpreters.expressions.tree import (
@@ -16,18 +17,6 @@ from lumen.interpreters.expressions.tree import (
     Logic,
     walk,
 )
-
-TransitionData = dict[str, Any]
-
-
-def normal(descriptor: str) -> str:
-    """`a` for `a`, `a.` and `a.*` (SCXML 3.12.1)."""
-    return "*" if descriptor == "*" else descriptor.removesuffix("*").rstrip(".") if "." in descriptor else descriptor
-
-
-def overlap(one: str, other: str) -> bool:
-    """Whether an event can match both."""
-    return "*" in (one, other) or f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
 
 
 def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[TransitionData], None]) -> dict[str, Any]:
@@ -85,12 +74,6 @@ def _prefixes(descriptor: str) -> list[str]:
         return []
     words = descriptor.split(".")
     return ["*", *(".".join(words[:n]) for n in range(1, len(words)))]
-
-
-def single(rows: list[TransitionData]) -> Any:
-    """The one row, or the list; a row that is only a target in one place is that text."""
-    shown = [row["target"] if set(row) == {"target"} and isinstance(row["target"], str) else row for row in rows]
-    return shown[0] if len(shown) == 1 else shown
 
 
 def _narrowed(name: str, general: str, row: TransitionData) -> TransitionData | None:

@@ -10,7 +10,8 @@ from lumen.formats.ecmascript import ScriptError, ScriptNames, parse_script, rea
 from lumen.formats.ecmascript.constants import constant
 from lumen.formats.ecmascript.kind_inference import UNKNOWN, kind
 from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree
-from lumen.formats.scxml.xml_elements import XmlElement
+from lumen.formats.unused_names import unused_name
+from lumen.formats.xml_elements import XmlElement
 from lumen.interpreters.expressions import unparse
 from lumen.interpreters.expressions.kinds import kind_of
 
@@ -48,12 +49,10 @@ class ScxmlDataModel:
 
     def _declare(self, element: XmlElement) -> None:
         id = element.get("id")
-        key = wanted = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", id)) or "_"
-        number = 1
-        while key in self.taken and id not in self.keys:
-            number += 1 if number < 100 else len(self.taken)
-            key = f"{wanted}_{number}"
-        self.taken.add(self.keys.setdefault(id, key))
+        if id not in self.keys:
+            wanted = re.sub(r"^(?=\d)", "_", _UNFIT.sub("_", id)) or "_"
+            self.keys[id] = unused_name(wanted, self.taken.__contains__, len(self.taken))
+            self.taken.add(self.keys[id])
 
     def _value(self, element: XmlElement) -> None:
         key = self.keys[element.get("id")]

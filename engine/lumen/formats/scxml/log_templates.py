@@ -5,7 +5,7 @@ import re
 from lumen.formats.ecmascript import ScriptError, ScriptNames, Vocabulary, parse_script, write_expression
 from lumen.formats.ecmascript.kind_inference import kind
 from lumen.formats.ecmascript.reader import ScriptTranslator, printed
-from lumen.formats.scxml.xml_elements import XmlElement
+from lumen.formats.xml_elements import XmlElement
 from lumen.interpreters.expressions import split_template, unparse
 from lumen.interpreters.expressions.kinds import TEXT
 from lumen.interpreters.expressions.templates import Placeholder

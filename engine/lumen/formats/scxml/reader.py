@@ -2,16 +2,17 @@
 
 from typing import Any
 
+from lumen.formats.behavior_data import ActionData, single
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.ecmascript import ScriptError
 from lumen.formats.foreign_states import ForeignState, passing_key
-from lumen.formats.scxml.action_reader import ActionData, LeftOutError, ScxmlActionReader, own
-from lumen.formats.scxml.candidates import single
+from lumen.formats.scxml.action_reader import LeftOutError, ScxmlActionReader, own
 from lumen.formats.scxml.data_model import ScxmlDataModel
-from lumen.formats.scxml.invocations import invocation
+from lumen.formats.scxml.invoke_reader import invocation
+from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE, SCXML_NAMESPACE
 from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree, regular
 from lumen.formats.scxml.transition_reader import ScxmlTransitionReader
-from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, SCXML_NAMESPACE, XmlElement, parse_xml
+from lumen.formats.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import Diagnostic
 
 _KNOWN = {*STATES, "transition", "onentry", "onexit", "initial", "datamodel", "donedata", "invoke", "script"}
@@ -22,7 +23,7 @@ def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], l
 
     `title` is the behaviour's name where the document has none.
     """
-    root = parse_xml(file, content)
+    root = parse_xml(file, content, SCXML_NAMESPACE)
     if root.tag != "scxml":
         name = root.tag.rpartition("}")[2]
         if name == "scxml":

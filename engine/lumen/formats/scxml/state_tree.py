@@ -2,7 +2,8 @@
 
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_key
-from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, XmlElement
+from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
+from lumen.formats.xml_elements import XmlElement
 
 STATES = ("state", "parallel", "final", "history")
 

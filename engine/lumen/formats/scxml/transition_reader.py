@@ -5,13 +5,16 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
+from lumen.formats.behavior_data import TransitionData, single
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.ecmascript import ScriptError
+from lumen.formats.event_descriptors import normal, overlap
 from lumen.formats.foreign_states import ForeignState
 from lumen.formats.scxml.action_reader import ScxmlActionReader
-from lumen.formats.scxml.candidates import TransitionData, arrange, normal, overlap, single
+from lumen.formats.scxml.candidates import arrange
+from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
 from lumen.formats.scxml.state_tree import ScxmlStateTree, regular
-from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, XmlElement
+from lumen.formats.xml_elements import XmlElement
 from lumen.language.diagnostics import Place
 
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*")

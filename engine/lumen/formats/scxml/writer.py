@@ -4,14 +4,14 @@ import json
 from collections.abc import Container, Iterator, Sequence
 from typing import Any
 
-from lumen.formats.action_data import plain_block
+from lumen.formats.behavior_data import plain_block
 from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
 from lumen.formats.durations import duration
 from lumen.formats.ecmascript import ScriptError, Vocabulary
 from lumen.formats.ecmascript.kind_inference import kinds_of
 from lumen.formats.ecmascript.script_parser import is_reserved
 from lumen.formats.scxml.action_writer import ScxmlActionWriter
-from lumen.formats.scxml.xml_elements import LUMEN_NAMESPACE, SCXML_INVOKE_TYPE, SCXML_NAMESPACE
+from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE, SCXML_INVOKE_TYPE, SCXML_NAMESPACE
 from lumen.formats.scxml.xml_tags import XmlTag
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition

@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from lumen.formats.behavior_data import ActionData
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.durations import duration
 from lumen.formats.xstate.json_source import JsonSource
@@ -14,8 +15,6 @@ from lumen.loading.behaviors import build_machine
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
-
-ActionData = dict[str, Any]
 
 EXPRESSION_GUARD = "lumen.expression"
 DO_ACTOR = "lumen.do"

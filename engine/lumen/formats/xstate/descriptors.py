@@ -1,10 +1,19 @@
-"""Our `on` as XState's: there a name is matched exactly, and the longest descriptor is tried first."""
+"""Descriptors of events, ours and XState's: there a name is matched exactly, and the longest is tried first."""
 
+import re
 from collections.abc import Iterator, Sequence
 
-from lumen.formats.scxml.candidates import overlap
+from lumen.formats.event_descriptors import overlap
 from lumen.language.actions import If, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
+
+_DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*(\.\*)?")
+
+
+def descriptor_of(event: str) -> str | None:
+    """A key of XState's `on` as a key of ours, None where none is meant."""
+    text = re.sub(r"\s+", "_", event.strip())
+    return text if _DESCRIPTOR.fullmatch(text) else None
 
 
 class EventDescriptors:

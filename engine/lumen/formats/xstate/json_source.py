@@ -4,12 +4,11 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.formats.conversion_findings import broken
+from lumen.formats.conversion_findings import broken, check_size
 from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.document import Document
 from lumen.loading.yaml_reader import parse
 
-MAX_JSON_BYTES = 4_000_000
 MAX_JSON_LEVELS = 95
 
 
@@ -27,9 +26,7 @@ class JsonSource:
 
 def parse_json(file: str, content: bytes) -> JsonSource:
     """The file; raises ForeignFileError for what is no JSON, or too large."""
-    if len(content) > MAX_JSON_BYTES:
-        hint = f"at most {MAX_JSON_BYTES // 1_000_000} MB are read"
-        raise broken(Place(file), "too-large", f"the file has {len(content) / 1e6:.0f} MB", hint)
+    check_size(file, content)
     try:
         data = json.loads(content, parse_constant=_refuse)
     except UnicodeDecodeError:

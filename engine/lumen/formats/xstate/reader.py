@@ -3,16 +3,14 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from lumen.formats.behavior_data import ActionData, TransitionData, quoted, single
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.foreign_states import passing_key
-from lumen.formats.scxml.action_reader import quoted
-from lumen.formats.scxml.candidates import single
-from lumen.formats.xstate.action_reader import DO_ACTOR, ActionData, XStateActionReader
-from lumen.formats.xstate.descriptors import longest_first
-from lumen.formats.xstate.events import descriptor_of
+from lumen.formats.xstate.action_reader import DO_ACTOR, XStateActionReader
+from lumen.formats.xstate.descriptors import descriptor_of, longest_first
 from lumen.formats.xstate.json_source import parse_json
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
-from lumen.formats.xstate.transition_reader import TransitionData, XStateTransitionReader
+from lumen.formats.xstate.transition_reader import XStateTransitionReader
 from lumen.language.diagnostics import Diagnostic, NodePath
 
 _MEANT = {

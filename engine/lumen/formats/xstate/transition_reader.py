@@ -2,11 +2,10 @@
 
 from typing import Any
 
+from lumen.formats.behavior_data import TransitionData
 from lumen.formats.xstate.action_reader import XStateActionReader
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.language.diagnostics import NodePath
-
-TransitionData = dict[str, Any]
 
 _MEANT = {"target", "guard", "cond", "actions", "reenter", "description", "meta"}
 

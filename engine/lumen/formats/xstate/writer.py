@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from lumen.formats.action_data import plain_action, plain_block, plain_value
+from lumen.formats.behavior_data import plain_action, plain_block, plain_value
 from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
 from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD
 from lumen.formats.xstate.descriptors import EventDescriptors

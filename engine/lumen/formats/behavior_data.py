@@ -1,9 +1,12 @@
-"""Actions and values of a machine as the YAML says them: lengths in [m], angles in [rad], whatever the file's units."""
+"""Actions, values and transitions of a machine as the YAML says them; lengths in [m], angles in [rad]."""
 
 from collections.abc import Iterable, Mapping
+from math import isfinite
 from typing import Any, assert_never
 
 from lumen.formats.durations import duration
+from lumen.interpreters.expressions import unparse
+from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import (
     Action,
     Assign,
@@ -22,8 +25,14 @@ from lumen.language.actions import (
 )
 from lumen.language.verbs import Quantity, verb_of
 
+ActionData = dict[str, Any]
+"""An action of a behaviour file: its verb, and what stands under it."""
 
-def plain_block(steps: Iterable[PlacedAction]) -> list[dict[str, Any]]:
+TransitionData = dict[str, Any]
+"""A transition of a behaviour file: `target`, `guard`, `actions`, `reenter`."""
+
+
+def plain_block(steps: Iterable[PlacedAction]) -> list[ActionData]:
     """A list of actions."""
     return [plain_action(step.action) for step in steps]
 
@@ -40,7 +49,7 @@ def plain_value(value: ComputedValue) -> Any:
     return value
 
 
-def plain_action(action: Action) -> dict[str, Any]:
+def plain_action(action: Action) -> ActionData:
     """One action: an object with its verb as the key."""
     match action:
         case SayText(texts):
@@ -79,6 +88,26 @@ def _written(quantity: Quantity, value: Any) -> Any:
             return duration(value * 1000)
         case _:
             assert_never(quantity)
+
+
+def single(rows: list[TransitionData]) -> Any:
+    """The one row, or the list; a row that is only a target in one place is that text."""
+    shown = [row["target"] if set(row) == {"target"} and isinstance(row["target"], str) else row for row in rows]
+    return shown[0] if len(shown) == 1 else shown
+
+
+def quoted(value: Any) -> Any:
+    """A value of ours that is this JSON: its texts become expressions."""
+    match value:
+        case str():
+            return unparse(Literal(value))
+        case list():
+            return [quoted(item) for item in value]
+        case Mapping():
+            return {str(key): quoted(item) for key, item in value.items()}
+        case float() if not isfinite(value):
+            return None
+    return value
 
 
 def _event(event: str, data: ComputedValue) -> Any:

@@ -4,25 +4,21 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from lumen.formats.conversion_findings import broken
+from lumen.formats.conversion_findings import broken, check_size
 from lumen.language.diagnostics import Place
 
-SCXML_NAMESPACE = "http://www.w3.org/2005/07/scxml"
-SCXML_INVOKE_TYPE = "http://www.w3.org/TR/scxml/"
-"""The type of an `<invoke>` of another chart (SCXML 6.4.3)."""
-LUMEN_NAMESPACE = "urn:lumen:behavior"
-"""The namespace of what only Lumen knows: `do`, robot verbs, phrases, answers."""
-
-MAX_XML_BYTES = 4_000_000
 MAX_XML_LEVELS = 100
+"""Elements inside each other."""
+
 MAX_XML_ELEMENTS = 50_000
+"""Elements in a file, where a format does not say otherwise."""
 
 _XML = "http://www.w3.org/XML/1998/namespace"
 
 
 @dataclass(slots=True)
 class XmlElement:
-    """`tag` is `state` for SCXML's elements, `{namespace}name` for others, as are the names of attributes.
+    """`tag` is `state` in the namespace that was asked for, `{namespace}name` in others, as are attributes' names.
 
     `text` holds the characters directly inside.
     """
@@ -52,19 +48,20 @@ class XmlElement:
             yield from child.walk()
 
 
-def parse_xml(file: str, content: bytes, most: int = MAX_XML_ELEMENTS) -> XmlElement:
-    """The root of at most `most` elements; raises ForeignFileError for no XML, or for more than a tree of elements."""
-    if len(content) > MAX_XML_BYTES:
-        hint = f"at most {MAX_XML_BYTES // 1_000_000} MB are read"
-        raise broken(Place(file), "too-large", f"the file has {len(content) / 1e6:.0f} MB", hint)
-    return _Reader(file, most).read(content)
+def parse_xml(file: str, content: bytes, namespace: str = "", *, most: int = MAX_XML_ELEMENTS) -> XmlElement:
+    """The root of at most `most` elements; raises ForeignFileError for no XML, or for more than a tree of elements.
+
+    Tags of `namespace`, and those of none, stand without it.
+    """
+    check_size(file, content)
+    return _Reader(file, namespace, most).read(content)
 
 
 class _Reader:
     """Expat's handlers, and the way from the root to the element that is open."""
 
-    def __init__(self, file: str, most: int) -> None:
-        self.file, self.most = file, most
+    def __init__(self, file: str, namespace: str, most: int) -> None:
+        self.file, self.namespaces, self.most = file, ("", namespace), most
         self.parser = expat.ParserCreate(namespace_separator=" ")
         self.open: list[XmlElement] = []
         self.root: XmlElement | None = None
@@ -109,8 +106,8 @@ class _Reader:
                 else f"more than {self.most:,} parts"
             )
             raise broken(self.here, "too-large", f"the file is too large to be read: it has {what}")
-        known = {_local(key): value for key, value in attributes.items() if not key.startswith(_XML)}
-        element = XmlElement(_local(name), known, self.here)
+        known = {self.local(key): value for key, value in attributes.items() if not key.startswith(_XML)}
+        element = XmlElement(self.local(name), known, self.here)
         if self.open:
             self.open[-1].children.append(element)
         else:
@@ -123,7 +120,6 @@ class _Reader:
     def characters(self, text: str) -> None:
         self.open[-1].parts.append(text)
 
-
-def _local(name: str) -> str:
-    namespace, _, local = name.rpartition(" ")
-    return local if namespace in ("", SCXML_NAMESPACE) else f"{{{namespace}}}{local}"
+    def local(self, name: str) -> str:
+        namespace, _, local = name.rpartition(" ")
+        return local if namespace in self.namespaces else f"{{{namespace}}}{local}"

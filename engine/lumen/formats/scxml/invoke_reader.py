@@ -5,7 +5,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from lumen.formats.scxml.action_reader import PROCESSORS, LeftOutError, ScxmlActionReader
-from lumen.formats.scxml.xml_elements import XmlElement
+from lumen.formats.xml_elements import XmlElement
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 _ID = re.compile(r"[^\s@*]+")

@@ -1,0 +1,9 @@
+"""The names by which SCXML's elements, its invocations and what is Lumen's own are known."""
+
+SCXML_NAMESPACE = "http://www.w3.org/2005/07/scxml"
+
+SCXML_INVOKE_TYPE = "http://www.w3.org/TR/scxml/"
+"""The type of an `<invoke>` of another chart (SCXML 6.4.3)."""
+
+LUMEN_NAMESPACE = "urn:lumen:behavior"
+"""The namespace of what only Lumen knows: `do`, robot verbs, phrases, answers."""
