@@ -5,7 +5,8 @@ Both are read into the tree of `lumen.interpreters.expressions`; what ECMAScript
 """
 
 from lumen.formats.ecmascript.reader import ScriptNames, ScriptTranslator, read_condition, read_value
-from lumen.formats.ecmascript.script_parser import ScriptError, parse_script
+from lumen.formats.ecmascript.script_parser import parse_script
+from lumen.formats.ecmascript.script_tokens import ScriptError
 from lumen.formats.ecmascript.writer import Vocabulary, WrittenScript, write_expression
 
 __all__ = [

@@ -1,10 +1,9 @@
 """ECMAScript's equality in our language: of values, of what is missing, and of what may be."""
 
-from typing import TYPE_CHECKING
-
 from lumen.formats.ecmascript.kind_inference import UNKNOWN
 from lumen.formats.ecmascript.known_fields import is_data, negated
-from lumen.formats.ecmascript.script_parser import ScriptError
+from lumen.formats.ecmascript.script_tokens import ScriptError
+from lumen.formats.ecmascript.translation import Translation
 from lumen.interpreters.expressions.kinds import LIST, MAP, NULL
 from lumen.interpreters.expressions.tree import (
     Binary,
@@ -18,69 +17,66 @@ from lumen.interpreters.expressions.tree import (
     path_of,
 )
 
-if TYPE_CHECKING:
-    from lumen.formats.ecmascript.reader import ScriptTranslator
-
 EVENT, HAPPENED = Identifier("_event"), FunctionCall("has", (FieldAccess(Identifier("event"), "name"),))
 """An event as a whole, and that there is one: before the first `_event` is undefined (SCXML 5.10.1)."""
 
 _UNDEFINED = Identifier("undefined")
 
 
-def equality(reading: "ScriptTranslator", node: Binary) -> ExpressionNode:
+def equality(translation: Translation, node: Binary) -> ExpressionNode:
     """`==`, `!=`, `===` and `!==` in our words."""
     positive, strict = node.sign in ("==", "==="), len(node.sign) == 3
-    found = _undefined(reading, node, strict) or _index(reading, node) or _equal(reading, node, strict)
+    found = _undefined(translation, node, strict) or _index(translation, node) or _equal(translation, node, strict)
     return found if positive else negated(found)
 
 
-def _undefined(reading: "ScriptTranslator", node: Binary, strict: bool) -> ExpressionNode | None:
+def _undefined(translation: Translation, node: Binary, strict: bool) -> ExpressionNode | None:
     """`typeof x === 'undefined'`, `x === undefined` and `x == null`: is there nothing?"""
     for one, other in ((node.left, node.right), (node.right, node.left)):
         kind_asked = isinstance(one, Unary) and one.sign == "typeof"
         if isinstance(one, Unary) and kind_asked and other != Literal("undefined"):
             raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
         if isinstance(one, Unary) and kind_asked:
-            return _absent(reading, one.operand, False)
+            return _absent(translation, one.operand, False)
         if one == _UNDEFINED or (one == Literal(None) and not strict):
-            return _absent(reading, other, not strict)
+            return _absent(translation, other, not strict)
     return None
 
 
-def _absent(reading: "ScriptTranslator", tree: ExpressionNode, or_null: bool) -> ExpressionNode:
+def _absent(translation: Translation, tree: ExpressionNode, or_null: bool) -> ExpressionNode:
     if tree == EVENT:
         return negated(HAPPENED)
-    node = reading.value(tree)
+    node = translation.value(tree)
     path = path_of(node)
     is_null = Binary("==", node, Literal(None))
-    if not is_data(path) or path in reading.present:
+    if not is_data(path) or path in translation.present:
         return is_null
     missing = Unary("!", FunctionCall("has", (node,)))
     return Logic("||", (missing, is_null)) if or_null else missing
 
 
-def _index(reading: "ScriptTranslator", node: Binary) -> ExpressionNode | None:
+def _index(translation: Translation, node: Binary) -> ExpressionNode | None:
     """`text.indexOf(part) == -1`: negated, does the text hold the part?"""
     match node:
         case Binary(left=FunctionCall(function=".indexOf", arguments=(text, part)), right=Literal(value=-1)):
-            return Unary("!", FunctionCall("contains", (reading.value(text), reading.value(part))))
+            return Unary("!", FunctionCall("contains", (translation.value(text), translation.value(part))))
     return None
 
 
-def _equal(reading: "ScriptTranslator", node: Binary, strict: bool) -> ExpressionNode:
-    left, right = reading.value(node.left), reading.value(node.right)
-    kinds = {reading.kind(left), reading.kind(right)} - {UNKNOWN}
+def _equal(translation: Translation, node: Binary, strict: bool) -> ExpressionNode:
+    left, right = translation.value(node.left), translation.value(node.right)
+    kinds = {translation.kind(left), translation.kind(right)} - {UNKNOWN}
     if kinds & {LIST, MAP}:
         raise ScriptError("lists and objects are compared by identity")
     if len(kinds) == 2 and NULL not in kinds:
         if not strict:
             raise ScriptError("`==` has values of two kinds, which ECMAScript would convert")
         return Literal(False)
-    return guarded(reading, Binary("==", left, right), left, right)
+    return guarded(translation, Binary("==", left, right), left, right)
 
 
-def guarded(reading: "ScriptTranslator", node: ExpressionNode, *operands: ExpressionNode) -> ExpressionNode:
+def guarded(translation: Translation, node: ExpressionNode, *operands: ExpressionNode) -> ExpressionNode:
     """The comparison, false where a field of the event is missing (which ECMAScript calls undefined)."""
     paths = {path: operand for operand in operands if is_data(path := path_of(operand))}
-    missing = [FunctionCall("has", (operand,)) for path, operand in paths.items() if path not in reading.present]
+    missing = [FunctionCall("has", (operand,)) for path, operand in paths.items() if path not in translation.present]
     return Logic("&&", (*missing, node)) if missing else node

@@ -1,10 +1,10 @@
 """Methods and functions of ECMAScript, and what they are here."""
 
 import re
-from typing import Protocol
 
 from lumen.formats.ecmascript.kind_inference import is_float
 from lumen.formats.ecmascript.script_tokens import ScriptError
+from lumen.formats.ecmascript.translation import Translation
 from lumen.interpreters.expressions.kinds import LIST, NUMBER, TEXT
 from lumen.interpreters.expressions.tree import (
     Binary,
@@ -28,27 +28,22 @@ EQUIVALENT_METHODS = {".toLowerCase": "lower", ".trim": "trim", ".replaceAll": "
 _COUNTS = {".toLowerCase": 0, ".trim": 0, ".replaceAll": 2, ".includes": 1, ".startsWith": 1, ".endsWith": 1}
 
 
-class MethodTranslator(Protocol):
-    def value(self, tree: ExpressionNode) -> ExpressionNode: ...
-    def kind(self, node: ExpressionNode) -> str: ...
-
-
-def method(reading: MethodTranslator, node: FunctionCall) -> ExpressionNode:
+def method(translation: Translation, node: FunctionCall) -> ExpressionNode:
     """The call of a method in our words; raises ScriptError where we have none."""
     name, (owner, *arguments) = node.function, node.arguments
     if owner == Identifier("Math"):
-        return _mathematics(reading, name, arguments)
+        return _mathematics(translation, name, arguments)
     if name == ".concat":
-        return _joined(reading, owner, arguments)
+        return _joined(translation, owner, arguments)
     if _COUNTS.get(name) != len(arguments):
         raise ScriptError(f"`{name}()` has no counterpart")
-    base, *read = (reading.value(part) for part in (owner, *arguments))
+    base, *read = (translation.value(part) for part in (owner, *arguments))
     if name in EQUIVALENT_METHODS:
         return FunctionCall(EQUIVALENT_METHODS[name], (base, *read))
     if name == ".includes":
-        if reading.kind(base) == LIST:
+        if translation.kind(base) == LIST:
             return Binary("in", read[0], base)
-        if TEXT in (reading.kind(base), reading.kind(read[0])):
+        if TEXT in (translation.kind(base), translation.kind(read[0])):
             return FunctionCall("contains", (base, read[0]))
         raise ScriptError("`.includes()` of something that may be a text or a list")
     if not (isinstance(read[0], Literal) and isinstance(read[0].value, str)):
@@ -57,25 +52,25 @@ def method(reading: MethodTranslator, node: FunctionCall) -> ExpressionNode:
     return FunctionCall("matches", (base, Literal(f"^{pattern}" if name == ".startsWith" else f"{pattern}$")))
 
 
-def _joined(reading: MethodTranslator, owner: ExpressionNode, arguments: list[ExpressionNode]) -> ExpressionNode:
-    parts = [reading.value(part) for part in (owner, *arguments)]
+def _joined(translation: Translation, owner: ExpressionNode, arguments: list[ExpressionNode]) -> ExpressionNode:
+    parts = [translation.value(part) for part in (owner, *arguments)]
     result, *others = [part for part in parts if part != ListLiteral(())] or [ListLiteral(())]
     for other in others:
-        if reading.kind(result) == TEXT or reading.kind(other) not in (LIST, ""):
+        if translation.kind(result) == TEXT or translation.kind(other) not in (LIST, ""):
             raise ScriptError("`.concat()` of something that is no list")
         result = Binary("+", result, other)
     return result
 
 
-def _mathematics(reading: MethodTranslator, name: str, arguments: list[ExpressionNode]) -> ExpressionNode:
+def _mathematics(translation: Translation, name: str, arguments: list[ExpressionNode]) -> ExpressionNode:
     match name, arguments:
         case ".trunc", [Binary(sign="/", left=left, right=right)]:
-            read = Binary("/", reading.value(left), reading.value(right))
+            read = Binary("/", translation.value(left), translation.value(right))
             if not is_float(read):
                 return read
         case ".pow", [base, Literal(value=int() as power)] if 1 <= power <= 4:
-            value = reading.value(base)
-            if isinstance(value, FieldAccess | Literal) and reading.kind(value) in (NUMBER, ""):
+            value = translation.value(base)
+            if isinstance(value, FieldAccess | Literal) and translation.kind(value) in (NUMBER, ""):
                 product: ExpressionNode = value
                 for _ in range(power - 1):
                     product = Binary("*", product, value)

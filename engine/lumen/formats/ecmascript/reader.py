@@ -8,7 +8,8 @@ from lumen.formats.ecmascript.comparing import EVENT, HAPPENED, equality, guarde
 from lumen.formats.ecmascript.kind_inference import UNKNOWN, is_float, kind
 from lumen.formats.ecmascript.known_fields import known, negated
 from lumen.formats.ecmascript.methods import LUMEN_FUNCTIONS, SIGN_FUNCTIONS, method
-from lumen.formats.ecmascript.script_parser import ScriptError, parse_script
+from lumen.formats.ecmascript.script_parser import parse_script
+from lumen.formats.ecmascript.script_tokens import ScriptError
 from lumen.interpreters.expressions import unparse
 from lumen.interpreters.expressions.kinds import BOOLEAN, MAP, NUMBER, TEXT
 from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH, MAX_INT, MAX_TREE_DEPTH, MIN_INT

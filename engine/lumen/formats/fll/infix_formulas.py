@@ -5,10 +5,12 @@ There `^` and `**` are powers, `~`, `.-` a minus, `and` and `or` logic, `lt(a, b
 
 import re
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions import ExpressionNode, parse_expression, unparse
+from lumen.interpreters.expressions.pratt import PrattParser
+from lumen.interpreters.expressions.tokens import Token
 from lumen.interpreters.expressions.tree import Binary, Conditional, FunctionCall, Identifier, Literal, Logic, Unary
 from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
 
@@ -17,9 +19,8 @@ _TOKEN = re.compile(
     r"|(?P<sign>\*\*|\.\+|\.-|[-+*/%^!~(),]))"
 )
 _COMPARISONS = {"lt": "<", "le": "<=", "eq": "==", "neq": "!=", "ge": ">=", "gt": ">"}
-_POWERS = {"or": 1, "and": 2, "+": 3, "-": 3, "*": 4, "/": 4, "%": 4, "^": 6, "**": 6}
-_UNARY = 5
-MAX_FORMULA_DEPTH = 40
+MAX_FORMULA_LEVELS = 40
+"""Formulas inside each other, in brackets, arguments or behind a sign."""
 
 
 class Trouble(NamedTuple):
@@ -32,86 +33,60 @@ class Trouble(NamedTuple):
 def read_formula(text: str, names: Mapping[str, str]) -> str | Trouble:
     """FuzzyLite's formula as ours; `names` says what its variables are called here."""
     try:
-        return unparse(_Parser(text, names).whole())
+        return unparse(_FormulaParser(text, names).whole())
     except ExpressionError as error:
         return Trouble(error.message, error.offset)
 
 
-class _Parser:
-    """Climbs operator precedence, as FuzzyLite's table gives it."""
+def _tokens(text: str) -> list[Token]:
+    tokens, offset = [], 0
+    while offset < len(text.rstrip()):
+        match = _TOKEN.match(text, offset)
+        if not match or not match.lastgroup:
+            raise ExpressionError(f"`{text[offset:].strip()[:1]}` has no meaning", offset)
+        tokens.append(Token(match.lastgroup, match[match.lastgroup], match.start(match.lastgroup)))
+        offset = match.end()
+    return [*tokens, Token("end", "", len(text))]
+
+
+class _FormulaParser(PrattParser):
+    """The powers are those of FuzzyLite's own table."""
+
+    max_levels = MAX_FORMULA_LEVELS
 
     def __init__(self, text: str, names: Mapping[str, str]) -> None:
-        self.names, self.text, self.level = names, text, 0
-        self.tokens: list[tuple[str, str, int]] = []
-        offset = 0
-        while offset < len(text.rstrip()):
-            match = _TOKEN.match(text, offset)
-            if not match or not match.lastgroup:
-                raise ExpressionError(f"`{text[offset:].strip()[:1]}` has no meaning", offset)
-            self.tokens.append((match.lastgroup, match[match.lastgroup], match.start(match.lastgroup)))
-            offset = match.end()
-        self.tokens.append(("end", "", len(text)))
-        self.next = 0
+        super().__init__(_tokens(text))
+        self.names = names
 
-    def whole(self) -> ExpressionNode:
-        node = self.expression(0)
-        self.expect("")
-        return node
+    def unexpected(self, hint: str = "") -> ExpressionError:
+        text = self.token.text
+        return ExpressionError(f"`{text}` can't stand here" if text else "it ends too early", self.token.offset)
 
-    def expect(self, text: str) -> None:
-        _, found, offset = self.tokens[self.next]
-        if found != text:
-            raise ExpressionError(f"`{found}` can't stand here" if found else "it ends too early", offset)
-        self.next += 1
+    def too_deep(self, offset: int) -> ExpressionError:
+        return ExpressionError("it is nested too deeply", offset)
 
-    def expression(self, power: int) -> ExpressionNode:
-        self.level += 1
-        if self.level > MAX_FORMULA_DEPTH:
-            raise ExpressionError("it is nested too deeply", self.tokens[self.next][2])
-        left = self.prefix()
-        while (stronger := _POWERS.get(self.tokens[self.next][1], 0)) > power:
-            sign = self.tokens[self.next][1]
-            self.next += 1
-            right = self.expression(stronger - 1 if sign in ("^", "**") else stronger)
-            left = _joined(sign, left, right)
-        self.level -= 1
-        return left
+    def number(self) -> ExpressionNode:
+        token = self.advance()
+        value = float(token.text)
+        if value == float("inf"):
+            raise ExpressionError(f"`{token.text}` is too large a number", token.offset)
+        return Literal(int(value) if value == int(value) and abs(value) < 1e15 else value)
 
-    def prefix(self) -> ExpressionNode:
-        kind, text, offset = self.tokens[self.next]
-        self.next += 1
-        if kind == "number":
-            value = float(text)
-            if value == float("inf"):
-                raise ExpressionError(f"`{text}` is too large a number", offset)
-            return Literal(int(value) if value == int(value) and abs(value) < 1e15 else value)
-        if text in ("-", "~", ".-"):
-            return Unary("-", self.expression(_UNARY))
-        if text in ("+", ".+"):
-            return self.expression(_UNARY)
-        if text == "!":
-            return Unary("!", self.expression(_UNARY + 2))
-        if text == "(":
-            inner = self.expression(0)
-            self.expect(")")
-            return inner
-        if kind == "name":
-            return self.name(text, offset)
-        raise ExpressionError(f"`{text}` can't stand here" if text else "it ends too early", offset)
+    def minus(self, power: int) -> ExpressionNode:
+        self.advance()
+        return Unary("-", self.expression(power))
 
-    def name(self, text: str, offset: int) -> ExpressionNode:
-        if self.tokens[self.next][1] != "(":
+    def plus(self, power: int) -> ExpressionNode:
+        self.advance()
+        return self.expression(power)
+
+    def name(self) -> ExpressionNode:
+        text, offset = self.advance()[1:3]
+        if not self.accept("("):
             if text not in self.names and text not in ("x", "pi"):
                 raise ExpressionError(f"there is no `{text}`", offset)
             return Identifier(self.names.get(text, text))
-        self.next += 1
-        arguments = []
-        while self.tokens[self.next][1] != ")":
-            arguments.append(self.expression(0))
-            if self.tokens[self.next][1] != ",":
-                break
-            self.next += 1
-        self.expect(")")
+        arguments, _ = self.listed(")")
         if text == "pi" and not arguments:
             return Identifier("pi")
         if text in _COMPARISONS and len(arguments) == 2:
@@ -119,15 +94,30 @@ class _Parser:
         function = {"fabs": "abs"}.get(text, text)
         if FORMULA_FUNCTIONS.get(function) != len(arguments):
             raise ExpressionError(f"there is no function `{text}` of {len(arguments)}", offset)
-        return FunctionCall(function, tuple(arguments))
+        return FunctionCall(function, arguments)
 
+    def joined(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
+        """`left and right`."""
+        return Logic("&&" if sign.text == "and" else "||", (left, self.expression(power)))
 
-def _joined(sign: str, left: ExpressionNode, right: ExpressionNode) -> ExpressionNode:
-    if sign in ("^", "**"):
-        return FunctionCall("pow", (left, right))
-    if sign in ("and", "or"):
-        return Logic("&&" if sign == "and" else "||", (left, right))
-    return Binary(sign, left, right)
+    def raised(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
+        """`left ^ right`, several of them from the right."""
+        return FunctionCall("pow", (left, self.expression(power - 1)))
+
+    operands: ClassVar = {"number": number, "name": name}
+    prefixes: ClassVar = {
+        **dict.fromkeys(("-", "~", ".-"), (5, minus)),
+        **dict.fromkeys(("+", ".+"), (5, plus)),
+        "!": (7, PrattParser.unary),
+        "(": (0, PrattParser.group),
+    }
+    infixes: ClassVar = {
+        "or": (1, joined),
+        "and": (2, joined),
+        **dict.fromkeys(("+", "-"), (3, PrattParser.binary)),
+        **dict.fromkeys(("*", "/", "%"), (4, PrattParser.binary)),
+        **dict.fromkeys(("^", "**"), (6, raised)),
+    }
 
 
 def write_formula(text: str, names: Mapping[str, str]) -> tuple[str, bool]:

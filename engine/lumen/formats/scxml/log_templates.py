@@ -33,10 +33,10 @@ def _parts(tree: ExpressionNode, names: ScriptNames) -> list[ExpressionNode]:
     while isinstance(rest, Binary) and rest.sign == "+":
         chain.insert(0, rest.right)
         rest = rest.left
-    reading = ScriptTranslator(names)
-    read = [reading.value(part) for part in (rest, *chain)]
+    translator = ScriptTranslator(names)
+    read = [translator.value(part) for part in (rest, *chain)]
     kinds = [kind(part, names.kinds) for part in read[:2]]
-    return read if TEXT in kinds else [reading.value(tree)]
+    return read if TEXT in kinds else [translator.value(tree)]
 
 
 def _piece(node: ExpressionNode) -> str:

@@ -1,0 +1,222 @@
+"""A parser of operator precedence: the machine under every expression language here.
+
+V. Pratt, "Top Down Operator Precedence", POPL 1973. A language is a subclass with three tables: the signs that an
+expression begins with, the kinds of tokens that are operands, and what goes on from a left side (operators, `? :`,
+`.field`, `[index]`), each with the power it binds its operands with: of two, the stronger has the operand between.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection, Mapping
+from typing import Any, ClassVar
+
+from lumen.interpreters.expressions.scope import MAX_TREE_DEPTH
+from lumen.interpreters.expressions.tokens import Token
+from lumen.interpreters.expressions.tree import (
+    Binary,
+    Conditional,
+    ExpressionNode,
+    FieldAccess,
+    FunctionCall,
+    Identifier,
+    IndexAccess,
+    ListLiteral,
+    Literal,
+    Logic,
+    MapLiteral,
+    Unary,
+    walk,
+)
+
+CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
+"""The names that are values."""
+
+Prefix = tuple[int, Callable[[Any, int], ExpressionNode]]
+"""A power, and the parser's method that is handed it and reads the sign with what belongs to it."""
+
+Infix = tuple[int, Callable[[Any, ExpressionNode, Token, int], ExpressionNode]]
+"""A power, and the parser's method that is handed the left side, the sign (which is read already) and the power."""
+
+
+class PrattParser(ABC):
+    """One pass over tokens, the last of kind `end`; `token` is the next one."""
+
+    prefixes: ClassVar[Mapping[str, Prefix]]
+    operands: ClassVar[Mapping[str, Callable[[Any], ExpressionNode]]]
+    infixes: ClassVar[Mapping[str, Infix]]
+
+    reserved: ClassVar[Collection[str]] = ()
+    """Names that are no operands."""
+
+    method_prefix: ClassVar[str] = ""
+    """What the function is called that `a.name()` calls, before the name."""
+
+    max_levels: ClassVar[int]
+    """How many expressions stand inside each other at most; brackets count here, though not in the tree."""
+
+    def __init__(self, tokens: list[Token]) -> None:
+        self.tokens, self.token, self.position, self.level = tokens, tokens[0], 0, 0
+
+    @abstractmethod
+    def unexpected(self, hint: str = "") -> Exception:
+        """The error to raise where the next token can't stand."""
+
+    @abstractmethod
+    def too_deep(self, offset: int) -> Exception:
+        """The error to raise for more levels than are allowed."""
+
+    def whole(self) -> ExpressionNode:
+        """The tree of all tokens."""
+        tree = self.expression(0)
+        if self.token.kind != "end":
+            raise self.unexpected()
+        return tree
+
+    def bounded(self) -> ExpressionNode:
+        """The tree of all tokens, with at most MAX_TREE_DEPTH levels."""
+        tree = self.whole()
+        for node, level in walk(tree):
+            if level > MAX_TREE_DEPTH:
+                raise self.too_deep(node.offset)
+        return tree
+
+    def expression(self, power: int) -> ExpressionNode:
+        """An expression whose operators all bind more tightly than `power`."""
+        self.level += 1
+        if self.level > self.max_levels:
+            raise self.too_deep(self.token.offset)
+        left, infixes = self.begin(), self.infixes
+        while (infix := infixes.get(self.token.text)) and infix[0] > power:
+            left = infix[1](self, left, self.advance(), infix[0])
+        self.level -= 1
+        return left
+
+    def begin(self) -> ExpressionNode:
+        """What stands before the first operator."""
+        if prefix := self.prefixes.get(self.token.text):
+            return prefix[1](self, prefix[0])
+        if operand := self.operands.get(self.token.kind):
+            return operand(self)
+        raise self.unexpected()
+
+    # Tokens
+
+    def advance(self) -> Token:
+        """The next token, which is read."""
+        read = self.token
+        self.position += 1
+        self.token = self.tokens[self.position]
+        return read
+
+    def accept(self, text: str) -> bool:
+        """Whether the next token is this one, which is read."""
+        found = self.token.text == text
+        if found:
+            self.advance()
+        return found
+
+    def expect(self, text: str) -> Token:
+        """The next token, which has to be this one, and is read."""
+        if self.token.text != text:
+            raise self.unexpected(f"a `{text}` is missing")
+        return self.advance()
+
+    # What an expression begins with
+
+    def literal(self) -> ExpressionNode:
+        """A number or a text."""
+        token = self.advance()
+        return Literal(token.value, offset=token.offset, end=token.end)
+
+    def name(self) -> ExpressionNode:
+        """`true`, `f(…)` or a name."""
+        if self.token.text in self.reserved:
+            raise self.unexpected()
+        token = self.advance()
+        if token.text in CONSTANTS:
+            return Literal(CONSTANTS[token.text], offset=token.offset, end=token.end)
+        if self.accept("("):
+            arguments, end = self.listed(")")
+            return FunctionCall(token.text, arguments, token.offset, offset=token.offset, end=end)
+        return Identifier(token.text, offset=token.offset, end=token.end)
+
+    def unary(self, power: int) -> Unary:
+        """`!operand`."""
+        sign = self.advance()
+        operand = self.expression(power)
+        return Unary(sign.text, operand, offset=sign.offset, end=operand.end)
+
+    def group(self, power: int) -> ExpressionNode:
+        """`(inner)`."""
+        self.advance()
+        inner = self.expression(power)
+        self.expect(")")
+        return inner
+
+    def list_literal(self, _: int) -> ExpressionNode:
+        """`[items]`."""
+        start = self.advance()
+        items, end = self.listed("]")
+        return ListLiteral(items, offset=start.offset, end=end)
+
+    def map_literal(self, power: int) -> ExpressionNode:
+        """`{key: value}`."""
+        start = self.advance()
+        entries: dict[str, ExpressionNode] = {}
+        while self.token.text != "}":
+            key = self.map_key(entries)
+            self.expect(":")
+            entries[key] = self.expression(power)
+            if not self.accept(","):
+                break
+        end = self.expect("}").end
+        return MapLiteral(tuple(entries), tuple(entries.values()), offset=start.offset, end=end)
+
+    def map_key(self, entries: Collection[str]) -> str:
+        """The key of the next entry, which is read; `entries` has those before."""
+        raise self.unexpected()
+
+    # What goes on from a left side
+
+    def binary(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
+        """`left sign right`, several of them from the left."""
+        right = self.expression(power)
+        return Binary(sign.text, left, right, offset=left.offset, end=right.end)
+
+    def logic(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
+        """`left && right`, several of them as one."""
+        operands = [left, self.expression(power)]
+        while self.accept(sign.text):
+            operands.append(self.expression(power))
+        return Logic(sign.text, tuple(operands), offset=left.offset, end=operands[-1].end)
+
+    def conditional(self, left: ExpressionNode, _: Token, __: int) -> ExpressionNode:
+        """`left ? then : otherwise`."""
+        then = self.expression(0)
+        self.expect(":")
+        otherwise = self.expression(0)
+        return Conditional(left, then, otherwise, offset=left.offset, end=otherwise.end)
+
+    def index(self, left: ExpressionNode, _: Token, __: int) -> ExpressionNode:
+        """`left[key]`."""
+        key = self.expression(0)
+        return IndexAccess(left, key, offset=left.offset, end=self.expect("]").end)
+
+    def member(self, left: ExpressionNode, _: Token, __: int) -> ExpressionNode:
+        """`left.field` or `left.function(arguments)`."""
+        if self.token.kind != "name":
+            raise self.unexpected("a name follows a `.`")
+        name = self.advance()
+        if not self.accept("("):
+            return FieldAccess(left, name.text, offset=left.offset, end=name.end)
+        arguments, end = self.listed(")")
+        function = self.method_prefix + name.text
+        return FunctionCall(function, (left, *arguments), name.offset, offset=left.offset, end=end)
+
+    def listed(self, close: str) -> tuple[tuple[ExpressionNode, ...], int]:
+        """Expressions between commas up to `close`, and where that ends; a last comma is allowed."""
+        items: list[ExpressionNode] = []
+        while self.token.text != close:
+            items.append(self.expression(0))
+            if not self.accept(","):
+                break
+        return tuple(items), self.expect(close).end
