@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any, get_args
 
 import pytest
+from lumen.formats.action_data import plain_action
 
 from lumen.buses.memory import MemoryBus
-from lumen.formats.action_data import plain_action
 from lumen.interpreters.changes.actions import told
 from lumen.language.actions import Action, ComputedAction
 from lumen.language.commands import BodyCommand, Command, Look, Move, Posture, Rest, Say, Start, Stop, VerbCommand, Wake

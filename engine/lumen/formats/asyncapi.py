@@ -11,6 +11,8 @@ from lumen.language.routes import Carried, Direction, Route
 
 ASYNCAPI_VERSION = "3.0.0"
 BINDING_VERSION = "0.3.0"
+"""Of AsyncAPI's AMQP bindings."""
+
 EXCHANGE = "amq.topic"
 CARRIED_DESCRIPTIONS = {
     Carried.TELEMETRY: "Telemetry: the newest wins.",

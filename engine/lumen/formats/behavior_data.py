@@ -1,4 +1,4 @@
-"""Actions, values and transitions of a machine as the YAML says them; lengths in [m], angles in [rad]."""
+"""Actions, values and transitions of a machine as they stand in YAML; lengths in [m], angles in [rad]."""
 
 from collections.abc import Iterable, Mapping
 from math import isfinite

@@ -1,4 +1,4 @@
-"""What a format can't say of a behaviour, and what is wrong with a file of another format."""
+"""What of a behaviour a format can't represent, and what is wrong with a file of another format."""
 
 from collections.abc import Callable
 
@@ -18,7 +18,7 @@ CODE_MEANINGS = {
 
 
 class ForeignFileError(Exception):
-    """A file can't be read at all; holds the one diagnostic that says why."""
+    """A file can't be read at all; holds the one diagnostic with the reason."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(str(diagnostic))
@@ -26,7 +26,7 @@ class ForeignFileError(Exception):
 
 
 class ConversionFindings:
-    """Collects what is to be said, each thing once.
+    """Collects what was lost or changed in a conversion, each thing once.
 
     What is `lost` is not in the result at all (an error: the behaviour is another one); what is `changed` is there in
     another form, which is worth a look.
@@ -37,7 +37,7 @@ class ConversionFindings:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """Everything said, by file and line."""
+        """Everything reported, by file and line."""
         return sorted(self._found, key=lambda d: (d.place, d.message))
 
     def lost(self, place: Place, message: str, hint: str = "") -> None:
@@ -79,7 +79,7 @@ class ExportReport:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """Everything said, by line."""
+        """Everything reported, by line."""
         for word, places in self._foreign.items():
             times = f", {len(places)} times" if len(places) > 1 else ""
             self.findings.changed(min(places), f"only Lumen understands {word}{times}", self.hint)

@@ -18,10 +18,10 @@ def dot(machine: MachineDefinition) -> str:
     A state with states within is a cluster; an arrow to or from it ends at its frame. A behaviour that a state invokes
     is a dashed cluster inside it: once, and wherever it is invoked again a box with its name.
     """
-    return "\n".join([_HEAD, *_Drawing(machine).lines(), "}"]) + "\n"
+    return "\n".join([_HEAD, *_DotDrawing(machine).lines(), "}"]) + "\n"
 
 
-class _Drawing:
+class _DotDrawing:
     """The lines of one graph; every state has an id `s1, s2, …` in document order."""
 
     def __init__(self, machine: MachineDefinition, prefix: str = "", drawn: set[str] | None = None) -> None:
@@ -60,7 +60,7 @@ class _Drawing:
             yield f"{indent}{id} [label={_quoted(invocation(invoke))}, style=dashed]"
             return
         self.drawn.add(invoke.behavior)
-        yield from (f"{indent}{line}" for line in _Drawing(machine, id, self.drawn).lines(invocation(invoke)))
+        yield from (f"{indent}{line}" for line in _DotDrawing(machine, id, self.drawn).lines(invocation(invoke)))
 
     def _box(self, state: State, depth: int) -> Iterator[str]:
         shape = ""

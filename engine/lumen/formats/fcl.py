@@ -58,7 +58,7 @@ def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
     """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no block."""
     text = content.decode("utf-8-sig", errors="replace")
     findings = ConversionFindings()
-    reader = _Reader(file, text, findings)
+    reader = _FclReader(file, text, findings)
     sections = list(_sections(_without_comments(text)))
     if not any(section.kind == "FUZZIFY" for section in sections):
         raise broken(Place(file), "not-a-controller", "this is no function block: it has no FUZZIFY")
@@ -99,7 +99,7 @@ def _statements(text: str, begin: int, stop: int) -> Iterator[FclStatement]:
             yield FclStatement(said, begin + part.start() + part[0].index(said[0]))
 
 
-class _Reader:
+class _FclReader:
     def __init__(self, file: str, text: str, findings: ConversionFindings) -> None:
         self.file, self.text, self.findings = file, text, findings
         self.draft = ControllerDraft(file, findings)

@@ -74,7 +74,7 @@ def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
     sections = list(_sections(file, text))
     if not any(section.kind == "input" for section in sections):
         raise broken(Place(file), "not-a-controller", "this is no system of MATLAB: it has no [Input1]")
-    return _Reader(file, findings).system(sections), findings.diagnostics
+    return _FisReader(file, findings).system(sections), findings.diagnostics
 
 
 def _sections(file: str, text: str) -> Iterator[FisSection]:
@@ -94,7 +94,7 @@ def _sections(file: str, text: str) -> Iterator[FisSection]:
         yield section
 
 
-class _Reader:
+class _FisReader:
     def __init__(self, file: str, findings: ConversionFindings) -> None:
         self.findings, self.draft = findings, ControllerDraft(file, findings)
         self.order: dict[str, list[tuple[str, list[str]]]] = {"input": [], "output": []}
@@ -124,7 +124,7 @@ class _Reader:
                     self.findings.lost(line.place, f"there is no {word} `{value}` here: the usual one is used")
         if said.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS:
             said.pop("implication", None)  # a value is not cut
-            said["aggregation"] = "unbounded-sum"  # every rule counts with its own weight, whatever the file says
+            said["aggregation"] = "unbounded-sum"  # every rule counts with its own weight, whatever is set in the file
         return said
 
     def variable(self, section: FisSection, said: Mapping[str, Any]) -> None:
@@ -202,7 +202,7 @@ class _Reader:
         return found
 
     def known(self, name: str, terms: list[str]) -> str:
-        """Our name of a variable; the draft knows it, and its terms, as the file's too: MATLAB's may hold blanks."""
+        """Our name of a variable; the draft has it, and its terms, as the file's too: MATLAB's may hold blanks."""
         ours = self.draft.names[name]
         self.draft.names.setdefault(ours, ours)
         self.draft.terms[ours] = {term: term for term in terms if term}

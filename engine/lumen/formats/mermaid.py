@@ -16,10 +16,10 @@ def mermaid(machine: MachineDefinition) -> str:
     in an id. Events that lead nowhere (no target) stand in the label of their state. A behaviour that a state invokes
     is drawn inside it, as a region of its own: once, and wherever it is invoked again as a box with its name.
     """
-    return "\n".join(["stateDiagram-v2", *_Drawing(machine).lines()]) + "\n"
+    return "\n".join(["stateDiagram-v2", *_MermaidDrawing(machine).lines()]) + "\n"
 
 
-class _Drawing:
+class _MermaidDrawing:
     """The lines of one diagram. An arrow is drawn in the innermost compound state around both its ends."""
 
     def __init__(self, machine: MachineDefinition, prefix: str = "", drawn: set[str] | None = None) -> None:
@@ -92,7 +92,7 @@ class _Drawing:
             return
         self.drawn.add(invoke.behavior)
         yield f'{indent}state "{name}" as {id} {{'
-        yield from (f"{indent}{line}" for line in _Drawing(machine, id, self.drawn).lines())
+        yield from (f"{indent}{line}" for line in _MermaidDrawing(machine, id, self.drawn).lines())
         yield f"{indent}}}"
 
 

@@ -11,14 +11,14 @@ MAX_XML_LEVELS = 100
 """Elements inside each other."""
 
 MAX_XML_ELEMENTS = 50_000
-"""Elements in a file, where a format does not say otherwise."""
+"""Elements in a file, where a format sets no other bound."""
 
 _XML = "http://www.w3.org/XML/1998/namespace"
 
 
 @dataclass(slots=True)
 class XmlElement:
-    """`tag` is `state` in the namespace that was asked for, `{namespace}name` in others, as are attributes' names.
+    """`tag` is `state` in the namespace given to `parse_xml`, `{namespace}name` in others, as are attributes' names.
 
     `text` holds the characters directly inside.
     """
@@ -54,10 +54,10 @@ def parse_xml(file: str, content: bytes, namespace: str = "", *, most: int = MAX
     Tags of `namespace`, and those of none, stand without it.
     """
     check_size(file, content)
-    return _Reader(file, namespace, most).read(content)
+    return _XmlReader(file, namespace, most).read(content)
 
 
-class _Reader:
+class _XmlReader:
     """Expat's handlers, and the way from the root to the element that is open."""
 
     def __init__(self, file: str, namespace: str, most: int) -> None:

@@ -25,6 +25,6 @@ FORMATS: Mapping[str, str] = {
 
 
 def render(format: str, found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """The findings in that format; empty where a format says nothing of nothing."""
+    """The findings in that format; empty where there are none and the format has no summary."""
     module = import_module(f"lumen.cli.render.{format}")
     return cast(Renderer, module.render)(found, coloured=coloured)

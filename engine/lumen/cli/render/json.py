@@ -9,7 +9,7 @@ from lumen.app.lint.findings import Findings
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
     """`{"diagnostics": […], "files": N}`; lines and columns from 1, files relative to the project.
 
-    Of several projects each diagnostic also says its `project`: the folder.
+    Of several projects each diagnostic also has its `project`: the folder.
     """
     several = len(found) > 1
     rows = [

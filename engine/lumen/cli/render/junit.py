@@ -25,7 +25,7 @@ def _cases(found: Findings) -> Iterator[JunitCase]:
 
 
 def _case(file: str, diagnostic: Diagnostic) -> JunitCase:
-    """One finding: a failure, but what is only to be known says so and passes."""
+    """One finding: a failure, but a note stands in the output of a case that passed."""
     place = f"{file}:{diagnostic.place.line}:{diagnostic.place.column}"
     attributes = {"file": file, "line": str(diagnostic.place.line)}
     case = JunitCase(f"{place} {diagnostic.code}", f"lint.{diagnostic.code}", attributes)

@@ -11,7 +11,7 @@ from lumen.runtime.coverage import Coverage
 
 
 def render(verdict: Verdict) -> str:
-    """`{"stories": […], "failed": N, "took": s}`, with `coverage` and `explore` where asked for."""
+    """`{"stories": […], "failed": N, "took": s}`, with `coverage` and `explore` where they were wanted."""
     found: dict[str, Any] = {
         "stories": [_story(rehearsal) for rehearsal in verdict.rehearsals],
         "failed": verdict.failed,

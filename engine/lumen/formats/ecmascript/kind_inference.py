@@ -1,4 +1,4 @@
-"""Of which kind a value is, as far as its expression tells."""
+"""Which kind a value is of, as far as its expression shows."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -18,11 +18,11 @@ from lumen.interpreters.expressions.tree import (
     path_of,
 )
 
-UNKNOWN = ""
+UNKNOWN_KIND = ""
 
 
 def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
-    """One of the kinds of our values, or UNKNOWN; `context` has those of the context's keys that keep theirs."""
+    """One of the kinds of our values, or UNKNOWN_KIND; `context` has those of the context's keys that keep theirs."""
     match node:
         case Literal(value=value):
             return kind_of(value)
@@ -42,16 +42,16 @@ def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
             return BOOLEAN
         case Conditional(then=then, otherwise=otherwise):
             found = {kind(then, context), kind(otherwise, context)}
-            return found.pop() if len(found) == 1 else UNKNOWN
+            return found.pop() if len(found) == 1 else UNKNOWN_KIND
         case FunctionCall(function=function):
             returns = FUNCTIONS[function].returns if function in FUNCTIONS else ()
-            return next(iter(returns)) if len(returns) == 1 else UNKNOWN
+            return next(iter(returns)) if len(returns) == 1 else UNKNOWN_KIND
     match path_of(node):
         case ("context", key):
-            return context.get(key, UNKNOWN)
+            return context.get(key, UNKNOWN_KIND)
         case ("event", "name"):
             return TEXT
-    return UNKNOWN
+    return UNKNOWN_KIND
 
 
 def is_float(node: ExpressionNode) -> bool:
@@ -67,5 +67,5 @@ def is_float(node: ExpressionNode) -> bool:
 
 
 def kinds_of(context: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, str]:
-    """The kinds that context keys keep: those of their first values, where `types` says nothing wider."""
+    """The kinds that context keys keep: those of their first values, where `types` declares nothing wider."""
     return {key: kind_of(value) for key, value in context.items() if value is not None and key not in types}

@@ -1,11 +1,11 @@
-"""From ECMAScript's tree to ours: the same meaning, or a ScriptError that says what can't be said."""
+"""From ECMAScript's tree to ours: the same meaning, or a ScriptError where there is no counterpart."""
 
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from lumen.formats.ecmascript.comparing import EVENT, HAPPENED, equality, guarded
-from lumen.formats.ecmascript.kind_inference import UNKNOWN, is_float, kind
+from lumen.formats.ecmascript.equality import EVENT, HAPPENED, equality, guarded
+from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND, is_float, kind
 from lumen.formats.ecmascript.known_fields import known, negated
 from lumen.formats.ecmascript.methods import LUMEN_FUNCTIONS, SIGN_FUNCTIONS, method
 from lumen.formats.ecmascript.script_parser import parse_script
@@ -173,7 +173,7 @@ class ScriptTranslator:
         if node.sign == "typeof":
             raise ScriptError("`typeof` is understood only in a comparison with 'undefined'")
         read = self.value(node.operand)
-        if self.kind(read) not in (NUMBER, UNKNOWN) or (node.sign == "+" and self.kind(read) != NUMBER):
+        if self.kind(read) not in (NUMBER, UNKNOWN_KIND) or (node.sign == "+" and self.kind(read) != NUMBER):
             raise ScriptError(f"`{node.sign}` turns a value into a number")
         return read if node.sign == "+" else Unary("-", read)
 
@@ -206,7 +206,7 @@ class ScriptTranslator:
         return Binary(sign, left, right)
 
     def _same_kind(self, sign: str, left: ExpressionNode, right: ExpressionNode, allowed: tuple[str, ...]) -> None:
-        kinds = {self.kind(left), self.kind(right)} - {UNKNOWN}
+        kinds = {self.kind(left), self.kind(right)} - {UNKNOWN_KIND}
         if not kinds <= set(allowed) or len(kinds) > 1:
             raise ScriptError(f"`{sign}` has values of two kinds, which ECMAScript would convert")
 

@@ -18,7 +18,7 @@ _SIMPLE = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v", "0"
 
 
 class ScriptError(Exception):
-    """An expression that can't be said in our language; the message says why."""
+    """An expression that our language can't represent; the message is the reason."""
 
 
 def tokenize_script(source: str) -> list[Token]:

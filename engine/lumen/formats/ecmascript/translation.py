@@ -1,4 +1,4 @@
-"""What the parts of a translation ask of the whole, which knows the names and goes down the tree."""
+"""What the parts of a translation need of the whole, which has the names and goes down the tree."""
 
 from typing import Protocol
 
@@ -14,4 +14,4 @@ class Translation(Protocol):
         """Our tree with the same value; raises ScriptError."""
 
     def kind(self, node: ExpressionNode) -> str:
-        """The kind of one of our trees, or UNKNOWN."""
+        """The kind of one of our trees, or UNKNOWN_KIND."""

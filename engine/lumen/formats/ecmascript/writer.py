@@ -1,4 +1,4 @@
-"""From our expressions to ECMAScript's, and what in them only Lumen knows."""
+"""From our expressions to ECMAScript's, and the names in them that only Lumen has."""
 
 import re
 from collections.abc import Mapping
@@ -47,13 +47,13 @@ class Vocabulary(NamedTuple):
 
 def write_expression(source: str, vocabulary: Vocabulary) -> WrittenScript:
     """One of our expressions in ECMAScript; raises ScriptError where it uses the context or the event as a whole."""
-    writer = _Writer(vocabulary)
+    writer = _ScriptWriter(vocabulary)
     text = unparse(writer.node(parse_expression(source)))
     return WrittenScript(text, tuple(dict.fromkeys(writer.foreign)))
 
 
-class _Writer:
-    """Translates one tree; `foreign` collects what only Lumen knows."""
+class _ScriptWriter:
+    """Translates one tree; `foreign` collects the names that only Lumen has."""
 
     def __init__(self, vocabulary: Vocabulary) -> None:
         self.vocabulary = vocabulary

@@ -1,4 +1,4 @@
-"""A controller file in the making: variables, terms and rules of another tool, under names that our rules can say."""
+"""A controller file in the making: variables, terms and rules of another tool, under names that our rules can use."""
 
 import re
 from collections.abc import Callable, Collection, Mapping
@@ -25,7 +25,7 @@ PlaceOfWord = Callable[[RuleWord], Place]
 
 
 class ControllerDraft:
-    """Collects a controller's data; `names` and `terms` tell what the file's names became."""
+    """Collects a controller's data; `names` and `terms` map the file's names to ours."""
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
         self.findings = findings
@@ -36,7 +36,7 @@ class ControllerDraft:
         self.blocks: list[dict[str, Any]] = []
 
     def variable(self, side: str, name: str, place: Place) -> dict[str, Any]:
-        """A new input or output; what the file says of it goes into the dict returned."""
+        """A new input or output; its settings go into the dict returned."""
         known = {*self.sides["inputs"], *self.sides["outputs"]}
         ours = self.fresh(name, known, place)
         self.names.setdefault(name, ours)
@@ -46,7 +46,7 @@ class ControllerDraft:
         return spec
 
     def fresh(self, name: str, taken: Collection[str], place: Place) -> str:
-        """A name like that one which our rules can say and nobody has."""
+        """A name like that one which our rules can use and which is not taken."""
         stem = _UNFIT.sub("_", name).strip("-") or "unnamed"
         stem = f"{stem}_" if stem.lower() in KEYWORDS else stem
         ours = unused_name(stem, taken.__contains__, len(taken))
@@ -123,7 +123,7 @@ class ControllerDraft:
 
 
 def ranged(low: float, high: float) -> list[int | float]:
-    """A range as the YAML says it."""
+    """A range as it stands in YAML."""
     return [low if low == -inf else plain(low), high if high == inf else plain(high)]
 
 

@@ -7,7 +7,10 @@ from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.language.diagnostics import Place
 
 MAX_FLL_LINES = 20_000
+"""In a file."""
+
 PART_KEYS = ("Engine", "InputVariable", "OutputVariable", "RuleBlock")
+"""The keys that begin a part."""
 
 
 class FllLine(NamedTuple):
@@ -28,7 +31,7 @@ class FllPart(NamedTuple):
 
 
 class FllLineReader:
-    """Reads one file by its lines, and says of each what can't be carried over."""
+    """Reads one file by its lines, and reports what can't be carried over."""
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
         self.file, self.findings = file, findings

@@ -1,4 +1,4 @@
-"""FuzzyLite's words for terms, norms, methods and what else a controller says."""
+"""FuzzyLite's names of terms, norms and methods, and how it writes numbers."""
 
 from collections.abc import Mapping
 from math import inf
@@ -31,7 +31,7 @@ def written(value: float) -> str:
 
 
 def plain(value: float) -> int | float:
-    """A number as the YAML says it: whole ones without a point, and 0 for what rounding left of it."""
+    """A number as it stands in YAML: whole ones without a point, and 0 for what rounding left of it."""
     if abs(value) < LEAST_NUMBER:
         return 0
     return int(value) if abs(value) < 1e15 and value == int(value) else value

@@ -31,7 +31,7 @@ class Trouble(NamedTuple):
 
 
 def read_formula(text: str, names: Mapping[str, str]) -> str | Trouble:
-    """FuzzyLite's formula as ours; `names` says what its variables are called here."""
+    """FuzzyLite's formula as ours; `names` maps its variables to their names here."""
     try:
         return unparse(_FormulaParser(text, names).whole())
     except ExpressionError as error:
@@ -123,11 +123,11 @@ class _FormulaParser(PrattParser):
 def write_formula(text: str, names: Mapping[str, str]) -> tuple[str, bool]:
     """Our formula as FuzzyLite's, and whether a choice in it had to be written as a sum."""
     tree = parse_expression(text)
-    writer = _Writer(names)
+    writer = _FormulaWriter(names)
     return writer.text(tree), writer.chose
 
 
-class _Writer:
+class _FormulaWriter:
     def __init__(self, names: Mapping[str, str]) -> None:
         self.names, self.chose = names, False
 

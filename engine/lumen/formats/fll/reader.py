@@ -22,10 +22,10 @@ _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "mi
 def read_fll(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
     """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no engine."""
     text, findings = decoded(file, content), ConversionFindings()
-    return _Reader(file, findings).engine(text), findings.diagnostics
+    return _FllReader(file, findings).engine(text), findings.diagnostics
 
 
-class _Reader(FllLineReader):
+class _FllReader(FllLineReader):
     """Reads one file."""
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
@@ -109,7 +109,7 @@ class _Reader(FllLineReader):
             if word.isdigit() and 10 <= int(word) <= 100_000 and method not in WEIGHTED_DEFUZZIFIERS:
                 spec.update({} if int(word) == 1000 else {"resolution": int(word)})
             elif word == "Tsukamoto" and method in WEIGHTED_DEFUZZIFIERS:
-                continue  # which our terms tell
+                continue  # our terms imply it
             elif word not in ("Automatic", "TakagiSugeno") or method not in WEIGHTED_DEFUZZIFIERS:
                 self.lost(line, f"`{word}` can't be said of a defuzzifier")
         return method

@@ -24,13 +24,13 @@ _UNFIT = re.compile(r"[^A-Za-z0-9_]+")
 
 
 def write_fll(controller: ControllerDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
-    """The engine's text, and what FuzzyLite can't say of the controller."""
-    writer = _Writer(controller, ExportReport(place))
+    """The engine's text, and what of the controller FuzzyLite can't represent."""
+    writer = _FllWriter(controller, ExportReport(place))
     text = "\n".join(writer.lines()) + "\n"
     return text, writer.report.diagnostics
 
 
-class _Writer:
+class _FllWriter:
     """Writes one controller, under names that FuzzyLite can read."""
 
     def __init__(self, controller: ControllerDefinition, report: ExportReport) -> None:

@@ -13,7 +13,10 @@ from lumen.formats.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import did_you_mean
 
 MAX_CHOREGRAPHE_ELEMENTS = 1_000_000
+"""In a project, boxes and curves together."""
+
 DEFAULT_FPS = 25.0
+"""Frames a second of a timeline that names none."""
 
 Timelines = dict[str, XmlElement]
 

@@ -1,4 +1,4 @@
-"""Joint curves of any origin, and the motion file that says the same."""
+"""Joint curves of any origin, and the motion file with the same movement."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ JointCurves = Mapping[str, list[CurvePoint]]
 
 @dataclass(frozen=True)
 class MotionWriter:
-    """Curves as the data of a motion file for a body; what that body can't do is told to `findings`."""
+    """Curves as the data of a motion file for a body; what that body can't do is reported to `findings`."""
 
     body: Body
     findings: ConversionFindings
@@ -134,7 +134,7 @@ class MotionWriter:
 
 
 def number(text: str) -> float | None:
-    """The finite number that a text says, None where it says none."""
+    """The finite number that a text holds, None where it holds none."""
     try:
         value = float(text)
     except ValueError:

@@ -17,7 +17,7 @@ _FUNCTIONS: Mapping[str, Callable[[float], float]] = {"radians": math.radians, "
 
 
 class NotWrittenOutError(ValueError):
-    """A value can't be known without running the file; `node` is the part that says so."""
+    """A value can't be known without running the file; `node` is the part that is computed."""
 
     def __init__(self, node: ast.AST) -> None:
         super().__init__(ast.unparse(node)[:60])

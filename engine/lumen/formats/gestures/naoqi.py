@@ -76,7 +76,7 @@ class _Reading:
         self.called = False
 
     def take(self, node: ast.stmt | ast.Call) -> None:
-        """Learn what an assignment or a call says."""
+        """Follow an assignment or a call."""
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 self._assign(name, value)

@@ -12,6 +12,8 @@ from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, number
 from lumen.language.diagnostics import Place
 
 FIRST_CELL = "#WEBOTS_MOTION"
+"""What every file begins with."""
+
 WEBOTS_VERSION = "V1.0"
 
 _TIME = re.compile(r"(\d+):(\d\d?):(\d{1,3})")

@@ -14,12 +14,13 @@ from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, Contr
 POINTS, ACROSS = 321, 41
 """Of a curve, and of each side of a surface."""
 
-RESOLUTION = 1000
+CURVE_RESOLUTION = 1000
+"""Steps in which an output's set is integrated."""
 
 
 def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
     """Memberships; then for each output a curve, a surface over two inputs, or a slice for each of several."""
-    survey = Survey(controller, RESOLUTION)
+    survey = Survey(controller, CURVE_RESOLUTION)
     panels = [memberships(variable) for variable in variables(controller)]
     answers = list(chain.from_iterable(_answers(survey, output) for output in controller.outputs.values()))
     gaps = any(isnan(y) for panel in answers for line in panel.lines for y in line.ys)
@@ -29,13 +30,13 @@ def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
 
 
 def curves_sheet(title: str, controllers: Mapping[str, ControllerDefinition]) -> PlotSheet:
-    """What several versions of a controller answer, curve upon curve; the first says which inputs and outputs."""
+    """The outputs of several versions of a controller, curve upon curve; the first has the inputs and outputs drawn."""
     first = next(iter(controllers.values()))
     panels = []
     for output in first.outputs.values():
         for name in sorted(asked(first, output.name), key=list(first.inputs).index):
             lines = [
-                PlotLine(*_curve(Survey(controller, RESOLUTION), output, name), label, style)
+                PlotLine(*_curve(Survey(controller, CURVE_RESOLUTION), output, name), label, style)
                 for style, (label, controller) in enumerate(controllers.items())
             ]
             marks = (*_neutral(first.inputs[name]), PlotMark(0.0, level=True))

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 PLOT_ENDINGS = (".png", ".svg")
 
-WIDTH, HEIGHT, DPI = 3.6, 2.6, 110
+PANEL_WIDTH, PANEL_HEIGHT, DPI = 3.6, 2.6, 110
 """Of a panel, in inches."""
 
 _DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 3)))
@@ -40,7 +40,7 @@ def draw(sheet: PlotSheet, ending: str) -> bytes:
 
     rows = -(-len(sheet.panels) // sheet.columns)
     with rc_context(_STYLE):
-        figure = Figure(figsize=(WIDTH * sheet.columns, HEIGHT * rows + 0.5), dpi=DPI, layout="constrained")
+        figure = Figure(figsize=(PANEL_WIDTH * sheet.columns, PANEL_HEIGHT * rows + 0.5), dpi=DPI, layout="constrained")
         for i, panel in enumerate(sheet.panels):
             _panel(figure, figure.add_subplot(rows, sheet.columns, i + 1), panel)
         figure.suptitle(sheet.title)

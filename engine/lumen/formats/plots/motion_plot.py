@@ -8,6 +8,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 
 POINTS_PER_CURVE = 201
+"""Of one joint, over the whole motion."""
 
 
 def motion_sheet(motion: MotionDefinition, body: Body) -> PlotSheet:

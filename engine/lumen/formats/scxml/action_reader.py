@@ -21,7 +21,7 @@ _NOT_CONSTANT = object()
 
 
 class LeftOutError(Exception):
-    """An element can't be said; the message and the hint say why."""
+    """An element has no counterpart; the message and the hint are for its author."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)
@@ -35,7 +35,7 @@ class ScxmlActionReader:
         self.context, self.findings = context, findings
 
     def block(self, elements: Iterable[XmlElement]) -> list[ActionData]:
-        """The actions of these elements; what can't be said is reported and left out."""
+        """The actions of these elements; what has no counterpart is reported and left out."""
         return [action for element in elements for action in self.actions(element)]
 
     def actions(self, element: XmlElement) -> Iterator[ActionData]:
@@ -186,7 +186,7 @@ class ScxmlActionReader:
 
 
 def own(element: XmlElement) -> Any:
-    """What only Lumen knows, as JSON in an element of its namespace."""
+    """What only Lumen has, as JSON in an element of its namespace."""
     try:
         return json.loads(element.text)
     except (ValueError, RecursionError):

@@ -1,4 +1,4 @@
-"""Scripts that say no more than `<assign>` could."""
+"""Scripts that do no more than `<assign>` could."""
 
 import re
 

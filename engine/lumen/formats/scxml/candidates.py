@@ -26,7 +26,7 @@ def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[Transit
     candidates of the most general one, which ask for the event's name. One whose guard becomes too long is left out.
     """
     heads = _heads({descriptor for descriptor, _ in rows})
-    order, mixed = _Order(), set[str]()
+    order, mixed = _DescriptorOrder(), set[str]()
     for descriptor, _ in rows:
         if order.passed(descriptor):
             mixed.add(heads[descriptor])
@@ -47,7 +47,7 @@ def _heads(descriptors: set[str]) -> dict[str, str]:
     return {d: next((general for general in _prefixes(d) if general in descriptors), d) for d in descriptors}
 
 
-class _Order:
+class _DescriptorOrder:
     """Where each descriptor stands, and the last one that lies below each."""
 
     def __init__(self) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.ecmascript import ScriptError, ScriptNames, parse_script, read_value
 from lumen.formats.ecmascript.constants import constant
-from lumen.formats.ecmascript.kind_inference import UNKNOWN, kind
+from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND, kind
 from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree
 from lumen.formats.unused_names import unused_name
 from lumen.formats.xml_elements import XmlElement
@@ -114,7 +114,7 @@ class ScxmlDataModel:
             key = self.keys[element.get("location")]
             return kind_of(self.first[key])
         except RecursionError:
-            return UNKNOWN
+            return UNKNOWN_KIND
 
 
 def written(text: str) -> Any:

@@ -46,7 +46,7 @@ def _piece(node: ExpressionNode) -> str:
 
 
 def expression_of(text: str, vocabulary: Vocabulary) -> tuple[str, tuple[str, ...]]:
-    """The ECMAScript of our text, and what in it only Lumen knows; raises ScriptError."""
+    """The ECMAScript of our text, and the names in it that only Lumen has; raises ScriptError."""
     parts = split_template(text)
     if not any(isinstance(part, Placeholder) for part in parts):
         return unparse(Literal(text)), ()

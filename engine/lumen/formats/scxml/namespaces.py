@@ -6,4 +6,4 @@ SCXML_INVOKE_TYPE = "http://www.w3.org/TR/scxml/"
 """The type of an `<invoke>` of another chart (SCXML 6.4.3)."""
 
 LUMEN_NAMESPACE = "urn:lumen:behavior"
-"""The namespace of what only Lumen knows: `do`, robot verbs, phrases, answers."""
+"""The namespace of what only Lumen has: `do`, robot verbs, phrases, answers."""

@@ -30,10 +30,10 @@ def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], l
             hint = f'write xmlns="{SCXML_NAMESPACE}"'
             raise broken(root.place, "not-scxml", "this is <scxml> of another namespace, not W3C's", hint)
         raise broken(root.place, "not-scxml", f"the file begins with <{name}>, not with <scxml>")
-    return _Document(root, title).data()
+    return _ScxmlReader(root, title).data()
 
 
-class _Document:
+class _ScxmlReader:
     """Reads one document, its states from the outside to the inside."""
 
     def __init__(self, scxml: XmlElement, title: str) -> None:

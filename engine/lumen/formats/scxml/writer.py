@@ -26,12 +26,12 @@ def write_scxml(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, li
     Lumen nothing of it is lost, and other tools pass over it.
     """
     report = ExportReport(place)
-    document = _Document(machine, report).tag()
+    document = _ScxmlWriter(machine, report).tag()
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', *document.lines()]
     return "\n".join(lines) + "\n", report.diagnostics
 
 
-class _Document:
+class _ScxmlWriter:
     """Writes the states of one machine."""
 
     def __init__(self, machine: MachineDefinition, report: ExportReport) -> None:

@@ -17,7 +17,7 @@ def descriptor_of(event: str) -> str | None:
 
 
 class EventDescriptors:
-    """Knows every event that a machine speaks of."""
+    """The descriptors of one machine, arranged by every event that it names."""
 
     def __init__(self, machine: MachineDefinition) -> None:
         self.names = set(machine.events)

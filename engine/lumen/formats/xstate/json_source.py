@@ -10,6 +10,7 @@ from lumen.loading.document import Document
 from lumen.loading.yaml_reader import parse
 
 MAX_JSON_LEVELS = 95
+"""Objects and lists inside each other."""
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], 
     if not outline.root.regular:
         raise broken(source.place(("states",)), "not-xstate", "the machine has no states")
     context = _context(source.data, findings, outline)
-    return _Machine(outline, XStateActionReader(source, context, findings), findings).data()
+    return _XStateReader(outline, XStateActionReader(source, context, findings), findings).data()
 
 
 def _context(data: Mapping[str, Any], findings: ConversionFindings, outline: XStateStateTree) -> dict[str, Any]:
@@ -55,7 +55,7 @@ def _context(data: Mapping[str, Any], findings: ConversionFindings, outline: XSt
     return sound
 
 
-class _Machine:
+class _XStateReader:
     """Reads the states of one file, from the outside to the inside."""
 
     def __init__(self, outline: XStateStateTree, parts: XStateActionReader, findings: ConversionFindings) -> None:

@@ -92,7 +92,7 @@ class XStateTransitionReader:
         return row
 
     def _parallel(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> None:
-        """Tell where W3C's rule leaves and enters more: a parallel state is no domain of a transition there."""
+        """Report where W3C's rule leaves and enters more: a parallel state is no domain of a transition there."""
         domain: XStateNode | None = (
             state if not reenter and all(t is state or t.lies_below(state) for t in targets) else None
         )

@@ -25,11 +25,11 @@ def write_xstate(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, l
     stands in `meta`.
     """
     report = ExportReport(place, _HINT)
-    data = _Config(machine, report).data()
+    data = _XStateWriter(machine, report).data()
     return json.dumps(data, ensure_ascii=False, indent=2) + "\n", report.diagnostics
 
 
-class _Config:
+class _XStateWriter:
     """Writes the states of one machine."""
 
     def __init__(self, machine: MachineDefinition, report: ExportReport) -> None:

@@ -7,7 +7,7 @@ import re
 from typing import NamedTuple
 
 CharacterTest = re.Pattern[str] | str | None
-"""What a state asks: a set of characters, a character, or an anchor (`^ $ \\b \\B`)."""
+"""What a state tests: a set of characters, a character, or an anchor (`^ $ \\b \\B`)."""
 
 
 class AutomatonState(NamedTuple):
@@ -19,7 +19,7 @@ class AutomatonState(NamedTuple):
 
 
 class CompiledPattern:
-    """A compiled pattern; `search` tells whether it occurs anywhere in a text."""
+    """A compiled pattern; `search` is whether it occurs anywhere in a text."""
 
     def __init__(self, states: list[AutomatonState], start: int) -> None:
         self.states, self.start = states, start

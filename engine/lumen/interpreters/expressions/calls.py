@@ -1,4 +1,4 @@
-"""What can be told of a call before it runs: its function, the number of its arguments, the names written in it."""
+"""What is checked of a call before it runs: its function, the number of its arguments, the names written in it."""
 
 from collections.abc import Collection
 

@@ -1,4 +1,4 @@
-"""What can be told of an expression before it runs: unknown names, and kinds that can never go together."""
+"""What is wrong with an expression before it runs: unknown names, and kinds that can never go together."""
 
 from collections.abc import Collection, Mapping
 from typing import Any
@@ -75,7 +75,7 @@ def check_expression(
     states: Collection[str] | None = None,
     expected: Mapping[str, Any] | None = None,
 ) -> list[ExpressionFinding]:
-    """Everything wrong with an expression, in the order it stands; never raises for what the source says.
+    """Everything wrong with an expression, in the order it stands; never raises, whatever the source.
 
     `context` maps its keys to JSON Schemas; `events` maps the events that can arrive here to those of their data
     (None: of any kind), and is None where any event can. `phrases`, `answers` and `states` are the names there are,

@@ -1,4 +1,4 @@
-"""What is wrong with an expression, and what has to be known to tell."""
+"""What is wrong with an expression, and the declarations by which that is decided."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from lumen.interpreters.expressions.tree import ExpressionNode
 
 
 class ExpressionFinding(NamedTuple):
-    """A fault of an expression: `offset` and `length` [characters] say where in its source."""
+    """A fault of an expression: `offset` and `length` [characters] are its place in the source."""
 
     code: str
     offset: int

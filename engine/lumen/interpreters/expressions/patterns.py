@@ -18,15 +18,16 @@ _CONFUSING = re.compile(r"\[|--|&&|\|\||~~")
 _COUNT = re.compile(r"\{(\d{1,4})(,?)(\d{0,4})\}")
 _MAX_NESTED_GROUPS = 20
 MAX_PATTERN_STATES = 200
+"""States of a pattern's automaton, all of which may be followed at once."""
 
 
 @lru_cache(maxsize=512)
 def compile_pattern(source: str) -> CompiledPattern:
     """The pattern, ready to search; raises ExpressionError with the offset in `source` for what is not allowed."""
-    return _Compiler(source).pattern()
+    return _PatternCompiler(source).pattern()
 
 
-class _Compiler:
+class _PatternCompiler:
     """Reads a pattern into nested parts, then builds their states from the last part to the first."""
 
     def __init__(self, source: str) -> None:

@@ -51,7 +51,7 @@ def words(text: str) -> list[str]:
 
 
 class _ByIdentity:
-    """What was prepared from a table, for as long as it is among the last few hundred asked for.
+    """What was prepared from a table, for as long as it is among the last few hundred used.
 
     Tables are frozen values, so an identity stands for its content; keeping the table keeps its identity its own.
     """
@@ -73,7 +73,7 @@ class _ByIdentity:
 _phrases = _ByIdentity()
 _kept = _phrases.kept
 _last = [("", "")]
-"""The text asked about last, and its compared words: the guards of a state ask about one text, one after the other."""
+"""The text compared last, and its words: the guards of a state compare one text, one after the other."""
 
 _answers = _ByIdentity()
 

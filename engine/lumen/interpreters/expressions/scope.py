@@ -35,7 +35,7 @@ class Scope(NamedTuple):
     """The values that names and functions stand for; plain JSON data throughout.
 
     `event` is `{"name": …, "data": …}`, or None where no event has arrived; `state` is `{"path": …, "language": …}`.
-    `configuration` says whether a state is active, for `In()`. `at` [s] is the time of the event, and `epoch` [s] the
+    `configuration` is whether a state is active, for `In()`. `at` [s] is the time of the event, and `epoch` [s] the
     local time of the clock's zero, counted from any midnight. `language` is the one that `lookup` answers in.
     """
 

@@ -162,7 +162,7 @@ def path_of(node: ExpressionNode) -> tuple[str, ...] | None:
 
 
 class MentionedNames(NamedTuple):
-    """What an expression speaks of: keys of the context, fields of the event's data, functions, and literal names."""
+    """What an expression names: keys of the context, fields of the event's data, functions, and literal names."""
 
     context: frozenset[str]
     event: frozenset[str]

@@ -68,7 +68,7 @@ def union(types: Iterable[ValueType]) -> ValueType:
 
 
 def type_of_schema(schema: object) -> ValueType:
-    """What a JSON Schema says of a value; anything where it says nothing, or more than is understood here."""
+    """The type that a JSON Schema declares; any where it declares none, or more than is understood here."""
     if not isinstance(schema, Mapping) or not _BEYOND.isdisjoint(schema):
         return ANY
     if "const" in schema:

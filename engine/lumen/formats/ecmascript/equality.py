@@ -1,6 +1,6 @@
 """ECMAScript's equality in our language: of values, of what is missing, and of what may be."""
 
-from lumen.formats.ecmascript.kind_inference import UNKNOWN
+from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND
 from lumen.formats.ecmascript.known_fields import is_data, negated
 from lumen.formats.ecmascript.script_tokens import ScriptError
 from lumen.formats.ecmascript.translation import Translation
@@ -65,7 +65,7 @@ def _index(translation: Translation, node: Binary) -> ExpressionNode | None:
 
 def _equal(translation: Translation, node: Binary, strict: bool) -> ExpressionNode:
     left, right = translation.value(node.left), translation.value(node.right)
-    kinds = {translation.kind(left), translation.kind(right)} - {UNKNOWN}
+    kinds = {translation.kind(left), translation.kind(right)} - {UNKNOWN_KIND}
     if kinds & {LIST, MAP}:
         raise ScriptError("lists and objects are compared by identity")
     if len(kinds) == 2 and NULL not in kinds:
