@@ -1,4 +1,4 @@
-"""A shortcut gives the step that the whole algorithm gives, or none."""
+"""The fast path gives the step that the whole algorithm gives, or none."""
 
 from contextlib import suppress
 from typing import Any
@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError
 from lumen.interpreters.statechart import Snapshot, Step
-from lumen.interpreters.statechart.program import compiled
-from lumen.interpreters.statechart.sessions import Session
+from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.external_events import process
+from lumen.interpreters.statechart.invocations import open_context
 from lumen.statechart import Event, Machine, initial, step
 
 GUARDS = [
@@ -75,8 +76,8 @@ def machines(draw: st.DrawFn) -> Machine:
 
 
 def in_full(machine: Machine, snapshot: Snapshot, event: Event) -> Step:
-    """The step without shortcuts."""
-    return Session(compiled(machine), snapshot, event, max(event.at, snapshot.at)).hear(event)
+    """The step without the fast path."""
+    return process(open_context(compiled(machine), snapshot, event, max(event.at, snapshot.at)), event)
 
 
 EVENTS = st.builds(
@@ -115,6 +116,6 @@ def test_plain_steps_are_taken_short(name: str) -> None:
     machine = Machine.from_dict({"context": {"n": 0}, **PLAIN[name]})
     snapshot = initial(machine).snapshot
     for event in (Event("go", at=1.0), Event("nothing")):
-        short = compiled(machine).shortcuts.step(snapshot, event)
+        short = compiled(machine).fast_paths.step(snapshot, event)
         assert short == in_full(machine, snapshot, event)
         assert short is not None

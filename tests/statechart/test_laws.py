@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError
 from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
-from lumen.interpreters.statechart.doing import awaited
+from lumen.interpreters.statechart.values import awaited
 from lumen.language.commands import Cancel, Start
 from lumen.language.events import Event
 from lumen.language.machines import StateKind

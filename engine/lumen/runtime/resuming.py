@@ -6,8 +6,8 @@ from typing import NamedTuple
 from lumen.interpreters.migration import MigrationPlan, Refusal, plan
 from lumen.interpreters.statechart import Snapshot, initial, retimed
 from lumen.interpreters.statechart.answers import outside
-from lumen.interpreters.statechart.doing import awaited
 from lumen.interpreters.statechart.types import fits, type_checks
+from lumen.interpreters.statechart.values import awaited
 from lumen.language.commands import Cancel, Command
 from lumen.language.events import Event
 from lumen.language.projects import Project

@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from lumen.app.rehearsal import Rehearsal
 from lumen.app.reload.validation_worker import InlineValidation, ValidationWorker
 from lumen.interpreters.changes import Change, Risk, changes
-from lumen.interpreters.statechart.program import compiled
+from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.language.stories import Story

@@ -9,7 +9,7 @@ from lumen.interpreters.exploration.abstraction import Abstraction, Configuratio
 from lumen.interpreters.exploration.stimuli import Stimulus, StimulusFinder
 from lumen.interpreters.statechart import Snapshot, Step, initial, step
 from lumen.interpreters.statechart.answers import answer_of
-from lumen.interpreters.statechart.program import compiled
+from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition

@@ -11,7 +11,7 @@ from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expres
 from lumen.interpreters.expressions.tree import children
 from lumen.interpreters.statechart import Awaiting, Fork, Position, Snapshot, Timer, Within
 from lumen.interpreters.statechart.answers import outside
-from lumen.interpreters.statechart.program import CompiledMachine, compiled
+from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
 from lumen.language.commands import BodyCommand
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
@@ -114,9 +114,9 @@ class StimulusFinder:
 def _heard(program: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[tuple[MachineDefinition, Transition]]:
     """The transitions that an event of that name may select, here or in what is invoked."""
     for group in program.planner.configuration(snapshot.configuration).candidates(name):
-        yield from ((program.chart.machine, rule.transition) for rule in group)
+        yield from ((program.chart.definition, transition.definition) for transition in group)
     for id, child in snapshot.invoked.items():
-        behavior = invoked_behavior(program.chart.machine, child.state, id)
+        behavior = invoked_behavior(program.chart.definition, child.state, id)
         yield from _heard(program.invoked[behavior], child.snapshot, name)
 
 

@@ -1,10 +1,11 @@
 """Lets a running behaviour go on under other files: a pure plan, a reason to wait, or a reason why not.
 
-`Plan`, `Wait` and `Refusal` are in `verdicts`; which state is which, in `identity`; what stays and where the rest goes,
-in `placing`; what a `do` under way has to do with it, in `doing`; context, timers and history, in `carrying`.
+The answers are in `verdicts`; which state is which, in `identity`; what stays and where the rest goes, in `placing`;
+whether a `do` under way can go on, in `activity_compatibility`; context, timers and history, in `carried_state`.
 """
 
-from lumen.interpreters.migration.migrating import MigrationOptions, move
+from lumen.interpreters.migration.migrating import migrated
+from lumen.interpreters.migration.situation import MigrationOptions
 from lumen.interpreters.migration.verdicts import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal
 from lumen.interpreters.statechart import Snapshot
 from lumen.language.machines import MachineDefinition
@@ -20,13 +21,13 @@ def plan(
 
     Active states keep their identity by path or by `renamed`. One that is still there is not entered again, keeps its
     timers' deadlines and what it does; one that is gone runs its old exit actions, and the nearest `onReload` around
-    says where to go (else a Refusal). Where a `do` under way is gone or changed that is a Wait, or with `now` cancelled
-    (a changed one begins anew). The same content gives the same snapshot.
+    says where to go (else a Refusal). Where a `do` under way is gone or changed that is a MigrationDelay; with `now`
+    it is cancelled (a changed one begins anew). The same content gives the same snapshot.
 
     `back` is a rollback: `new` ran before `old`, whose renamings are undone.
     """
-    how = MigrationOptions(at, now, back, new.languages)
-    return move(old.machine, new.machine, snapshot, how, new.behavior)
+    options = MigrationOptions(at, now, back, new.languages)
+    return migrated(old.machine, new.machine, snapshot, options, new.behavior)
 
 
 def migrate(
@@ -39,4 +40,4 @@ def migrate(
     back: bool = False,
 ) -> MigrationVerdict:
     """The plan for machines without a project around them."""
-    return move(old, new, snapshot, MigrationOptions(at, now, back), new.id)
+    return migrated(old, new, snapshot, MigrationOptions(at, now, back), new.id)

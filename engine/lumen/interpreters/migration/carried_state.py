@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.statechart.chart import Chart, StateNode
-from lumen.interpreters.statechart.state_sets import EntrySet, History, StateSets
+from lumen.interpreters.statechart.history import History
+from lumen.interpreters.statechart.state_sets import EntrySet, StateSets
 from lumen.interpreters.statechart.types import fits, type_name
 from lumen.interpreters.statechart.values import Timer
 from lumen.language.machines import StateKind
@@ -21,7 +22,7 @@ class CarriedContext(NamedTuple):
 
 def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identity) -> CarriedContext:
     """Every key still declared keeps its value where that is of the key's type; others have their first values."""
-    first, names = new.machine.context, identity.keys()
+    first, names = new.definition.context, identity.keys()
     kept = {key: values[was] for key, was in names.items() if was in values and fits(values[was], new.checks[key])}
     notes = [
         f"`{key}` begins anew: it was a {type_name(values[was])} and is {new.checks[key]} now"
@@ -29,7 +30,9 @@ def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identit
         if was in values and key not in kept
     ]
     gone = values.keys() - names.values()
-    notes += [f"`{key}` is forgotten" for key in values if key in gone and values[key] != old.machine.context.get(key)]
+    notes += [
+        f"`{key}` is forgotten" for key in values if key in gone and values[key] != old.definition.context.get(key)
+    ]
     return CarriedContext({**first, **kept}, tuple(notes))
 
 

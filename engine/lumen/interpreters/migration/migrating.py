@@ -3,127 +3,148 @@
 from collections.abc import Iterator
 
 from lumen.errors import LumenError, SnapshotError
-from lumen.interpreters.migration import carried_state as carrying
-from lumen.interpreters.migration.continued import Continued, NewWork
+from lumen.interpreters.migration import carried_state
 from lumen.interpreters.migration.placing import Placement, Unplaced, is_legal
 from lumen.interpreters.migration.situation import MigrationOptions, Situation, invoked_behavior
-from lumen.interpreters.migration.verdicts import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal
+from lumen.interpreters.migration.verdicts import MigrationPlan, MigrationVerdict, Refusal
 from lumen.interpreters.statechart.answers import labelled
 from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.sessions import Session
+from lumen.interpreters.statechart.execution_context import Beginning, ExecutionContext
+from lumen.interpreters.statechart.invocations import Invocations, output_of
+from lumen.interpreters.statechart.macrostep import complete
+from lumen.interpreters.statechart.microstep import microstep
 from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
 from lumen.language.machines import MachineDefinition
 
-__all__ = ["MigrationOptions", "move"]
 
-
-def move(
-    old: MachineDefinition, new: MachineDefinition, snapshot: Snapshot, how: MigrationOptions, behavior: str = ""
+def migrated(
+    old: MachineDefinition, new: MachineDefinition, snapshot: Snapshot, options: MigrationOptions, behavior: str = ""
 ) -> MigrationVerdict:
-    """How the snapshot goes on under the new machine, which stands in behaviors/BEHAVIOR.yaml."""
-    if old == new and (not how.languages or snapshot.language in how.languages):
+    """How the snapshot goes on under the new machine, which stands in behaviors/BEHAVIOR.yaml.
+
+    Raises SnapshotError where the snapshot has states that the old machine has not.
+    """
+    if old == new and (not options.languages or snapshot.language in options.languages):
         return MigrationPlan(snapshot)
     try:
-        moving = _Moving(old, new, snapshot, how)
+        situation = Situation(old, new, snapshot, options)
     except KeyError as error:
         raise SnapshotError(f"`{old.id}` has no state {error}, which is active in the snapshot") from None
-    if isinstance(moving.placement, Unplaced):
-        busy = None if how.now else moving.busy()
-        return busy or moving.refusal(moving.placement, behavior)
-    wait = next(moving.waits(moving.placement), None)
-    if wait and not how.now:
-        return wait
+    placement = situation.placement
+    if isinstance(placement, Unplaced):
+        busy = None if options.now else situation.busy()
+        return busy or situation.refusal(placement, behavior)
+    delay = next(situation.delays(placement), None)
+    if delay and not options.now:
+        return delay
     try:
-        return moving.go(moving.placement, behavior)
+        return _Migration(situation, placement).plan(behavior)
     except LumenError as error:
         return Refusal(str(error), "let an event or a guard end it", "", behavior)
 
 
-class _Moving(Situation):
-    """One snapshot on its way."""
+class _Migration:
+    """One snapshot on its way; `before` is the context of the old machine, `after` that of the new one.
 
-    def go(self, placement: Placement, behavior: str) -> MigrationPlan | Refusal | MigrationDelay:
+    `invocations` are those of the new one.
+    """
+
+    def __init__(self, situation: Situation, placement: Placement) -> None:
+        self.situation, self.placement = situation, placement
+        self.old, self.new = situation.old, situation.new
+        self.invocations = Invocations({})
+        self.before = self._left()
+        self.after, self.notes = self._translated()
+
+    def plan(self, behavior: str) -> MigrationVerdict:
         """The plan: exits of the old machine, what stays translated, entries of the new one, and what follows."""
-        out = self.leave(placement)
-        into, notes = self.arrive(placement, out)
-        leaving = out.commands
-        for id, child in out.invoked.items():
-            verdict = self.follow(into, placement, id, child)
+        before, after = self.before, self.after
+        leaving = before.commands
+        for id, child in before.invocations.children.items():
+            verdict = self._adopt(id, child)
             if not isinstance(verdict, MigrationPlan):
                 return verdict
             leaving += tuple(labelled(command, id) for command in verdict.leaving)
-            notes += verdict.notes
-        into.microstep(self.new.planner.passage(into.configuration, set(), set(placement.entered), into.history))
-        if not is_legal(self.new.chart, into.configuration.nodes):
-            names = ", ".join(f"`{name}`" for name in sorted(into.configuration.names))
+            self.notes += verdict.notes
+        planner = self.new.planner
+        microstep(after, planner.passage(after.configuration, set(), self.placement.entered, after.history))
+        if not is_legal(self.new.chart, after.configuration.nodes):
+            names = ", ".join(f"`{name}`" for name in sorted(after.configuration.names))
             return Refusal(f"{names} can't be active together in the new file", "restart the exhibition", "", behavior)
-        step = into.settle()
-        notes = (*self.whereto(placement, step), *notes)
-        return MigrationPlan(
-            step.snapshot, leaving, step.commands, out.exited + step.exited, step.entered, notes, into.outcome
-        )
+        step = complete(after)
+        notes = (*self._destinations(step), *self.notes)
+        exited, output = before.exited + step.exited, output_of(step, self.new)
+        return MigrationPlan(step.snapshot, leaving, step.commands, exited, step.entered, notes, output)
 
-    def leave(self, placement: Placement) -> Session:
+    def _left(self) -> ExecutionContext:
         """Leave what does not stay, and end what can't go on, by the old machine."""
-        out = Session(self.old, self.before, None, self.before.at)
-        out.microstep(self.old.planner.passage(self.start, set(placement.left), set(), self.before.history))
-        for id in self.ending(placement):
-            if id in out.invoked:
-                out.end(id)
-        for node in self.changed(placement):
-            out.abandon(node.path)
-        return out
+        situation, snapshot = self.situation, self.situation.snapshot
+        invocations = Invocations(snapshot.invoked)
+        context = ExecutionContext.of(self.old, snapshot, None, snapshot.at, invocations)
+        microstep(context, self.old.planner.passage(situation.start, self.placement.left, set(), snapshot.history))
+        for id in situation.ending(self.placement):
+            if id in invocations.children:
+                invocations.end(context, id)
+        for node in situation.changed(self.placement):
+            context.activities.cancel(context, node.path)
+        return context
 
-    def arrive(self, placement: Placement, out: Session) -> tuple[Continued, tuple[str, ...]]:
-        """What stays, under the new machine; nothing is entered yet."""
-        old, new, kept = self.old.chart, self.new.chart, placement.kept
-        values, notes = carrying.context(old, new, out.context, self.identity)
-        spoken, language = self.how.languages, out.language
+    def _translated(self) -> tuple[ExecutionContext, tuple[str, ...]]:
+        """What stays, under the new machine, and notes of what does not; nothing is entered yet."""
+        before, situation, kept = self.before, self.situation, self.placement.kept
+        data, notes = carried_state.context(self.old.chart, self.new.chart, before.data, situation.identity)
+        spoken, language = situation.options.languages, before.language
         if spoken and language not in spoken:
             language = spoken[0]
-            notes += (f"language `{out.language}` is gone: on in `{language}`",)
-        before = Snapshot(
+            notes += (f"language `{before.language}` is gone: on in `{language}`",)
+        doing = before.activities.positions
+        snapshot = Snapshot(
             configuration=frozenset(image.name for image in kept.values() if image.path),
-            context=values,
-            at=out.at,
+            context=data,
+            at=before.at,
             language=language,
-            timers=carrying.timers(out.timers, kept, out.at),
-            doing={image.path: out.doing[node.path] for node, image in kept.items() if node.path in out.doing},
-            history=carrying.history(out.history, new, self.identity),
-            counters=out.counters,
-            generator=out.generator,
-            epoch=out.epoch,
+            timers=carried_state.timers(before.timers, kept, before.at),
+            doing={image.path: doing[node.path] for node, image in kept.items() if node.path in doing},
+            history=carried_state.history(before.history, self.new.chart, situation.identity),
+            counters=before.counters,
+            generator=before.generator,
+            epoch=before.epoch,
         )
-        into = Continued(self.new, before, None, out.at)
-        into.queue = out.queue
-        into.fresh = {image: self.fresh(node, image, placement) for node, image in kept.items()}
-        into.waiting = tuple(image for image, fresh in into.fresh.items() if any(fresh))
-        return into, notes
+        after = ExecutionContext.of(self.new, snapshot, None, before.at, self.invocations)
+        after.internal_queue = before.internal_queue
+        beginnings = (self._beginning(node, image) for node, image in kept.items())
+        after.beginnings = tuple(found for found in beginnings if found.invokes or found.do)
+        return after, notes
 
-    def fresh(self, node: StateNode, image: StateNode, placement: Placement) -> NewWork:
+    def _beginning(self, node: StateNode, image: StateNode) -> Beginning:
         """What a state that stays did not have before."""
-        had = [(invoke.id, invoke.behavior) for invoke, _ in node.invokes]
-        new = frozenset(i.id for i, _ in image.invokes if (i.id, i.behavior) not in had)
-        return NewWork(new, bool(image.do) and (not node.do or node in self.changed(placement)))
-
-    def follow(self, into: Continued, placement: Placement, id: str, child: Invoked) -> MigrationVerdict:
-        """Let an invoked behaviour go on under its new machine; what it enters is asked for by `into`."""
-        owner = next(image for node, image in placement.kept.items() if node.path == child.state)
-        behavior = invoked_behavior(self.new, owner.path, id)
-        old, new = self.old.invoked[behavior].chart.machine, self.new.invoked[behavior].chart.machine
-        lent = child.snapshot._replace(
-            language=into.language, counters=into.counters, generator=into.generator, epoch=into.epoch
+        had = [(invoke.id, invoke.behavior) for invoke in node.invokes]
+        invokes = tuple(invoke for invoke in image.invokes if (invoke.id, invoke.behavior) not in had)
+        return Beginning(
+            image, invokes, bool(image.do) and (not node.do or node in self.situation.changed(self.placement))
         )
-        verdict = move(old, new, lent, self.how._replace(at=into.at, languages=()), behavior)
+
+    def _adopt(self, id: str, child: Invoked) -> MigrationVerdict:
+        """Let an invoked behaviour go on under its new machine, as part of the new context."""
+        after = self.after
+        owner = next(image for node, image in self.placement.kept.items() if node.path == child.state)
+        behavior = invoked_behavior(self.new, owner.path, id)
+        old, new = self.old.invoked[behavior].chart.definition, self.new.invoked[behavior].chart.definition
+        lent = child.snapshot._replace(
+            language=after.language, counters=after.counters, generator=after.generator, epoch=after.epoch
+        )
+        verdict = migrated(old, new, lent, self.situation.options._replace(at=after.at, languages=()), behavior)
         if isinstance(verdict, MigrationPlan):
-            into.adopt(id, Invoked(owner.path, verdict.snapshot, child.commands), verdict)
+            after.commands += tuple(labelled(command, id) for command in verdict.entering)
+            self.invocations.adopt(after, id, Invoked(owner.path, verdict.snapshot, child.commands), verdict.output)
         return verdict
 
-    def whereto(self, placement: Placement, step: Step) -> Iterator[str]:
+    def _destinations(self, step: Step) -> Iterator[str]:
         """A sentence for each state that is gone, and where that leads."""
-        gone = [node for node in placement.left if self.identity.state(node.path) is None]
+        gone = [node for node in self.placement.left if self.situation.identity.state(node.path) is None]
         inner = [node for node in gone if not any(child in gone for child in node.children)]
         names = step.snapshot.configuration
-        after = [s.name for s in self.new.chart.machine.states.values() if s.name in set(step.entered) & names]
+        states = self.new.chart.definition.states.values()
+        after = [s.name for s in states if s.name in set(step.entered) & names]
         on = f": on to `{after[-1]}`" if after else ""
         yield from (f"`{node.name}` is gone{on}" for node in sorted(inner, key=lambda node: node.index))

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
-from lumen.interpreters.statechart.state_sets import EntrySet, History, StateSets
+from lumen.interpreters.statechart.history import History
+from lumen.interpreters.statechart.state_sets import EntrySet, StateSets
 from lumen.language.machines import StateKind, Transition
 
 
@@ -35,7 +36,7 @@ def place(new: Chart, active: frozenset[StateNode], identity: Identity, history:
     `onReload` around says where to go; one that had no states before begins as always.
     """
     placing = _Placing(new, active, identity)
-    while (empty := placing.homeless()) is not None:
+    while (empty := placing.unplaced()) is not None:
         if not placing.lead(empty, history):
             standing = placing.standing()
             rivals = tuple(child for child in empty.children if child in standing)
@@ -78,7 +79,7 @@ class _Placing:
         found = {*self.kept.values(), *self.goals}
         return found.union(*(node.ancestors for node in found))
 
-    def homeless(self) -> StateNode | None:
+    def unplaced(self) -> StateNode | None:
         """The outermost compound state of which none or several children stand, and that can't just begin."""
         standing = self.standing()
         begins = {self.kept[leaf] for leaf in _leaves(self.active) if leaf in self.kept} | set(self.goals)

@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from lumen.interpreters.migration import carried_state as carrying
+from lumen.interpreters.migration import carried_state
 from lumen.interpreters.migration.activity_compatibility import can_continue
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.migration.placing import Placement, Unplaced, place
 from lumen.interpreters.migration.verdicts import MigrationDelay, Refusal
 from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.program import CompiledMachine, compiled
+from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
 from lumen.interpreters.statechart.values import Snapshot
 from lumen.language.machines import MachineDefinition
 
@@ -30,17 +30,17 @@ class Situation:
     """A snapshot between two machines; `placement` is what stays of it, or for whom there is no place."""
 
     def __init__(
-        self, old: MachineDefinition, new: MachineDefinition, snapshot: Snapshot, how: MigrationOptions
+        self, old: MachineDefinition, new: MachineDefinition, snapshot: Snapshot, options: MigrationOptions
     ) -> None:
-        self.old, self.new, self.how = compiled(old), compiled(new), how
-        self.before = snapshot._replace(at=max(snapshot.at, how.at))
+        self.old, self.new, self.options = compiled(old), compiled(new), options
+        self.snapshot = snapshot._replace(at=max(snapshot.at, options.at))
         self.start = self.old.planner.configuration(snapshot.configuration)
-        self.identity = Identity(old, new, back=how.back)
-        history = carrying.history(snapshot.history, self.new.chart, self.identity)
+        self.identity = Identity(old, new, back=options.back)
+        history = carried_state.history(snapshot.history, self.new.chart, self.identity)
         self.placement = place(self.new.chart, self.start.nodes, self.identity, history)
 
-    def refusal(self, homeless: Unplaced, behavior: str) -> Refusal:
-        state, gone, rivals = homeless
+    def refusal(self, unplaced: Unplaced, behavior: str) -> Refusal:
+        state, gone, rivals = unplaced
         title = f"`{state.name or behavior}`"
         if len(rivals) > 1:
             *more, last = (f"`{node.name}`" for node in rivals)
@@ -55,11 +55,11 @@ class Situation:
     def busy(self) -> MigrationDelay | None:
         """The first state that is gone and still does something: it may lead elsewhere by itself."""
         gone = [node for node in self.start.ordered if node.path and self.identity.state(node.path) is None]
-        return next((_gone(node) for node in gone if node.path in self.before.doing), None)
+        return next((_gone(node) for node in gone if node.path in self.snapshot.doing), None)
 
-    def waits(self, placement: Placement) -> Iterator[MigrationDelay]:
+    def delays(self, placement: Placement) -> Iterator[MigrationDelay]:
         """What is under way and could not go on, in the order of the old file."""
-        doing = self.before.doing
+        doing = self.snapshot.doing
         changed = self.changed(placement)
         for node in self.start.ordered:
             if node.path in doing and node in placement.left:
@@ -67,18 +67,18 @@ class Situation:
             elif node in changed:
                 yield MigrationDelay(f"what `{node.name}` is doing has changed", node.name)
         for id in self.ending(placement):
-            child = self.before.invoked[id]
+            child = self.snapshot.invoked[id]
             if _is_busy(child.snapshot):
                 yield MigrationDelay(f"`{id}` is not invoked any more, and is still doing something", id)
 
     def changed(self, placement: Placement) -> list[StateNode]:
         """The states that stay, and whose `do` is under way and can't go on."""
-        doing = [(node, image) for node, image in placement.kept.items() if node.path in self.before.doing]
+        doing = [(node, image) for node, image in placement.kept.items() if node.path in self.snapshot.doing]
         return [
             node
             for node, image in doing
             if node.state and image.state
-            if not can_continue(node.state.do, image.state.do, self.before.doing[node.path])
+            if not can_continue(node.state.do, image.state.do, self.snapshot.doing[node.path])
         ]
 
     def ending(self, placement: Placement) -> list[str]:
@@ -86,7 +86,7 @@ class Situation:
         kept = {node.path: image for node, image in placement.kept.items()}
         return [
             id
-            for id, child in self.before.invoked.items()
+            for id, child in self.snapshot.invoked.items()
             if child.state not in kept
             or invoked_behavior(self.old, child.state, id) != invoked_behavior(self.new, kept[child.state].path, id)
         ]
@@ -96,9 +96,9 @@ def _gone(node: StateNode) -> MigrationDelay:
     return MigrationDelay(f"`{node.name}` is gone, and is still doing something", node.name)
 
 
-def invoked_behavior(program: CompiledMachine, path: str, id: str) -> str:
+def invoked_behavior(machine: CompiledMachine, path: str, id: str) -> str:
     """The behaviour that a state invokes under that id; empty for none."""
-    return next((i.behavior for i, _ in program.chart.nodes[path].invokes if i.id == id), "")
+    return next((i.behavior for i in machine.chart.nodes[path].invokes if i.id == id), "")
 
 
 def _is_busy(snapshot: Snapshot) -> bool:

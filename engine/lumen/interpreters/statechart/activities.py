@@ -1,65 +1,180 @@
-"""The `do` of active states, begun, moved on by answers, and ended."""
+"""The `do` of active states while it runs: begun after entry, resumed by answers, ended on exit (UML's do activity)."""
 
+from collections.abc import Iterable, Mapping
+from typing import Literal, Protocol
+
+from lumen.interpreters.expressions import ExpressionError
+from lumen.interpreters.statechart.action_context import ActionContext, ActionError
 from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.doing import ActivityError, awaited, begin_block, resume
-from lumen.interpreters.statechart.execution_context import ExecutionContext
-from lumen.interpreters.statechart.values import Within
+from lumen.interpreters.statechart.do_actions import (
+    AwaitedCommand,
+    CompiledAction,
+    ConditionalAction,
+    InstantAction,
+    ParallelActions,
+    TimedWait,
+)
+from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Timer, Within, awaited
 from lumen.language.commands import Cancel
+from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 
 
-class ActivityRunner(ExecutionContext):
-    """A workbench that knows how far each `do` has come."""
+class ActivityContext(ActionContext, Protocol):
+    """The part of an `ExecutionContext` that activities use, besides what their actions do."""
 
-    def begin_waiting(self) -> None:
-        """Begin what every state entered and not left has to do, in the order of entry."""
-        waiting, self.waiting = sorted(self.waiting, key=lambda node: node.index), ()
-        for node in waiting:
-            self.begin(node)
+    timers: tuple[Timer, ...]
 
-    def begin(self, node: StateNode) -> None:
+    def evaluate_in(self, node: StateNode) -> None:
+        """Let `state` in expressions be this one."""
+
+
+class ActivityError(Exception):
+    """An action of a `do` failed; carries the reason and the place."""
+
+    def __init__(self, reason: str, where: NodePath) -> None:
+        super().__init__(reason)
+        self.reason, self.where = reason, where
+
+
+class Activities:
+    """How far each `do` has come, by the path of its state."""
+
+    __slots__ = ("positions",)
+
+    def __init__(self, positions: Mapping[str, Within]) -> None:
+        self.positions = positions
+
+    def begin(self, context: ActivityContext, node: StateNode) -> None:
         """Begin what a state does while it is active."""
-        if node.do:
-            self.stand(node)
-            self.progress(node, None)
+        self._advance(context, node, None)
 
-    def answered(self, path: str, id: str) -> None:
-        """Go on with the `do` of that state, since what it awaited is over."""
-        node = self.chart.nodes[path]
-        self.stand(node)
-        self.progress(node, id)
+    def resume(self, context: ActivityContext, node: StateNode, id: str) -> None:
+        """Go on with the `do` of that state, since what it awaited under that id is over."""
+        self._advance(context, node, id)
 
-    def progress(self, node: StateNode, id: str | None) -> None:
-        self.begun = ()
-        try:
-            position = begin_block(self, node.do) if id is None else resume(self, node.do, self.doing[node.path], id)
-        except ActivityError as error:
-            self.fail(error.reason, error.where)
-            self.collapse(node, id, error.reason)
-            return
-        self.place(node.path, position)
-        if position is None:
-            self.post(Event(f"done.do.{node.name}", None, self.at))
+    def fail(
+        self, context: ActivityContext, node: StateNode, id: str | None, reason: str, started: Iterable[str] = ()
+    ) -> None:
+        """End a `do` that failed: what else it awaits is cancelled, and its state hears why.
 
-    def collapse(self, node: StateNode, id: str | None, reason: str) -> None:
-        """End a `do` that failed: its other commands are cancelled, and its state hears why."""
-        self.release([i for i in (*awaited(self.doing.get(node.path)), *self.begun) if i != id])
-        self.place(node.path, None)
-        self.post(Event(f"error.do.{node.name}", {"command": id, "reason": reason}, self.at))
+        `id` is that of the command that failed, None for an action that takes no time; `started` is what was begun
+        since the position that is known.
+        """
+        pending = (*awaited(self.positions.get(node.path)), *started)
+        _cancel(context, [other for other in pending if other != id])
+        self._place(node.path, None)
+        context.raise_event(Event(f"error.do.{node.name}", {"command": id, "reason": reason}, context.at))
 
-    def abandon(self, path: str) -> None:
+    def cancel(self, context: ActivityContext, path: str) -> None:
         """End a `do` whose state is left."""
-        self.release(list(awaited(self.doing[path])))
-        self.place(path, None)
+        _cancel(context, list(awaited(self.positions[path])))
+        self._place(path, None)
 
-    def place(self, path: str, position: Within | None) -> None:
-        rest = {p: where for p, where in self.doing.items() if p != path}
-        self.doing = {**rest, path: position} if position else rest
+    def _advance(self, context: ActivityContext, node: StateNode, id: str | None) -> None:
+        context.evaluate_in(node)
+        advance = _Advance(context)
+        try:
+            position = (
+                advance.block(node.do) if id is None else advance.resume_block(node.do, self.positions[node.path], id)
+            )
+        except ActivityError as error:
+            context.raise_error(error.reason, error.where)
+            self.fail(context, node, id, error.reason, advance.started)
+            return
+        self._place(node.path, position)
+        if position is None:
+            context.raise_event(Event(f"done.do.{node.name}", None, context.at))
 
-    def release(self, ids: list[str]) -> None:
-        """Cancel what is awaited under these ids: a timer is taken back, a command told so."""
-        pauses = {t.id for t in self.timers if t.kind == "wait" and t.id in ids}
-        self.timers = tuple(t for t in self.timers if t.kind != "wait" or t.id not in pauses)
-        for id in ids:
-            if id not in pauses:
-                self.emit(Cancel(id))
+    def _place(self, path: str, position: Within | None) -> None:
+        rest = {p: where for p, where in self.positions.items() if p != path}
+        self.positions = {**rest, path: position} if position else rest
+
+
+class _Advance:
+    """One `do` being moved on until it awaits something; `started` are the ids of what it began."""
+
+    __slots__ = ("context", "started")
+
+    def __init__(self, context: ActionContext) -> None:
+        self.context = context
+        self.started: list[str] = []
+
+    def block(
+        self, actions: tuple[CompiledAction, ...], name: Literal["do", "then", "else"] = "do", index: int = 0
+    ) -> Within | None:
+        """Do everything from `index` on that takes no time; where it stands then, None at its end."""
+        for place in range(index, len(actions)):
+            inner = self.begin(actions[place])
+            if inner is not None:
+                return Within(name, place, inner)
+        return None
+
+    def resume_block(self, actions: tuple[CompiledAction, ...], position: Within, id: str) -> Within | None:
+        """Go on from `position` now that what it awaited under `id` is over."""
+        inner = self.resume(actions[position.place], position.inner, id)
+        if inner is not None:
+            return position._replace(inner=inner)
+        return self.block(actions, position.block, position.place + 1)
+
+    def begin(self, action: CompiledAction) -> Position | None:
+        match action:
+            case InstantAction(act, where):
+                with _Failing(where):
+                    act(self.context)
+                return None
+            case AwaitedCommand(make, where):
+                with _Failing(where):
+                    return self.awaiting(self.context.start(make(self.context), awaited=True))
+            case TimedWait(seconds):
+                return self.awaiting(self.context.wait(seconds))
+            case ConditionalAction(guard, then, otherwise, where):
+                with _Failing(where):
+                    holds = guard(self.context.scope())
+                return self.block(then if holds else otherwise, "then" if holds else "else")
+            case ParallelActions(branches):
+                return _fork([self.begin(branch) for branch in branches])
+        raise AssertionError(action)
+
+    def resume(self, action: CompiledAction, position: Position, id: str) -> Position | None:
+        match action, position:
+            case ConditionalAction(), Within(block, _, _):
+                return self.resume_block(action.block(block), position, id)
+            case ParallelActions(branches), Fork(positions):
+                return _fork([self.branch(branch, at, id) for branch, at in zip(branches, positions, strict=True)])
+        return None
+
+    def branch(self, action: CompiledAction, position: Position | None, id: str) -> Position | None:
+        return self.resume(action, position, id) if position is not None and id in awaited(position) else position
+
+    def awaiting(self, id: str) -> Awaiting:
+        self.started.append(id)
+        return Awaiting(id)
+
+
+class _Failing:
+    """Turns what an expression or action raises into an ActivityError with its place."""
+
+    __slots__ = ("where",)
+
+    def __init__(self, where: NodePath) -> None:
+        self.where = where
+
+    def __enter__(self) -> None: ...
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        if isinstance(error, ExpressionError | ActionError):
+            raise ActivityError(str(error), self.where) from error
+
+
+def _fork(branches: list[Position | None]) -> Fork | None:
+    return Fork(tuple(branches)) if any(branch is not None for branch in branches) else None
+
+
+def _cancel(context: ActivityContext, ids: list[str]) -> None:
+    """Cancel what is awaited under these ids: a timer is taken back, a command cancelled at the robot."""
+    waits = {t.id for t in context.timers if t.kind == "wait" and t.id in ids}
+    context.timers = tuple(t for t in context.timers if t.kind != "wait" or t.id not in waits)
+    for id in ids:
+        if id not in waits:
+            context.emit(Cancel(id))

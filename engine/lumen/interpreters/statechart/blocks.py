@@ -1,9 +1,10 @@
-"""Actions as closures over a workbench: compiled once, so that a step does not look at their kind again."""
+"""Actions as functions of a context: compiled once, so that a step does not look at their kind again."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
+from lumen.interpreters.statechart.action_context import ActionContext
 from lumen.language.actions import (
     Action,
     Assign,
@@ -24,16 +25,9 @@ from lumen.language.commands import BodyCommand, Language, Log, Publish, Say, Ve
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 
-if TYPE_CHECKING:
-    from lumen.interpreters.statechart.execution_context import ExecutionContext
-
-ActionFunction: TypeAlias = "Callable[[ExecutionContext], None]"
-CompiledBlock: TypeAlias = "tuple[tuple[ActionFunction, NodePath], ...]"
-CommandFactory: TypeAlias = "Callable[[ExecutionContext], BodyCommand]"
-
-
-class ActionError(Exception):
-    """An action can't be done as it is written; the rest of its block is skipped."""
+ActionFunction: TypeAlias = Callable[[ActionContext], None]
+CompiledBlock: TypeAlias = tuple[tuple[ActionFunction, NodePath], ...]
+CommandFactory: TypeAlias = Callable[[ActionContext], BodyCommand]
 
 
 def compile_block(steps: tuple[PlacedAction, ...]) -> CompiledBlock:
@@ -48,26 +42,26 @@ def compile_action(action: Action) -> ActionFunction:
             return _assign(values)
         case Raise(event, data):
             body = compile_value(data)
-            return lambda execution: execution.post(Event(event, body(execution.view()), execution.at))
+            return lambda context: context.raise_event(Event(event, body(context.scope()), context.at))
         case Send(event, data, delay, id):
             body = compile_value(data)
-            return lambda execution: execution.set_timer(id, delay, event, body(execution.view()))
+            return lambda context: context.send(id, delay, event, body(context.scope()))
         case CancelSend(id):
-            return lambda execution: execution.cancel_send(id)
+            return lambda context: context.cancel_send(id)
         case PublishBody(route, data):
             body = compile_value(data)
-            return lambda execution: execution.emit(Publish(route, body(execution.view())))
+            return lambda context: context.emit(Publish(route, body(context.scope())))
         case LogText(template):
             text = compile_template(template.text)
-            return lambda execution: execution.emit(Log(text(execution.view())))
+            return lambda context: context.emit(Log(text(context.scope())))
         case If(guard, then, otherwise):
             return _if(guard, compile_block(then), compile_block(otherwise))
         case Wait() | Parallel():
             raise TypeError(f"{action} stands outside `do`")
     make = compile_command(action)
 
-    def begin(execution: "ExecutionContext") -> None:
-        execution.start(make(execution))
+    def begin(context: ActionContext) -> None:
+        context.start(make(context))
 
     return begin
 
@@ -79,14 +73,14 @@ def compile_command(action: SayText | VerbCommand) -> CommandFactory:
             return _say(texts)
         case Language(language):
 
-            def speak(execution: "ExecutionContext") -> BodyCommand:
-                execution.language = language
-                execution.scope = None
+            def speak(context: ActionContext) -> BodyCommand:
+                context.language = language
+                context.cached_scope = None
                 return action
 
             return speak
         case _:
-            return lambda execution: action
+            return lambda context: action
 
 
 def compile_value(value: ComputedValue) -> Callable[[Scope], Any]:
@@ -107,13 +101,13 @@ def compile_value(value: ComputedValue) -> Callable[[Scope], Any]:
 def _assign(values: Mapping[str, ComputedValue]) -> ActionFunction:
     pairs = [(key, compile_value(value)) for key, value in values.items()]
 
-    def assign(execution: "ExecutionContext") -> None:
-        before = execution.context
+    def assign(context: ActionContext) -> None:
+        before = context.data
         try:
             for key, value in pairs:
-                execution.store(key, value(execution.scope or execution.view()))
+                context.assign(key, value(context.cached_scope or context.scope()))
         except BaseException:
-            execution.context, execution.scope = before, None
+            context.data, context.cached_scope = before, None
             raise
 
     return assign
@@ -122,9 +116,9 @@ def _assign(values: Mapping[str, ComputedValue]) -> ActionFunction:
 def _if(guard: Expression, then: CompiledBlock, otherwise: CompiledBlock) -> ActionFunction:
     holds = compile_guard(guard.source)
 
-    def choose(execution: "ExecutionContext") -> None:
-        for act, _ in then if holds(execution.view()) else otherwise:
-            act(execution)
+    def choose(context: ActionContext) -> None:
+        for act, _ in then if holds(context.scope()) else otherwise:
+            act(context)
 
     return choose
 
@@ -136,10 +130,10 @@ def _say(texts: Mapping[str, tuple[Any, ...]]) -> CommandFactory:
     }
     fallback = "" if "" in spoken else next(iter(spoken))
 
-    def say(execution: "ExecutionContext") -> BodyCommand:
-        language = execution.language if execution.language in spoken else fallback
+    def say(context: ActionContext) -> BodyCommand:
+        language = context.language if context.language in spoken else fallback
         alternatives = spoken[language]
-        text = alternatives[execution.draw(len(alternatives))](execution.view())
-        return Say(text, language or execution.language)
+        text = alternatives[context.draw(len(alternatives))](context.scope())
+        return Say(text, language or context.language)
 
     return say

@@ -1,14 +1,25 @@
 """The tree of states and transitions, compiled: what Appendix D's algorithm walks over."""
 
 from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions import Scope, compile_guard
 from lumen.interpreters.statechart.blocks import CompiledBlock, compile_block, compile_value
-from lumen.interpreters.statechart.doing import CompiledAction, compile_do
+from lumen.interpreters.statechart.do_actions import CompiledAction, compile_do
 from lumen.interpreters.statechart.types import type_checks
-from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.language.diagnostics import NodePath
+from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
 
 CompiledGuard = Callable[[Scope], bool]
+
+
+class CompiledInvoke(NamedTuple):
+    """A behaviour that a state invokes; `input` computes the first values of its context."""
+
+    id: str
+    behavior: str
+    input: Callable[[Scope], Mapping[str, Any]]
+    where: NodePath
 
 
 class StateNode:
@@ -16,7 +27,7 @@ class StateNode:
 
     __slots__ = (
         "afters", "ancestors", "children", "do", "entry", "exit", "histories", "index", "initial", "invokes",
-        "kind", "name", "output", "parent", "path", "rules", "state", "views",
+        "kind", "name", "output", "parent", "path", "state", "transitions", "views",
     )  # fmt: skip
 
     def __init__(self, state: State | None, index: int, parent: "StateNode | None") -> None:
@@ -30,12 +41,12 @@ class StateNode:
         self.children: list[StateNode] = []
         self.histories: list[StateNode] = []
         self.initial: tuple[StateNode, ...] = ()
-        self.rules: tuple[CompiledTransition, ...] = ()
+        self.transitions: tuple[CompiledTransition, ...] = ()
         self.afters: tuple[tuple[str, float], ...] = ()
         self.entry: CompiledBlock = compile_block(state.entry) if state else ()
         self.exit: CompiledBlock = compile_block(state.exit) if state else ()
         self.do: tuple[CompiledAction, ...] = compile_do(state.do) if state else ()
-        self.invokes = tuple((i, compile_value(i.input)) for i in state.invoke) if state else ()
+        self.invokes: tuple[CompiledInvoke, ...] = tuple(map(_invoke, state.invoke)) if state else ()
         self.views: dict[str, Mapping[str, str]] = {}
         self.output = compile_value(state.output) if state and state.output is not None else None
 
@@ -67,26 +78,26 @@ class StateNode:
 
 
 class CompiledTransition:
-    """A transition, its guard and actions compiled; compared by identity."""
+    """A transition, its guard and actions compiled; compared by identity. `alone` is the set of it only."""
 
-    __slots__ = ("alone", "block", "guard", "source", "targets", "transition", "where")
+    __slots__ = ("alone", "block", "definition", "guard", "source", "targets", "where")
 
-    def __init__(self, transition: Transition, source: StateNode, targets: tuple[StateNode, ...]) -> None:
-        self.transition = transition
+    def __init__(self, definition: Transition, source: StateNode, targets: tuple[StateNode, ...]) -> None:
+        self.definition = definition
         self.source = source
         self.targets = targets
-        guard = transition.guard
+        guard = definition.guard
         self.guard: CompiledGuard | None = compile_guard(guard.source) if guard else None
-        self.where = guard.where if guard else transition.where
-        self.block: CompiledBlock = compile_block(transition.actions)
+        self.where = guard.where if guard else definition.where
+        self.block: CompiledBlock = compile_block(definition.actions)
         self.alone = (self,)
 
     def matches(self, name: str) -> bool:
         """Whether an event of that name selects it (SCXML 3.12.1); `after` is never selected by a name."""
-        event = self.transition.event
-        if self.transition.delay is not None or not event:
+        event = self.definition.event
+        if self.definition.delay is not None or not event:
             return False
-        if self.transition.exact:
+        if self.definition.exact:
             return event == name
         prefix = event.removesuffix(".*")
         return event == "*" or name == prefix or name.startswith(prefix + ".")
@@ -95,11 +106,11 @@ class CompiledTransition:
 class Chart:
     """All nodes of a machine: `document` is the implicit `<scxml>` around the root."""
 
-    def __init__(self, machine: MachineDefinition) -> None:
-        self.machine = machine
+    def __init__(self, definition: MachineDefinition) -> None:
+        self.definition = definition
         self.document = StateNode(None, -1, None)
         self.nodes: dict[str, StateNode] = {}
-        for index, state in enumerate(machine.states.values()):
+        for index, state in enumerate(definition.states.values()):
             parent = self.document if state.parent is None else self.nodes[state.parent]
             node = self.nodes[state.path] = StateNode(state, index, parent)
             (parent.histories if node.kind is StateKind.HISTORY else parent.children).append(node)
@@ -107,14 +118,18 @@ class Chart:
         self.document.initial = (self.root,)
         self.by_name = {node.name: node for node in self.nodes.values() if node is not self.root}
         self.has_history = any(node.histories for node in self.nodes.values())
-        self.checks = type_checks(machine)
+        self.checks = type_checks(definition)
         for node in self.nodes.values():
             self._connect(node)
 
     def _connect(self, node: StateNode) -> None:
         assert node.state is not None  # only the document has none, and it is not among the nodes
         node.initial = tuple(self.nodes[path] for path in node.state.initial)
-        node.rules = tuple(
+        node.transitions = tuple(
             CompiledTransition(t, node, tuple(self.nodes[path] for path in t.targets)) for t in node.state.transitions
         )
         node.afters = tuple({t.event: t.delay for t in node.state.transitions if t.delay is not None}.items())
+
+
+def _invoke(invoke: Invoke) -> CompiledInvoke:
+    return CompiledInvoke(invoke.id, invoke.behavior, compile_value(invoke.input), invoke.where)

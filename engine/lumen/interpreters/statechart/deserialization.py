@@ -4,7 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from lumen.errors import SnapshotError
-from lumen.interpreters.statechart.doing import (
+from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.do_actions import (
     AwaitedCommand,
     CompiledAction,
     ConditionalAction,
@@ -12,7 +13,6 @@ from lumen.interpreters.statechart.doing import (
     TimedWait,
 )
 from lumen.interpreters.statechart.json_cursor import JsonCursor
-from lumen.interpreters.statechart.program import compiled
 from lumen.interpreters.statechart.types import TypeCheck, fits, refusal
 from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Invoked, Position, Snapshot, Timer, Within
 from lumen.language.machines import MachineDefinition, State, StateKind

@@ -1,116 +1,177 @@
-"""A snapshot while it is moved on: what actions ask for, and what expressions see."""
+"""What a macrostep holds while it is made: the only thing that changes, and it is gone when the step is there."""
 
 from collections import deque
 from collections.abc import Container, Mapping
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol, Self
 
-from lumen.interpreters.expressions import ExpressionError, Scope
-from lumen.interpreters.statechart.blocks import ActionError, CompiledBlock
-from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.expressions import Scope
+from lumen.interpreters.statechart.action_context import ActionError
+from lumen.interpreters.statechart.activities import Activities
+from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
+from lumen.interpreters.statechart.compiled_machine import CompiledMachine
 from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.program import CompiledMachine
-from lumen.interpreters.statechart.values import Counters, Snapshot, Step, Timer
+from lumen.interpreters.statechart.values import Counters, Invoked, Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.machines import Transition
 
 
-class ExecutionContext:
-    """A snapshot being moved on by one event, as actions and expressions see it.
+class Beginning(NamedTuple):
+    """What a state begins when the macrostep is done: its invocations, then its `do` (SCXML 6.4: `statesToInvoke`)."""
 
-    What most events leave empty is empty in the class, and made only where it is needed.
+    node: StateNode
+    invokes: tuple[CompiledInvoke, ...]
+    do: bool
+
+
+class InvocationHandler(Protocol):
+    """What the algorithm asks of the behaviours that run within a machine; `steps` are those they took in this one."""
+
+    children: Mapping[str, Invoked]
+    steps: tuple[tuple[str, Step], ...]
+
+    def begin(self, context: "ExecutionContext", node: StateNode, invoke: CompiledInvoke) -> None:
+        """Invoke a behaviour (`invoke`)."""
+
+    def cancel(self, context: "ExecutionContext", node: StateNode) -> None:
+        """End what a state that is left has invoked (`cancelInvoke`)."""
+
+    def forward(self, context: "ExecutionContext", event: Event) -> None:
+        """Let all of them hear an event."""
+
+    def deliver(self, context: "ExecutionContext", id: str, event: Event) -> None:
+        """Let one of them hear an event."""
+
+
+@dataclass(slots=True, eq=False)
+class ExecutionContext:
+    """A snapshot being moved on by one event.
+
+    `trigger` is the event that began the macrostep, `event` the one being handled; `active` is what `In` asks, and
+    `node` the state that expressions know as `state`. `unforwarded` is an event from outside that invoked behaviours
+    have not heard yet, `beginnings` are the states entered and not left, `failed` the places of errors.
     """
 
-    scope: Scope | None = None
-    happened: Mapping[str, Any] | None = None
+    machine: CompiledMachine
+    trigger: Event | None
+    event: Event | None
+    at: float
+    configuration: Configuration
+    active: Container[str]
+    node: StateNode
+    data: Mapping[str, Any]
+    language: str
+    timers: tuple[Timer, ...]
+    history: Mapping[str, tuple[str, ...]]
+    counters: Counters
+    generator: int
+    epoch: float
+    activities: Activities
+    invocations: InvocationHandler
+    event_data: Mapping[str, Any] | None = None
+    cached_scope: Scope | None = None
+    internal_queue: deque[Event] | tuple[()] = ()
+    unforwarded: Event | None = None
+    beginnings: tuple[Beginning, ...] = ()
+    microsteps: int = 0
+    failed: frozenset[NodePath] = frozenset()
     commands: tuple[Command, ...] = ()
-    queue: deque[Event] | tuple[()] = ()
-    waiting: tuple[StateNode, ...] = ()
     exited: tuple[str, ...] = ()
     entered: tuple[str, ...] = ()
     transitions: tuple[Transition, ...] = ()
     raised: tuple[Event, ...] = ()
-    failed: frozenset[NodePath] = frozenset()
-    begun: tuple[str, ...] = ()
-    steps: tuple[tuple[str, Step], ...] = ()
-    turns = 0
 
-    def __init__(self, program: CompiledMachine, before: Snapshot, event: Event | None, at: float) -> None:
-        self.program = program
-        self.chart, self.planner, *_ = program
-        self.trigger = self.event = event
-        self.at = at
-        (
-            names, self.context, _, self.language, self.timers, self.doing, self.history, self.counters,
-            self.generator, self.epoch, self.invoked,
-        ) = before  # fmt: skip
-        self.configuration: Configuration = self.planner.configuration(names)
-        self.active: Container[str] = self.configuration.known
-        self.here = self.chart.root
+    @classmethod
+    def of(
+        cls,
+        machine: CompiledMachine,
+        snapshot: Snapshot,
+        event: Event | None,
+        at: float,
+        invocations: InvocationHandler,
+    ) -> Self:
+        """The context of a macrostep from that snapshot at `at` [s]; raises KeyError with a state that is unknown."""
+        names, data, _, language, timers, doing, history, counters, generator, epoch, _ = snapshot
+        start = machine.planner.configuration(names)
+        return cls(
+            machine, event, event, at, start, start.known, machine.chart.root, data, language, timers, history,
+            counters, generator, epoch, Activities(doing), invocations,
+        )  # fmt: skip
 
-    def perform(self, block: CompiledBlock, node: StateNode) -> None:
-        """Do the actions of a block; the first that fails ends it."""
-        if node is not self.here:
-            self.stand(node)
-        where: NodePath = ()
-        try:
-            for act, where in block:  # noqa: B007 - `where` is where it failed
-                act(self)
-        except (ExpressionError, ActionError) as error:
-            self.fail(str(error), where)
+    def step(self) -> Step:
+        """The step that was made; the context is of no use after it."""
+        self.cached_scope = None  # which refers to this context: no need to wait for the garbage collector
+        snapshot = tuple.__new__(
+            Snapshot,
+            (
+                self.configuration.names,
+                self.data,
+                self.at,
+                self.language,
+                self.timers,
+                self.activities.positions,
+                self.history,
+                self.counters,
+                self.generator,
+                self.epoch,
+                self.invocations.children,
+            ),
+        )
+        return tuple.__new__(
+            Step,
+            (
+                self.trigger,
+                self.exited,
+                self.entered,
+                self.commands,
+                snapshot,
+                self.transitions,
+                self.raised,
+                self.invocations.steps,
+            ),
+        )
 
-    def start(self, command: BodyCommand, *, awaited: bool = False) -> str:
-        """Start a command; its id."""
-        commands, waited, timers = self.counters
-        if awaited:
-            id = f"d{waited + 1}"
-            self.counters = Counters(commands, waited + 1, timers)
-            self.begun += (id,)
-        else:
-            id = f"c{commands + 1}"
-            self.counters = Counters(commands + 1, waited, timers)
-        self.emit(Start(id, command))
-        return id
+    def evaluate_in(self, node: StateNode) -> None:
+        """Let `state` in expressions be this one."""
+        if node is not self.node:
+            self.node, self.cached_scope = node, None
 
-    def emit(self, command: Command) -> None:
-        """Something for the edge to perform."""
-        self.commands = (*self.commands, command)
+    def scope(self) -> Scope:
+        """What an expression sees now."""
+        scope = self.cached_scope
+        if scope is None:
+            event, definition = self.event, self.machine.chart.definition
+            if event is not None and self.event_data is None:
+                self.event_data = {"name": event.name, "data": event.data}
+            scope = self.cached_scope = tuple.__new__(  # a third of the price of Scope(…)
+                Scope,
+                (
+                    self.data,
+                    self.event_data,
+                    self.node.view(self.language),
+                    self.is_active,
+                    self.at,
+                    self.language,
+                    definition.phrases,
+                    definition.answers,
+                    self.epoch,
+                ),
+            )
+        return scope
 
-    def set_timer(self, id: str, delay: float, event: str, data: Any) -> None:
-        """A `send`: due after `delay` [s], at the earliest in the next macrostep."""
-        id = id or self.number("s")
-        self.timers = (*self.timers, Timer(id, self.at + delay, delay, event, data))
+    def is_active(self, state: str) -> bool:
+        """`In()`: asks when it is called, so that a scope serves while states come and go."""
+        return state in self.active
 
-    def set_wait(self, seconds: float) -> str:
-        """A `wait` of the `do` that is being done; its id."""
-        id = self.number("w")
-        timer = Timer(id, self.at + seconds, seconds, f"wait.{id}", None, self.here.path, "wait")
-        self.timers = (*self.timers, timer)
-        self.begun += (id,)
-        return id
-
-    def number(self, letter: str) -> str:
-        self.counters = self.counters._replace(timers=self.counters.timers + 1)
-        return f"{letter}{self.counters.timers}"
-
-    def cancel_send(self, id: str) -> None:
-        self.timers = tuple(t for t in self.timers if t.kind != "send" or t.id != id)
-
-    def post(self, event: Event) -> None:
-        """An internal event."""
-        if not self.queue:
-            self.queue = deque()
-        self.queue.append(event)
-        self.raised += (event,)
-
-    def store(self, key: str, value: Any) -> None:
+    def assign(self, key: str, value: Any) -> None:
         """Give a context key another value; raises ActionError where it is of another type."""
-        check = self.chart.checks.get(key)
+        check = self.machine.chart.checks.get(key)
         if check and type(value) not in check.quick and not check.accepts(value):
             raise ActionError(f"`{key}` {check.refusal(value, 'become')}")
-        self.context = {**self.context, key: value}
-        self.scope = None
+        self.data = {**self.data, key: value}
+        self.cached_scope = None
 
     def draw(self, count: int) -> int:
         """One of `count` alternatives, from the generator (Numerical Recipes' linear congruence)."""
@@ -119,42 +180,52 @@ class ExecutionContext:
         self.generator = (self.generator * 1664525 + 1013904223) % 2**32
         return (self.generator >> 16) % count
 
-    def stand(self, node: StateNode) -> None:
-        """Let `state` in expressions be this one."""
-        if node is not self.here:
-            self.here, self.scope = node, None
+    def emit(self, command: Command) -> None:
+        """Something for the edge to perform."""
+        self.commands = (*self.commands, command)
 
-    def is_active(self, state: str) -> bool:
-        """`In()`: asks of this moment, so that a scope serves while states come and go."""
-        return state in self.active
+    def start(self, command: BodyCommand, *, awaited: bool = False) -> str:
+        """Start a command; its id."""
+        commands, waited, timers = self.counters
+        if awaited:
+            id = f"d{waited + 1}"
+            self.counters = Counters(commands, waited + 1, timers)
+        else:
+            id = f"c{commands + 1}"
+            self.counters = Counters(commands + 1, waited, timers)
+        self.emit(Start(id, command))
+        return id
 
-    def view(self) -> Scope:
-        """What an expression sees now."""
-        scope = self.scope
-        if scope is None:
-            event, machine = self.event, self.chart.machine
-            if event is not None and self.happened is None:
-                self.happened = {"name": event.name, "data": event.data}
-            scope = self.scope = tuple.__new__(  # a third of the price of Scope(…)
-                Scope,
-                (
-                    self.context,
-                    self.happened,
-                    self.here.view(self.language),
-                    self.is_active,
-                    self.at,
-                    self.language,
-                    machine.phrases,
-                    machine.answers,
-                    self.epoch,
-                ),
-            )
-        return scope
+    def send(self, id: str, delay: float, event: str, data: Any) -> None:
+        """A `send`: due after `delay` [s], at the earliest in the next macrostep (SCXML 6.2)."""
+        self.timers = (*self.timers, Timer(id or self._timer_id("s"), self.at + delay, delay, event, data))
 
-    def fail(self, reason: str, where: NodePath) -> None:
+    def cancel_send(self, id: str) -> None:
+        """Take back what was sent under that id and is not due yet (SCXML 6.3)."""
+        self.timers = tuple(t for t in self.timers if t.kind != "send" or t.id != id)
+
+    def wait(self, seconds: float) -> str:
+        """A `wait` of the `do` of the state that is evaluated in; its id."""
+        id = self._timer_id("w")
+        timer = Timer(id, self.at + seconds, seconds, f"wait.{id}", None, self.node.path, "wait")
+        self.timers = (*self.timers, timer)
+        return id
+
+    def _timer_id(self, letter: str) -> str:
+        self.counters = self.counters._replace(timers=self.counters.timers + 1)
+        return f"{letter}{self.counters.timers}"
+
+    def raise_event(self, event: Event) -> None:
+        """Append to the internal queue (SCXML 4.2)."""
+        if not self.internal_queue:
+            self.internal_queue = deque()
+        self.internal_queue.append(event)
+        self.raised += (event,)
+
+    def raise_error(self, reason: str, where: NodePath) -> None:
         """Raise error.execution; not again for the same place while that is what is being handled."""
         handling = self.event is not None and self.event.name == "error.execution"
         if not (handling and where in self.failed):
             self.failed |= {where}
             place = ".".join(map(str, where))
-            self.post(Event("error.execution", {"reason": reason, "where": place}, self.at))
+            self.raise_event(Event("error.execution", {"reason": reason, "where": place}, self.at))

@@ -4,9 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 
 from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
+from lumen.interpreters.statechart.history import History
 from lumen.language.machines import StateKind
-
-History = Mapping[str, tuple[str, ...]]
 
 
 class EntrySet(set[StateNode]):
@@ -35,25 +34,41 @@ class StateSets:
         self.history = history
         self.staying = staying
 
-    def exit_set(self, rules: Iterable[CompiledTransition], active: AbstractSet[StateNode]) -> set[StateNode]:
+    def exit_set(self, transitions: Iterable[CompiledTransition], active: AbstractSet[StateNode]) -> set[StateNode]:
         """The active states that these transitions leave (`computeExitSet`)."""
         left: set[StateNode] = set()
-        for rule in rules:
-            if rule.targets:
-                left.update(_active_below(self.domain(rule), active))
+        for transition in transitions:
+            if transition.targets:
+                left.update(_active_below(self.domain(transition), active))
         return left
 
-    def domains(self, rules: Iterable[CompiledTransition]) -> dict[CompiledTransition, StateNode]:
+    def without_conflicts(
+        self, enabled: Sequence[CompiledTransition], active: AbstractSet[StateNode]
+    ) -> tuple[CompiledTransition, ...]:
+        """The transitions that can be taken together (`removeConflictingTransitions`)."""
+        kept: dict[CompiledTransition, set[StateNode]] = {}
+        taken: set[StateNode] = set()
+        for transition in enabled:
+            left = self.exit_set([transition], active)
+            rivals = [] if taken.isdisjoint(left) else [other for other in kept if kept[other] & left]
+            if all(transition.source.lies_below(other.source) for other in rivals):
+                for other in rivals:
+                    del kept[other]
+                kept[transition] = left
+                taken |= left
+        return tuple(kept)
+
+    def domains(self, transitions: Iterable[CompiledTransition]) -> dict[CompiledTransition, StateNode]:
         """The domain of each of these transitions that has a target."""
-        return {rule: self.domain(rule) for rule in rules if rule.targets}
+        return {transition: self.domain(transition) for transition in transitions if transition.targets}
 
     def entry_set(self, domains: Mapping[CompiledTransition, StateNode]) -> set[StateNode]:
         """The states that these transitions enter, each within its domain (`computeEntrySet`)."""
         entered = EntrySet()
-        for rule, domain in domains.items():
-            for target in _innermost(rule.targets):
+        for transition, domain in domains.items():
+            for target in _innermost(transition.targets):
                 self.add_descendants(target, entered)
-            for target in self.effective(rule.targets):
+            for target in self.effective(transition.targets):
                 self.add_ancestors(target, domain, entered)
         return entered
 
@@ -63,11 +78,11 @@ class StateSets:
         self.add_descendants(self.chart.root, entered)
         return entered
 
-    def domain(self, rule: CompiledTransition) -> StateNode:
+    def domain(self, transition: CompiledTransition) -> StateNode:
         """The state within which everything is left and entered (`getTransitionDomain`)."""
-        source, targets = rule.source, self.effective(rule.targets)
+        source, targets = transition.source, self.effective(transition.targets)
         inside = source.kind is StateKind.COMPOUND and all(target.lies_below(source) for target in targets)
-        if inside and not rule.transition.reenter:
+        if inside and not transition.definition.reenter:
             return source
         return _lcca([source, *targets])
 

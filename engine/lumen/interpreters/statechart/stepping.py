@@ -6,9 +6,11 @@ from typing import Any
 
 from lumen.errors import LumenError, SnapshotError, UsageError
 from lumen.interpreters.statechart.answers import outside
-from lumen.interpreters.statechart.program import compiled
-from lumen.interpreters.statechart.run import MAX_MICROSTEPS
-from lumen.interpreters.statechart.sessions import Session
+from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.external_events import process
+from lumen.interpreters.statechart.invocations import open_context
+from lumen.interpreters.statechart.macrostep import enter_machine
+from lumen.interpreters.statechart.microstep import MAX_MICROSTEPS
 from lumen.interpreters.statechart.types import checked
 from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.events import Event
@@ -32,9 +34,9 @@ def initial(
     if input is not None and not isinstance(input, Mapping):
         raise UsageError(f"the input of `{machine.id}` has to be a map of context keys and values")
     program = compiled(machine)
-    context = {**machine.context, **checked(machine.id, program.chart.checks, input or {})}
-    before = Snapshot(frozenset(), context, at, language, generator=seed % 2**32, epoch=epoch)
-    return Session(program, before, None, at).open()
+    data = {**machine.context, **checked(machine.id, program.chart.checks, input or {})}
+    before = Snapshot(frozenset(), data, at, language, generator=seed % 2**32, epoch=epoch)
+    return enter_machine(open_context(program, before, None, at))
 
 
 def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
@@ -46,13 +48,13 @@ def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
     """
     program = compiled(machine)
     try:
-        short = program.shortcuts.step(snapshot, event)
-        if short is not None:
-            return short
-        session = Session(program, snapshot, event, max(snapshot.at, event.at))
+        taken = program.fast_paths.step(snapshot, event)
+        if taken is not None:
+            return taken
+        context = open_context(program, snapshot, event, max(snapshot.at, event.at))
     except KeyError as error:
         raise SnapshotError(f"`{machine.id}` has no state `{error.args[0]}`, which is active in the snapshot") from None
-    return session.hear(event)
+    return process(context, event)
 
 
 def due(snapshot: Snapshot) -> Event | None:

@@ -1,6 +1,6 @@
 """What a step takes and gives: the whole state of a running behaviour as an immutable value."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 from lumen.language.commands import Command
@@ -44,6 +44,18 @@ class Fork(NamedTuple):
 
 
 Position: TypeAlias = Awaiting | Within | Fork
+
+
+def awaited(position: Position | None) -> Iterator[str]:
+    """The ids that a position awaits."""
+    match position:
+        case Awaiting(id):
+            yield id
+        case Within(_, _, inner):
+            yield from awaited(inner)
+        case Fork(branches):
+            for branch in branches:
+                yield from awaited(branch)
 
 
 class Counters(NamedTuple):

@@ -1,0 +1,30 @@
+"""A machine compiled, with those that it invokes."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from lumen.interpreters.statechart.chart import Chart
+from lumen.interpreters.statechart.fast_path import FastPaths
+from lumen.interpreters.statechart.plans import MicrostepPlanner
+from lumen.language.machines import MachineDefinition
+
+
+class CompiledMachine(NamedTuple):
+    """A machine compiled; `invoked` are the behaviours that it invokes, by their names."""
+
+    chart: Chart
+    planner: MicrostepPlanner
+    fast_paths: FastPaths
+    invoked: "Mapping[str, CompiledMachine]"
+
+
+def compiled(definition: MachineDefinition) -> CompiledMachine:
+    """The machine compiled, on first use, and kept beside its definition."""
+    machine: CompiledMachine | None = definition.__dict__.get("_compiled")
+    if machine is None:
+        chart = Chart(definition)
+        planner = MicrostepPlanner(chart)
+        invoked = {name: compiled(other) for name, other in definition.invoked.items()}
+        machine = CompiledMachine(chart, planner, FastPaths(planner), invoked)
+        object.__setattr__(definition, "_compiled", machine)  # frozen, and the same for all who hold it
+    return machine

@@ -1,0 +1,72 @@
+"""What a machine hears from outside, sorted: timers that have ended, the robot's answers, and everything else."""
+
+from lumen.interpreters.statechart.answers import CommandAnswer, answer_of, inside
+from lumen.interpreters.statechart.execution_context import ExecutionContext
+from lumen.interpreters.statechart.macrostep import complete
+from lumen.interpreters.statechart.microstep import take_enabled
+from lumen.interpreters.statechart.values import Step, Timer, awaited
+from lumen.language.events import Event
+
+
+def process(context: ExecutionContext, event: Event) -> Step:
+    """Take an event from the external queue, and all that follows from it until the next.
+
+    Those behaviours that were invoked before hear it too, after the machine itself: what it leaves because of the
+    event ends without a word.
+    """
+    if event.sendid:
+        _end_timer(context, event)
+    elif ".command." in event.name and (answer := answer_of(event)):
+        _answer(context, event, answer)
+    else:
+        context.unforwarded = event if context.invocations.children else None
+        take_enabled(context, context.configuration.candidates(event.name))
+    return complete(context)
+
+
+def _end_timer(context: ExecutionContext, event: Event) -> None:
+    """A timer has ended, its own or an invoked behaviour's; one that is no longer there was cancelled."""
+    ended = [t for t in context.timers if t.id == event.sendid and t.event == event.name]
+    if not ended:
+        id, owner = inside(event.sendid)
+        if owner in context.invocations.children:
+            context.invocations.deliver(context, owner, event._replace(sendid=id))
+        return
+    timer = min(ended, key=lambda t: t.due)
+    context.timers = _without(context.timers, timer)
+    if timer.kind == "after":
+        take_enabled(context, context.configuration.timed(timer.event))
+    elif timer.kind == "send":
+        take_enabled(context, context.configuration.candidates(event.name))
+    elif timer.id in awaited(context.activities.positions.get(timer.state)):
+        context.activities.resume(context, context.machine.chart.nodes[timer.state], timer.id)
+
+
+def _answer(context: ExecutionContext, event: Event, answer: CommandAnswer) -> None:
+    """What became of a command: the `do` that awaits it goes on or fails; nobody else hears of it."""
+    kind, id, reason = answer
+    own, owner = inside(id)
+    if owner:
+        _hand_down(context, event, kind, own, owner)
+        return
+    waiting = next((path for path, position in context.activities.positions.items() if id in awaited(position)), None)
+    if waiting is not None:
+        node = context.machine.chart.nodes[waiting]
+        if kind == "done":
+            context.activities.resume(context, node, id)
+        else:
+            context.activities.fail(context, node, id, reason)
+    elif kind == "error" and id.startswith("c"):
+        context.raise_event(Event("error.communication", {"command": id, "reason": reason}, context.at))
+
+
+def _hand_down(context: ExecutionContext, event: Event, kind: str, id: str, owner: str) -> None:
+    """Give an answer to the behaviour whose command it was; not to one of the same name that began later."""
+    child = context.invocations.children.get(owner)
+    if child and not (id.startswith("c") and int(id[1:].partition("@")[0]) <= child.commands):
+        context.invocations.deliver(context, owner, event._replace(name=f"{kind}.command.{id}"))
+
+
+def _without(timers: tuple[Timer, ...], timer: Timer) -> tuple[Timer, ...]:
+    index = next(i for i, t in enumerate(timers) if t is timer)
+    return timers[:index] + timers[index + 1 :]

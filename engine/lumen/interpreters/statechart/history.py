@@ -1,0 +1,25 @@
+"""What history states remember (SCXML 3.10): the paths of states, by the path of the history state."""
+
+from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
+
+from lumen.interpreters.statechart.chart import StateNode
+from lumen.language.machines import StateKind
+
+History = Mapping[str, tuple[str, ...]]
+
+
+def recorded(active: AbstractSet[StateNode], left: AbstractSet[StateNode]) -> dict[str, tuple[str, ...]]:
+    """What the history states of the states left have to remember (`historyValue` in `exitStates`)."""
+    found: dict[str, tuple[str, ...]] = {}
+    for parent in left:
+        for history in parent.histories:
+            assert history.state is not None  # only the document has none
+            deep = history.state.deep
+            kept = [n for n in active if (_is_leaf(n) and n.lies_below(parent) if deep else n.parent is parent)]
+            found[history.path] = tuple(n.path for n in sorted(kept, key=lambda n: n.index))
+    return found
+
+
+def _is_leaf(node: StateNode) -> bool:
+    return node.kind in (StateKind.ATOMIC, StateKind.FINAL)

@@ -1,0 +1,138 @@
+"""Behaviours that run within another one: begun, handed events, and ended with the state that invoked them."""
+
+from collections import deque
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.errors import LumenError, UsageError
+from lumen.interpreters.expressions import ExpressionError
+from lumen.interpreters.statechart.answers import labelled
+from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
+from lumen.interpreters.statechart.compiled_machine import CompiledMachine
+from lumen.interpreters.statechart.execution_context import ExecutionContext
+from lumen.interpreters.statechart.external_events import process
+from lumen.interpreters.statechart.macrostep import enter_machine, exit_machine
+from lumen.interpreters.statechart.microstep import MAX_MICROSTEPS
+from lumen.interpreters.statechart.types import checked
+from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
+from lumen.language.events import Event
+
+INVOKED_MICROSTEP_SHARE = 0.9
+"""The part of the microsteps still allowed that an invoked behaviour may take: what is left serves to answer it."""
+
+
+def open_context(machine: CompiledMachine, snapshot: Snapshot, event: Event | None, at: float) -> ExecutionContext:
+    """The context of a macrostep at `at` [s]; raises KeyError with a state that the machine has not."""
+    return ExecutionContext.of(machine, snapshot, event, at, Invocations(snapshot.invoked))
+
+
+class Invocations:
+    """The behaviours invoked in a machine, each making macrosteps of its own (SCXML 6.4)."""
+
+    __slots__ = ("children", "steps")
+
+    def __init__(self, children: Mapping[str, Invoked]) -> None:
+        self.children = children
+        self.steps: tuple[tuple[str, Step], ...] = ()
+
+    def begin(self, context: ExecutionContext, node: StateNode, invoke: CompiledInvoke) -> None:
+        """Begin a behaviour with the input that the state gives it, or say why it can't begin."""
+        context.evaluate_in(node)
+        id, chart = invoke.id, context.machine.invoked[invoke.behavior].chart
+        try:
+            given = checked(chart.definition.id, chart.checks, invoke.input(context.cached_scope or context.scope()))
+        except (ExpressionError, UsageError) as error:
+            context.raise_error(str(error), (*invoke.where, "input"))
+            _raise_failure(context, id, str(error))
+            return
+        before = Snapshot(frozenset(), {**chart.definition.context, **given})
+        self.children = {**self.children, id: Invoked(node.path, before, context.counters.commands)}
+        self._run(context, id, None)
+
+    def cancel(self, context: ExecutionContext, node: StateNode) -> None:
+        """End what a state that is left has invoked, after its `exit`; nothing is heard of it any more."""
+        for id in [id for id, child in self.children.items() if child.state == node.path]:
+            self.end(context, id)
+        gone = {f"{kind}.invoke.{invoke.id}" for kind in ("done", "error") for invoke in node.invokes}
+        context.internal_queue = deque(event for event in context.internal_queue if event.name not in gone)
+
+    def forward(self, context: ExecutionContext, event: Event) -> None:
+        """Let all of them hear an event, in the order in which they began."""
+        for id in tuple(self.children):
+            self._run(context, id, event)
+
+    def deliver(self, context: ExecutionContext, id: str, event: Event) -> None:
+        """Let one of them hear an event."""
+        self._run(context, id, event)
+
+    def end(self, context: ExecutionContext, id: str) -> None:
+        """End one of them: it leaves all its states."""
+        if self.children[id].snapshot.configuration:
+            self._follow(context, id, exit_machine(self._open(context, id, None)))
+        self.children = {other: child for other, child in self.children.items() if other != id}
+
+    def adopt(self, context: ExecutionContext, id: str, child: Invoked, output: Any) -> None:
+        """Go on with a behaviour where it stands now; `output` is its own, where it has come to its end."""
+        self.children = {**self.children, id: child}
+        _take_back(context, child.snapshot)
+        machine = invoked_machine(context.machine, child.state, id)
+        if machine.planner.configuration(child.snapshot.configuration).finished:
+            self._finish(context, id, output)
+
+    def _run(self, context: ExecutionContext, id: str, event: Event | None) -> None:
+        """Let one of them hear an event, or begin (None), and follow what comes of it."""
+        state, _, commands = self.children[id]
+        child = self._open(context, id, event)
+        share = int(INVOKED_MICROSTEP_SHARE * (MAX_MICROSTEPS - context.microsteps))
+        before = child.microsteps = MAX_MICROSTEPS - share
+        try:
+            step = enter_machine(child) if event is None else process(child, event)
+        except LumenError as error:
+            context.microsteps += MAX_MICROSTEPS - before
+            self.end(context, id)
+            _raise_failure(context, id, str(error))
+            return
+        context.microsteps += child.microsteps - before
+        self.children = {**self.children, id: Invoked(state, step.snapshot, commands)}
+        self._follow(context, id, step)
+        if child.configuration.finished:
+            self._finish(context, id, output_of(step, child.machine))
+
+    def _finish(self, context: ExecutionContext, id: str, output: Any) -> None:
+        """End one that has come to its end, and say so (SCXML 6.4.1: `done.invoke.id`)."""
+        self.end(context, id)
+        context.raise_event(Event(f"done.invoke.{id}", output, context.at))
+
+    def _open(self, context: ExecutionContext, id: str, event: Event | None) -> ExecutionContext:
+        """The context of one of them; language, counters and generator are lent to it."""
+        state, before, _ = self.children[id]
+        lent = before._replace(
+            language=context.language, counters=context.counters, generator=context.generator, epoch=context.epoch
+        )
+        return open_context(invoked_machine(context.machine, state, id), lent, event, context.at)
+
+    def _follow(self, context: ExecutionContext, id: str, step: Step) -> None:
+        """Take over what a step asks for, and what was lent for it."""
+        self.steps += ((id, step),)
+        context.commands += tuple(labelled(command, id) for command in step.commands)
+        _take_back(context, step.snapshot)
+
+
+def invoked_machine(machine: CompiledMachine, state: str, id: str) -> CompiledMachine:
+    """The machine that a state, by its path, invokes under that id."""
+    return machine.invoked[next(invoke.behavior for invoke in machine.chart.nodes[state].invokes if invoke.id == id)]
+
+
+def output_of(step: Step, machine: CompiledMachine) -> Any:
+    """The output of the final state in which a machine came to its end; None where it did not."""
+    end = f"done.state.{machine.chart.root.name}"
+    return next((event.data for event in reversed(step.raised) if event.name == end), None)
+
+
+def _take_back(context: ExecutionContext, after: Snapshot) -> None:
+    context.language, context.counters, context.generator = after.language, after.counters, after.generator
+    context.cached_scope = None
+
+
+def _raise_failure(context: ExecutionContext, id: str, reason: str) -> None:
+    context.raise_event(Event(f"error.invoke.{id}", {"reason": reason}, context.at))

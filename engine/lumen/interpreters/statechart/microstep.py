@@ -1,0 +1,136 @@
+"""One microstep: which transitions are enabled, and the states that they leave and enter (SCXML Appendix D)."""
+
+from typing import Any
+
+from lumen.errors import LumenError
+from lumen.interpreters.expressions import ExpressionError
+from lumen.interpreters.statechart.action_context import ActionError
+from lumen.interpreters.statechart.blocks import CompiledBlock
+from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
+from lumen.interpreters.statechart.execution_context import Beginning, ExecutionContext
+from lumen.interpreters.statechart.plans import Candidates, MicrostepPlan
+from lumen.interpreters.statechart.values import Timer
+from lumen.language.diagnostics import NodePath
+from lumen.language.events import Event
+
+MAX_MICROSTEPS = 1000
+"""How many microsteps, or internal events, a macrostep may take."""
+
+
+def take_enabled(context: ExecutionContext, candidates: Candidates) -> bool:
+    """One microstep with the transitions that are enabled among these candidates; False where none is."""
+    enabled = select_transitions(context, candidates)
+    if not enabled:
+        return False
+    microstep(context, context.machine.planner.plan(context.configuration, enabled, context.history))
+    return True
+
+
+def select_transitions(context: ExecutionContext, candidates: Candidates) -> tuple[CompiledTransition, ...]:
+    """The first candidate of each atomic state whose guard holds (`selectTransitions`)."""
+    if len(candidates) == 1:
+        for transition in candidates[0]:
+            if transition.guard is None or _holds(context, transition):
+                return transition.alone
+        return ()
+    found: list[CompiledTransition] = []
+    for group in candidates:
+        for transition in group:
+            if transition.guard is None or _holds(context, transition):
+                found.append(transition)
+                break
+    return tuple(dict.fromkeys(found))
+
+
+def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
+    """Leave, act, enter (`microstep`). Raises LumenError where the macrostep has no end."""
+    count_microstep(context)
+    taken, transitions, exits, between, entries, exited, entered, context.history, target = plan
+    context.transitions += transitions
+    context.exited += exited
+    context.entered += entered
+    for node, context.active, _ in exits:
+        _exit(context, node)
+    context.active = between
+    for transition in taken:
+        if transition.block:
+            _execute(context, transition.block, transition.source)
+    for node, context.active, done in entries:
+        _enter(context, node, done)
+    context.configuration = target
+    context.active = target.known
+
+
+def count_microstep(context: ExecutionContext) -> None:
+    """Raises LumenError where there were too many."""
+    context.microsteps += 1
+    if context.microsteps > MAX_MICROSTEPS:
+        states = ", ".join(f"`{name}`" for name in sorted({*context.entered[-20:], *context.configuration.names}))
+        raise LumenError(
+            f"`{context.machine.chart.definition.id}` never comes to rest: after {MAX_MICROSTEPS:,} microsteps it still"
+            f" goes through {states}; look at their `always` and `raise`"
+        )
+
+
+def _holds(context: ExecutionContext, transition: CompiledTransition) -> bool:
+    """Whether a guard is true; one that fails is false, and error.execution (`conditionMatch`, SCXML 5.9.1)."""
+    assert transition.guard is not None  # asked only of transitions that have one
+    if transition.source is not context.node:
+        context.evaluate_in(transition.source)
+    try:
+        return transition.guard(context.cached_scope or context.scope())
+    except ExpressionError as error:
+        context.raise_error(str(error), transition.where)
+        return False
+
+
+def _exit(context: ExecutionContext, node: StateNode) -> None:
+    """`exitStates`, of one state."""
+    if node.exit:
+        _execute(context, node.exit, node)
+    if context.beginnings:
+        context.beginnings = tuple(beginning for beginning in context.beginnings if beginning.node is not node)
+    if node.path in context.activities.positions:
+        context.activities.cancel(context, node.path)
+    if node.afters:
+        context.timers = tuple(t for t in context.timers if t.kind != "after" or t.state != node.path)
+    if node.invokes:
+        context.invocations.cancel(context, node)
+
+
+def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ...]) -> None:
+    """`enterStates`, of one state; `done` are those whose end that is, the nearest first."""
+    at = context.at
+    for event, delay in node.afters:
+        context.timers = (*context.timers, Timer(event, at + delay, delay, event, None, node.path, "after"))
+    if node.entry:
+        _execute(context, node.entry, node)
+    if node.do or node.invokes:
+        context.beginnings += (Beginning(node, node.invokes, bool(node.do)),)
+    for ended, parent in enumerate(done):
+        context.raise_event(Event(f"done.state.{parent.name}", None if ended else _output(context, node), at))
+
+
+def _execute(context: ExecutionContext, block: CompiledBlock, node: StateNode) -> None:
+    """Do the actions of a block; the first that fails ends it (SCXML 4.9)."""
+    if node is not context.node:
+        context.evaluate_in(node)
+    where: NodePath = ()
+    try:
+        for act, where in block:  # noqa: B007 - `where` is where it failed
+            act(context)
+    except (ExpressionError, ActionError) as error:
+        context.raise_error(str(error), where)
+
+
+def _output(context: ExecutionContext, node: StateNode) -> Any:
+    """The data of a final state; none where it can't be had (SCXML 5.7.1)."""
+    if node.output is None:
+        return None
+    context.evaluate_in(node)
+    try:
+        return node.output(context.cached_scope or context.scope())
+    except ExpressionError as error:
+        assert node.state is not None  # only the document has none
+        context.raise_error(str(error), (*node.state.where, "output"))
+        return None

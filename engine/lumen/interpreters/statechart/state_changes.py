@@ -1,0 +1,90 @@
+"""The states that a microstep leaves and enters, in their order, and which are active meanwhile."""
+
+from collections.abc import Container, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from typing import NamedTuple
+
+from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.state_sets import in_final
+from lumen.language.machines import StateKind
+
+
+class StateChange(NamedTuple):
+    """One state that is left or entered, and what counts as active (`In`) while its actions run.
+
+    `done` are the states whose end its entry brings about, the nearest first.
+    """
+
+    node: StateNode
+    active: Container[str]
+    done: tuple[StateNode, ...] = ()
+
+
+class ActiveView:
+    """What is active, by name, in the middle of a microstep: `before` it, and what was left or entered so far.
+
+    It needs no set of its own: a microstep through a thousand regions has a thousand views.
+    """
+
+    __slots__ = ("before", "entering", "order", "place")
+
+    def __init__(self, before: frozenset[str], order: Mapping[str, int], place: int, entering: bool) -> None:
+        self.before, self.order, self.place, self.entering = before, order, place, entering
+
+    def __contains__(self, name: object) -> bool:
+        place = self.order.get(str(name))
+        if place is None:
+            return name in self.before
+        return place <= self.place if self.entering else place >= self.place
+
+
+def exits(left: AbstractSet[StateNode], active: AbstractSet[StateNode]) -> tuple[StateChange, ...]:
+    """The states to leave in exit order, but for those without anything to do (`exitStates`)."""
+    way = exit_order(left)
+    before, order = names_of(active), _order(way)
+    return tuple(
+        StateChange(node, ActiveView(before, order, i, False)) for i, node in enumerate(way) if node.exit or node.busy
+    )
+
+
+def entries(entered: AbstractSet[StateNode], staying: AbstractSet[StateNode]) -> tuple[StateChange, ...]:
+    """The states to enter in entry order, but for those without anything to do (`enterStates`)."""
+    way = entry_order(entered)
+    active, before, order = set(staying), names_of(staying), _order(way)
+    changes = []
+    for place, node in enumerate(way):
+        active.add(node)
+        done = _done(node, active)
+        if node.entry or node.busy or done:
+            changes.append(StateChange(node, ActiveView(before, order, place, True), done))
+    return tuple(changes)
+
+
+def exit_order(nodes: AbstractSet[StateNode]) -> list[StateNode]:
+    """Children before their parents, the last in the document first (`exitOrder`)."""
+    return sorted(nodes, key=lambda node: -node.index)
+
+
+def entry_order(nodes: AbstractSet[StateNode]) -> list[StateNode]:
+    """Parents before their children, in document order (`entryOrder`)."""
+    return sorted(nodes, key=lambda node: node.index)
+
+
+def names_of(nodes: AbstractSet[StateNode]) -> frozenset[str]:
+    """Everything that `In()` says true to: paths and aliases."""
+    return frozenset(name for node in nodes for name in (node.path, node.name) if name)
+
+
+def _order(way: Sequence[StateNode]) -> dict[str, int]:
+    return {name: place for place, node in enumerate(way) for name in (node.path, node.name) if name}
+
+
+def _done(node: StateNode, active: AbstractSet[StateNode]) -> tuple[StateNode, ...]:
+    """The states whose end it is that `node` was entered: its parent, and a parallel state around that."""
+    parent = node.parent
+    if node.kind is not StateKind.FINAL or parent is None:
+        return ()
+    outer = parent.parent
+    if outer and outer.kind is StateKind.PARALLEL and in_final(outer, active):
+        return parent, outer
+    return (parent,)
