@@ -23,7 +23,7 @@ def walked(
 
 def found(exploration: Exploration) -> list[tuple[str, str, int]]:
     """Each finding: its kind, its state, and the moves of the way there."""
-    return [(f.kind, f.state, len(f.way) - 1) for f in exploration.findings]
+    return [(f.kind, f.state, len(f.path) - 1) for f in exploration.findings]
 
 
 def test_a_ring_is_well() -> None:
@@ -57,7 +57,7 @@ def test_what_is_awaited_ends_well_and_badly() -> None:
     }
     [finding] = walked(states).findings
     assert (finding.kind, finding.state) == ("dead-end", "stuck")
-    assert [stay.move.kind for stay in finding.way if stay.move] == ["event", "failed"]
+    assert [stay.stimulus.kind for stay in finding.path if stay.stimulus] == ["event", "failed"]
 
 
 def test_a_do_that_nobody_awaits_the_end_of_is_a_dead_end() -> None:

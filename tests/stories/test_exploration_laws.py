@@ -41,11 +41,11 @@ def regions(draw: st.DrawFn) -> Any:
 
 
 def walked(machine: Machine) -> StateSpaceSearch:
-    walk = StateSpaceSearch(machine, EVENTS)
-    for _ in walk.go(5000):
+    search = StateSpaceSearch(machine, EVENTS)
+    for _ in search.expand(5000):
         pass
-    assert not walk.waiting
-    return walk
+    assert not search.waiting
+    return search
 
 
 @settings(max_examples=60, deadline=None)
@@ -59,6 +59,6 @@ def test_keys_that_can_not_matter_any_more_do_not_matter(one: Any, other: Any) -
         full = walked(Machine.from_dict(data))
     finally:
         Liveness.of = original  # type: ignore[method-assign]
-    assert {s.names for s in lively.spots.values()} == {s.names for s in full.spots.values()}
+    assert {s.names for s in lively.nodes.values()} == {s.names for s in full.nodes.values()}
     assert lively.taken == full.taken
-    assert len(lively.spots) <= len(full.spots)
+    assert len(lively.nodes) <= len(full.nodes)

@@ -48,7 +48,7 @@ def explored(
 ) -> Explored:
     """Explore a behaviour of the project under every event that its routes, its robot and its file declare.
 
-    `tell` hears how far it is: how many configurations were walked, and how many are in sight.
+    `tell` hears how far it is: how many configurations were explored, and how many are in sight.
     """
     began = time.perf_counter()
     machine = project.behaviors[behavior]
@@ -58,7 +58,7 @@ def explored(
         "language": project.languages[0],
         "epoch": time_of_day(MORNING),
     }
-    found = explore(machine, outside(project, machine), tell=tell or (lambda *_: None), **options)
+    found = explore(machine, outside(project, machine), progress=tell or (lambda *_: None), **options)
     findings = tuple(
         ExploredFinding(f.kind, _place(project, behavior, f.state), f.message, story(project, behavior, f))
         for f in found.findings
@@ -74,31 +74,34 @@ def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
 
 def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:
     """A story file that leads to what was found."""
-    robot = dict(_broken(finding.way))
+    robot = dict(_broken(finding.path))
     lines = [HEAD, f"title: {_flow(finding.message)}"]
     lines += [f"behavior: {_flow(behavior)}"] if behavior != project.behavior else []
     lines += [f"robot: {_flow(robot)}"] if robot else []
-    worked = {_verb(s.move.command) for s in finding.way if s.move and s.move.kind is StimulusKind.DONE} & robot.keys()
+    stimuli = [step.stimulus for step in finding.path if step.stimulus]
+    worked = {_verb(s.command) for s in stimuli if s.kind is StimulusKind.DONE} & robot.keys()
     lines += [
         f"# On this way `{verb}` works at first; a story can only let it fail from the beginning."
         for verb in sorted(worked)
     ]
-    return "\n".join([*lines, "steps:", *(f"  - {step}" for step in _steps(project, finding.way))]) + "\n"
+    return "\n".join([*lines, "steps:", *(f"  - {step}" for step in _steps(project, finding.path))]) + "\n"
 
 
-def _steps(project: Project, way: tuple[PathStep, ...]) -> Iterator[str]:
-    yield _expect(way[0].states, (), {})
-    for before, stay in pairwise(way):
-        move = stay.move
-        assert move is not None  # only the first stay has none
-        changed = stay.states != before.states
-        if move.kind is StimulusKind.EVENT:
-            yield _happens(project, move.event.name, move.event.data)
-        if move.kind is StimulusKind.TIME and not changed:
-            yield f"wait: {move.waited:g}s"
+def _steps(project: Project, path: tuple[PathStep, ...]) -> Iterator[str]:
+    yield _expect(path[0].states, (), {})
+    for before, step in pairwise(path):
+        stimulus = step.stimulus
+        assert stimulus is not None  # only the first step has none
+        changed = step.states != before.states
+        if stimulus.kind is StimulusKind.EVENT:
+            yield _happens(project, stimulus.event.name, stimulus.event.data)
+        if stimulus.kind is StimulusKind.TIME and not changed:
+            yield f"wait: {stimulus.waited:g}s"
         elif changed:
-            within = {StimulusKind.TIME: f"{move.waited + 1:g}s", StimulusKind.DONE: ROBOT_TIMEOUT}.get(move.kind)
-            yield _expect(stay.states, before.states, {"within": within} if within else {})
+            within = {StimulusKind.TIME: f"{stimulus.waited + 1:g}s", StimulusKind.DONE: ROBOT_TIMEOUT}.get(
+                stimulus.kind
+            )
+            yield _expect(step.states, before.states, {"within": within} if within else {})
 
 
 def _happens(project: Project, name: str, data: Any) -> str:
@@ -117,13 +120,13 @@ def _expect(states: tuple[str, ...], before: tuple[str, ...], more: Mapping[str,
     return f"expect: {_flow({'state': fresh[0] if len(fresh) == 1 else fresh, **more})}"
 
 
-def _broken(way: tuple[PathStep, ...]) -> Iterator[tuple[str, str]]:
+def _broken(path: tuple[PathStep, ...]) -> Iterator[tuple[str, str]]:
     """What the robot has to do badly on the way: verbs that fail, and verbs that hang while a timer ends."""
-    for stay in way:
-        if stay.move and stay.move.kind is StimulusKind.FAILED:
-            yield _verb(stay.move.command), "fails"
-        elif stay.move:
-            yield from ((_verb(command), "hangs") for command in stay.move.pending)
+    for step in path:
+        if step.stimulus and step.stimulus.kind is StimulusKind.FAILED:
+            yield _verb(step.stimulus.command), "fails"
+        elif step.stimulus:
+            yield from ((_verb(command), "hangs") for command in step.stimulus.pending)
 
 
 def _verb(command: object) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from lumen.app.causes import innermost, reason_of, why
 from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.inside import unfolded
+from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.machines import MachineDefinition
@@ -37,7 +37,7 @@ class Narrator(Observer):
         return f"{len(self.states)} states, {self.said} texts, motions: {', '.join(self.played) or 'none'}"
 
     def stepped(self, step: Step) -> None:
-        for prefix, machine, part in unfolded(self._machine(), step):
+        for prefix, machine, part in flattened_steps(self._machine(), step):
             for error in part.raised:
                 if error.name.startswith("error."):
                     self.line("trouble", f"{error.name}: {reason_of(error)}".rstrip(": "))

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lumen.interpreters.statechart.types import fits, refusal, type_checks
+from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport

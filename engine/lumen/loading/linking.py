@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Generic, TypeVar
 
-from lumen.interpreters.statechart.types import fits, refusal, type_checks
+from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import Invoke, MachineDefinition

@@ -4,8 +4,8 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.interpreters.statechart.inside import ID_SEPARATOR, meant
-from lumen.interpreters.statechart.types import fits, refusal, type_checks
+from lumen.interpreters.statechart.nesting import ID_SEPARATOR, resolutions
+from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect, Happen, SendMessage, Story, TouchSensor
@@ -66,9 +66,13 @@ class _Script:
 
     def state(self, path: NodePath, name: str) -> None:
         """A state as `configuration` calls it, by its id where it has one; `quiz/ask` of what is invoked as `quiz`."""
-        if self.machine is None or self._lost(name) or any(_has(*reading) for reading in meant(self.machine, name)):
+        if (
+            self.machine is None
+            or self._lost(name)
+            or any(_has(*reading) for reading in resolutions(self.machine, name))
+        ):
             return
-        machine, rest = next(meant(self.machine, name))
+        machine, rest = next(resolutions(self.machine, name))
         state = machine.states.get(rest)
         pruned = self.draft.report("behaviors", self.behavior).pruned
         if any((*s.where, "id") in pruned and s.path.endswith(rest) for s in machine.states.values()):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.inside import ran
+from lumen.interpreters.statechart.nesting import behavior_of
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.language.projects import Project
@@ -36,7 +36,7 @@ class Coverage:
         self.entered.setdefault(behavior, set()).update(step.entered)
         self.taken.setdefault(behavior, set()).update(t.where for t in step.transitions)
         for id, inner in step.invoked:
-            self.note(ran(self.project.behaviors[behavior], id, inner), inner)
+            self.note(behavior_of(self.project.behaviors[behavior], id, inner), inner)
 
     @property
     def states(self) -> tuple[int, int]:

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from lumen.interpreters.migration import MigrationPlan, Refusal, plan
 from lumen.interpreters.statechart import Snapshot, initial, retimed
-from lumen.interpreters.statechart.answers import outside
-from lumen.interpreters.statechart.types import fits, type_checks
+from lumen.interpreters.statechart.command_ids import outer_id
+from lumen.interpreters.statechart.type_checks import fits, type_checks
 from lumen.interpreters.statechart.values import awaited
 from lumen.language.commands import Cancel, Command
 from lumen.language.events import Event
@@ -65,4 +65,4 @@ def _awaited(snapshot: Snapshot) -> Iterator[str]:
     for position in snapshot.doing.values():
         yield from (id for id in awaited(position) if id.startswith("d"))
     for owner, child in snapshot.invoked.items():
-        yield from (outside(id, owner) for id in _awaited(child.snapshot))
+        yield from (outer_id(id, owner) for id in _awaited(child.snapshot))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, Protocol, assert_never
 
 from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.inside import active, entered
+from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
@@ -153,7 +153,7 @@ class StoryPlayer(Observer):
         self._since = now
 
     def stepped(self, step: Step) -> None:
-        self.see(active(step.snapshot), entered(step), step.snapshot.context)
+        self.see(active_names(step.snapshot), entered_names(step), step.snapshot.context)
 
     def see(self, states: frozenset[str], entered: Iterable[str], context: Mapping[str, Any]) -> None:
         """These states are active now, after those were entered, and that is what the behaviour remembers."""

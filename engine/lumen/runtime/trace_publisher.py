@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.errors import BusError
 from lumen.interpreters.statechart import Snapshot, Step
-from lumen.interpreters.statechart.inside import active, entered
+from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.language.commands import Command, Log, Publish, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -31,7 +31,7 @@ class TracePublisher(Observer):
         self._context: dict[str, Any] | None = None
 
     def stepped(self, step: Step) -> None:
-        came, gone, context = list(entered(step)), list(step.exited), dict(step.snapshot.context)
+        came, gone, context = list(entered_names(step)), list(step.exited), dict(step.snapshot.context)
         if not came and not gone and context == self._context:
             return
         self._context = context
@@ -71,4 +71,4 @@ class TracePublisher(Observer):
 
 
 def _standing(snapshot: Snapshot) -> dict[str, Any]:
-    return {"states": sorted(active(snapshot)), "context": dict(snapshot.context)}
+    return {"states": sorted(active_names(snapshot)), "context": dict(snapshot.context)}

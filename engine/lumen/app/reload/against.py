@@ -6,7 +6,7 @@ from lumen.app.reload.migration_preview import MigrationPreview, preview
 from lumen.interpreters.changes import live
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.migration.identity import Identity
-from lumen.interpreters.statechart.types import type_checks, type_name
+from lumen.interpreters.statechart.type_checks import type_checks, type_name
 from lumen.language.diagnostics import Diagnostic, NodePath, Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project

@@ -28,7 +28,7 @@ class MigrationOutcome:
 
 @dataclass(frozen=True)
 class MigrationPreview:
-    """The fates of all configurations walked; `waiting` are those that the bound left out."""
+    """The fates of all configurations explored; `waiting` are those that the bound left out."""
 
     rows: tuple[MigrationOutcome, ...]
     configurations: int
@@ -39,17 +39,17 @@ def preview(old: Project, new: Project, bound: int, tell: Callable[[int, int], N
     """The fate of every configuration of the old behaviour, those of the same states and fate counted together."""
     machine = old.machine
     language, epoch = old.languages[0], time_of_day(MORNING)
-    walk = StateSpaceSearch(machine, outside(old, machine), language=language, epoch=epoch)
-    for walked in walk.go(bound):
-        tell(walked, walk.waiting)
+    search = StateSpaceSearch(machine, outside(old, machine), language=language, epoch=epoch)
+    for explored in search.expand(bound):
+        tell(explored, search.waiting)
     found: dict[tuple[object, ...], MigrationOutcome] = {}
-    for spot in walk.spots.values():
-        fate = outcome_of(old, new, spot.snapshot)
+    for node in search.nodes.values():
+        fate = outcome_of(old, new, node.snapshot)
         key = (fate.states, fate.outcome, fate.told, fate.after)
         found[key] = replace(fate, count=found[key].count + 1 if key in found else 1)
     order = ("refused", "waits", "moved", "kept")
     rows = sorted(found.values(), key=lambda fate: order.index(fate.outcome))
-    return MigrationPreview(tuple(rows), len(walk.spots), walk.waiting)
+    return MigrationPreview(tuple(rows), len(search.nodes), search.waiting)
 
 
 def outcome_of(old: Project, new: Project, snapshot: Snapshot) -> MigrationOutcome:

@@ -35,9 +35,9 @@ def block_changes(
         if one is not None and other is not None:
             yield from _action(one, other, title, when, file)
         elif other is not None:
-            yield Change("action", title, f"{title} {told(other)}{when} as well", Risk.BEHAVIOR, file)
+            yield Change("action", title, f"{title} {described(other)}{when} as well", Risk.BEHAVIOR, file)
         elif one is not None:
-            yield Change("action", title, f"{title} no longer {told(one)}{when}", Risk.BEHAVIOR, file)
+            yield Change("action", title, f"{title} no longer {described(one)}{when}", Risk.BEHAVIOR, file)
 
 
 def paired(old: Sequence[T], new: Sequence[T], sort: Callable[[T], object]) -> Iterator[Pair[T]]:
@@ -85,7 +85,7 @@ def _action(old: Action, new: Action, title: str, when: str, file: str) -> Itera
         case Parallel(before), Parallel(after):
             yield from block_changes(before, after, title, when, file)
         case _ if old != new:
-            yield Change("action", title, f"{title} now {told(new)}{when}", Risk.BEHAVIOR, file)
+            yield Change("action", title, f"{title} now {described(new)}{when}", Risk.BEHAVIOR, file)
 
 
 def _text(language: str, texts: Sequence[object] | None, title: str, when: str, file: str) -> Change:
@@ -96,7 +96,7 @@ def _text(language: str, texts: Sequence[object] | None, title: str, when: str, 
     return Change("text", title, f"{title} says {said}{when} now{spoken}", Risk.COSMETIC, file)
 
 
-def told(action: Action) -> str:
+def described(action: Action) -> str:
     """What an action does, as the end of a sentence."""
     match action:
         case SayText(texts):

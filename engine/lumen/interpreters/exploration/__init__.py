@@ -1,6 +1,6 @@
-"""Walks a behaviour through everything that can happen, and tells where it would never get out again.
+"""Explores a behaviour through everything that can happen, and tells where it would never get out again.
 
-What counts as one configuration is said in `abstraction`, what can happen in `moves`, what events carry in `samples`.
+What counts as one configuration is said in `abstraction`, what can happen in `stimuli`, what events carry in `samples`.
 """
 
 from collections.abc import Callable, Mapping
@@ -20,7 +20,7 @@ MAX_CONFIGURATIONS = 10_000
 
 @dataclass(frozen=True)
 class Exploration:
-    """What came of a walk; `waiting` are configurations that its bound left out.
+    """What came of a search; `waiting` are configurations that its bound left out.
 
     `never_entered` and `never_taken` are states and transitions that it did not come upon: what it does not see, or
     what can't be.
@@ -46,24 +46,24 @@ def explore(
     home: str = "",
     language: str = "",
     epoch: float = 0.0,
-    tell: Callable[[int, int], None] = lambda walked, waiting: None,
+    progress: Callable[[int, int], None] = lambda expanded, waiting: None,
 ) -> Exploration:
-    """Walk every configuration that can be reached, up to `bound` of them.
+    """Explore every configuration that can be reached, up to `bound` of them.
 
     `events` are those that may come from outside, each with the JSON Schema of its data. `home` is the state to come
     back to; without it, each state of the beginning that has others beside it. What the bound left out may lead
-    anywhere: nothing is found that depends on it. `tell` hears how many
-    configurations were walked and how many are in sight, every now and then.
+    anywhere: nothing is found that depends on it. `progress` is called with how many configurations were explored and
+    how many are in sight.
     """
-    walk = StateSpaceSearch(machine, events, language=language, epoch=epoch)
-    for walked in walk.go(bound):
-        tell(walked, walk.waiting)
+    search = StateSpaceSearch(machine, events, language=language, epoch=epoch)
+    for expanded in search.expand(bound):
+        progress(expanded, search.waiting)
     states = (s for s in machine.states.values() if s.path and s.kind is not machines.StateKind.HISTORY)
     return Exploration(
-        tuple(findings(machine, walk, home)),
-        walk.walked,
-        walk.steps,
-        walk.waiting,
-        tuple(s.path for s in states if s.name not in walk.entered),
-        tuple(t for s in machine.states.values() for t in s.transitions if t.where not in walk.taken),
+        tuple(findings(machine, search, home)),
+        search.expanded,
+        search.steps,
+        search.waiting,
+        tuple(s.path for s in states if s.name not in search.entered),
+        tuple(t for s in machine.states.values() for t in s.transitions if t.where not in search.taken),
     )

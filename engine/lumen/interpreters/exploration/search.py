@@ -1,4 +1,4 @@
-"""The walk through everything that can happen, the likeliest ways first."""
+"""The search through everything that can happen, the likeliest paths first (uniform cost search)."""
 
 from collections.abc import Iterator, Mapping
 from heapq import heappop, heappush
@@ -8,7 +8,7 @@ from lumen.errors import LumenError
 from lumen.interpreters.exploration.abstraction import Abstraction, ConfigurationKey
 from lumen.interpreters.exploration.stimuli import Stimulus, StimulusFinder
 from lumen.interpreters.statechart import Snapshot, Step, initial, step
-from lumen.interpreters.statechart.answers import answer_of
+from lumen.interpreters.statechart.command_ids import answer_of
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
@@ -16,45 +16,45 @@ from lumen.language.machines import MachineDefinition
 
 
 class SearchNode:
-    """A configuration come upon: one snapshot that stands for it, the cheapest way to it, and where it leads.
+    """A configuration that was found: one snapshot that stands for it, the cheapest path to it, and where it leads.
 
-    `restless` says how the machine never comes to rest after the move `endless`.
+    `restless` says how the machine never comes to rest after the stimulus `endless`.
     """
 
-    __slots__ = ("before", "commands", "cost", "endless", "exits", "move", "restless", "snapshot", "walked")
+    __slots__ = ("commands", "cost", "endless", "expanded", "parent", "restless", "snapshot", "stimulus", "successors")
 
     def __init__(
         self,
         snapshot: Snapshot,
         commands: Mapping[str, BodyCommand],
         cost: int,
-        before: "SearchNode | None",
-        move: Stimulus | None,
+        parent: "SearchNode | None",
+        stimulus: Stimulus | None,
     ) -> None:
         self.snapshot, self.commands, self.cost = snapshot, commands, cost
-        self.before, self.move = before, move
-        self.exits: list[SearchNode] = []
+        self.parent, self.stimulus = parent, stimulus
+        self.successors: list[SearchNode] = []
         self.restless = ""
         self.endless: Stimulus | None = None
-        self.walked = False
+        self.expanded = False
 
     @property
     def names(self) -> frozenset[str]:
         """The active states."""
         return self.snapshot.configuration
 
-    def way(self) -> list["SearchNode"]:
-        """The spots on the way here, this one included."""
-        spot: SearchNode | None = self
+    def path(self) -> list["SearchNode"]:
+        """The nodes on the path here, this one included."""
+        node: SearchNode | None = self
         found = []
-        while spot:
-            found.append(spot)
-            spot = spot.before
+        while node:
+            found.append(node)
+            node = node.parent
         return found[::-1]
 
 
 class StateSpaceSearch:
-    """Walks a machine up to so many configurations; `spots` are those come upon, in the order they were.
+    """Explores a machine up to so many configurations; `nodes` are those found, in that order.
 
     `events` are those that may come from outside, each with the JSON Schema of its data.
     """
@@ -63,94 +63,94 @@ class StateSpaceSearch:
         self, machine: MachineDefinition, events: Mapping[str, Any], *, language: str = "", epoch: float = 0.0
     ) -> None:
         self._machine = machine
-        self._moves = StimulusFinder(machine, events)
+        self._stimuli = StimulusFinder(machine, events)
         self._abstraction = Abstraction(machine)
         self._planner = compiled(machine).planner
-        self.spots: dict[ConfigurationKey, SearchNode] = {}
+        self.nodes: dict[ConfigurationKey, SearchNode] = {}
         self.steps = 0
-        self.walked = 0
+        self.expanded = 0
         self.taken: set[NodePath] = set()
         self.entered: set[str] = set()
         self._waiting: list[tuple[int, int, SearchNode]] = []
         first = initial(machine, language=language, epoch=epoch)
-        self.first = self._arrive(first, None, None)
+        self.first = self._reach(first, None, None)
 
     @property
     def waiting(self) -> int:
-        """How many configurations were come upon and not walked from."""
-        return len(self.spots) - self.walked
+        """How many configurations were found and not expanded."""
+        return len(self.nodes) - self.expanded
 
-    def go(self, bound: int) -> Iterator[int]:
-        """Walk on until there is nowhere to go, or from so many configurations; yields their number."""
-        while self._waiting and self.walked < bound:
-            cost, _, spot = heappop(self._waiting)
-            if not spot.walked and cost == spot.cost:
-                spot.walked = True
-                self.walked += 1
-                self._leave(spot)
-                yield self.walked
+    def expand(self, bound: int) -> Iterator[int]:
+        """Expand nodes, the cheapest first, until none is left or so many are; yields their number."""
+        while self._waiting and self.expanded < bound:
+            cost, _, node = heappop(self._waiting)
+            if not node.expanded and cost == node.cost:
+                node.expanded = True
+                self.expanded += 1
+                self._expand(node)
+                yield self.expanded
 
-    def finished(self, spot: SearchNode) -> bool:
+    def finished(self, node: SearchNode) -> bool:
         """Whether the machine has come to its end there."""
-        return self._planner.configuration(spot.names).finished
+        return self._planner.configuration(node.names).finished
 
-    def _leave(self, spot: SearchNode) -> None:
-        """Make every move there is from here."""
-        if self.finished(spot):
+    def _expand(self, node: SearchNode) -> None:
+        """Find out where everything that can happen here leads."""
+        if self.finished(node):
             return
-        for move in self._moves.of(spot.snapshot, spot.commands):
+        for stimulus in self._stimuli.of(node.snapshot, node.commands):
             self.steps += 1
             try:
-                taken = step(self._machine, spot.snapshot, move.event)
+                taken = step(self._machine, node.snapshot, stimulus.event)
             except LumenError as error:
-                spot.endless = spot.endless or move
-                spot.restless = spot.restless or str(error)
+                node.endless = node.endless or stimulus
+                node.restless = node.restless or str(error)
                 continue
-            if taken.snapshot is not spot.snapshot:
-                spot.exits.append(self._arrive(taken, spot, move))
+            if taken.snapshot is not node.snapshot:
+                node.successors.append(self._reach(taken, node, stimulus))
 
-    def _arrive(self, taken: Step, before: SearchNode | None, move: Stimulus | None) -> SearchNode:
+    def _reach(self, taken: Step, parent: SearchNode | None, stimulus: Stimulus | None) -> SearchNode:
         self.taken.update(t.where for t in taken.transitions)
         self.entered.update(taken.entered)
-        cost = (before.cost if before else 0) + (move.cost if move else 0)
+        cost = (parent.cost if parent else 0) + (stimulus.cost if stimulus else 0)
         key = self._abstraction.key(taken.snapshot)
-        spot = self.spots.get(key)
-        if spot is None or (cost < spot.cost and not spot.walked):
-            commands = _still(before.commands if before else {}, taken.commands, move)
-            if spot is None:
-                spot = self.spots[key] = SearchNode(taken.snapshot, commands, cost, before, move)
+        node = self.nodes.get(key)
+        if node is None or (cost < node.cost and not node.expanded):
+            commands = _still(parent.commands if parent else {}, taken.commands, stimulus)
+            if node is None:
+                node = self.nodes[key] = SearchNode(taken.snapshot, commands, cost, parent, stimulus)
             else:
-                spot.snapshot, spot.commands, spot.cost = taken.snapshot, commands, cost
-                spot.before, spot.move = before, move
-            heappush(self._waiting, (cost, len(self.spots) + self.steps, spot))
-        return spot
+                node.snapshot, node.commands, node.cost = taken.snapshot, commands, cost
+                node.parent, node.stimulus = parent, stimulus
+            heappush(self._waiting, (cost, len(self.nodes) + self.steps, node))
+        return node
 
 
 def _still(
-    commands: Mapping[str, BodyCommand], started: tuple[Command, ...], move: Stimulus | None
+    commands: Mapping[str, BodyCommand], started: tuple[Command, ...], stimulus: Stimulus | None
 ) -> dict[str, BodyCommand]:
     """The awaited commands by id, without the one just answered."""
-    answer = answer_of(move.event) if move else None
+    answer = answer_of(stimulus.event) if stimulus else None
     kept = {id: c for id, c in commands.items() if not (answer and id == answer.id)}
     return kept | {c.id: c.command for c in started if isinstance(c, Start) and c.id.startswith("d")}
 
 
-def reaching(spots: list[SearchNode], goals: set[int], *, inside: bool = False) -> set[int]:
-    """The spots (by identity) from which one of the goals can be reached.
+def reaching(nodes: list[SearchNode], goals: set[int], *, inside: bool = False) -> set[int]:
+    """The nodes (by identity) from which one of the goals can be reached.
 
-    With `inside` only ways count on which the active states stay the same.
+    With `inside` only paths count on which the active states stay the same.
     """
     before: dict[int, list[SearchNode]] = {}
-    for spot in spots:
-        for exit in spot.exits:
-            if not inside or exit.names == spot.names:
-                before.setdefault(id(exit), []).append(spot)
+    for node in nodes:
+        for successor in node.successors:
+            if not inside or successor.names == node.names:
+                before.setdefault(id(successor), []).append(node)
     found, ahead = set(goals), list(goals)
     while ahead:
-        for spot in before.get(ahead.pop(), ()):
-            if id(spot) not in found:
-                found.add(id(spot))
-                ahead.append(id(spot))
+        for node in before.get(ahead.pop(), ()):
+            if id(node) not in found:
+                found.add(id(node))
+                ahead.append(id(node))
     return found
 
 

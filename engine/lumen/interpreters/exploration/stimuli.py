@@ -10,7 +10,7 @@ from lumen.interpreters.exploration.samples import samples
 from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, names, unparse
 from lumen.interpreters.expressions.tree import children
 from lumen.interpreters.statechart import Awaiting, Fork, Position, Snapshot, Timer, Within
-from lumen.interpreters.statechart.answers import outside
+from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
 from lumen.language.commands import BodyCommand
 from lumen.language.events import Event
@@ -20,7 +20,7 @@ FAILURE_REASON = "it does not work"
 
 
 class StimulusKind(StrEnum):
-    """What a move is: an event from outside, a timer's end, a command's end, or its failure."""
+    """What a stimulus is: an event from outside, a timer's end, a command's end, or its failure."""
 
     EVENT = "event"
     TIME = "time"
@@ -34,7 +34,7 @@ STIMULUS_COSTS: Mapping[StimulusKind, int] = {
     StimulusKind.TIME: 2,
     StimulusKind.FAILED: 7,
 }
-"""What a move costs on the way to the shortest story: a robot that does what it should costs nothing."""
+"""What a stimulus costs on the path to the shortest story: a robot that does what it should costs nothing."""
 
 OVERTAKING_COST = 5
 """What it costs besides that a timer ends while a command is under way, or before an earlier one."""
@@ -60,7 +60,7 @@ class Stimulus(NamedTuple):
 
 
 class StimulusFinder:
-    """Finds the moves; `events` are those that may come from outside, each with the JSON Schema of its data."""
+    """Finds the stimuli; `events` are those that may come from outside, each with the JSON Schema of its data."""
 
     def __init__(self, machine: MachineDefinition, events: Mapping[str, Any]) -> None:
         self._machine, self._events = machine, events
@@ -68,7 +68,7 @@ class StimulusFinder:
         self._known: dict[tuple[Any, ...], tuple[Any, ...]] = {}
 
     def of(self, snapshot: Snapshot, commands: Mapping[str, BodyCommand]) -> Iterator[Stimulus]:
-        """The moves of a snapshot; `commands` are those started so far, by id."""
+        """The stimuli of a snapshot; `commands` are those started so far, by id."""
         awaited = [id for id in _awaited(snapshot) if not _pause(id)]
         pending = tuple(commands[id] for id in awaited if id in commands)
         for id in awaited:
@@ -152,7 +152,7 @@ def _next(snapshot: Snapshot) -> Iterator[Timer]:
         if timer.kind == "send" or not any(t.delay < timer.delay for t in around):
             yield timer
     for owner, child in snapshot.invoked.items():
-        yield from (timer._replace(id=outside(timer.id, owner)) for timer in _next(child.snapshot))
+        yield from (timer._replace(id=outer_id(timer.id, owner)) for timer in _next(child.snapshot))
 
 
 def _within(path: str, outer: str) -> bool:
@@ -164,7 +164,7 @@ def _awaited(snapshot: Snapshot) -> Iterator[str]:
     for position in snapshot.doing.values():
         yield from _ids(position)
     for owner, child in snapshot.invoked.items():
-        yield from (outside(id, owner) for id in _awaited(child.snapshot))
+        yield from (outer_id(id, owner) for id in _awaited(child.snapshot))
 
 
 def _ids(position: Position | None) -> Iterator[str]:

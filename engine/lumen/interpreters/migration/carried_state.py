@@ -8,7 +8,7 @@ from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.statechart.chart import Chart, StateNode
 from lumen.interpreters.statechart.history import History
 from lumen.interpreters.statechart.state_sets import EntrySet, StateSets
-from lumen.interpreters.statechart.types import fits, type_name
+from lumen.interpreters.statechart.type_checks import fits, type_name
 from lumen.interpreters.statechart.values import Timer
 from lumen.language.machines import StateKind
 

@@ -7,8 +7,8 @@ from lumen.interpreters.migration import carried_state
 from lumen.interpreters.migration.placing import Placement, Unplaced, is_legal
 from lumen.interpreters.migration.situation import MigrationOptions, Situation, invoked_behavior
 from lumen.interpreters.migration.verdicts import MigrationPlan, MigrationVerdict, Refusal
-from lumen.interpreters.statechart.answers import labelled
 from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.command_ids import outer_command
 from lumen.interpreters.statechart.execution_context import Beginning, ExecutionContext
 from lumen.interpreters.statechart.invocations import Invocations, output_of
 from lumen.interpreters.statechart.macrostep import complete
@@ -64,7 +64,7 @@ class _Migration:
             verdict = self._adopt(id, child)
             if not isinstance(verdict, MigrationPlan):
                 return verdict
-            leaving += tuple(labelled(command, id) for command in verdict.leaving)
+            leaving += tuple(outer_command(command, id) for command in verdict.leaving)
             self.notes += verdict.notes
         planner = self.new.planner
         microstep(after, planner.passage(after.configuration, set(), self.placement.entered, after.history))
@@ -135,7 +135,7 @@ class _Migration:
         )
         verdict = migrated(old, new, lent, self.situation.options._replace(at=after.at, languages=()), behavior)
         if isinstance(verdict, MigrationPlan):
-            after.commands += tuple(labelled(command, id) for command in verdict.entering)
+            after.commands += tuple(outer_command(command, id) for command in verdict.entering)
             self.invocations.adopt(after, id, Invoked(owner.path, verdict.snapshot, child.commands), verdict.output)
         return verdict
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from lumen.interpreters.expressions import Scope, compile_guard
 from lumen.interpreters.statechart.blocks import CompiledBlock, compile_block, compile_value
 from lumen.interpreters.statechart.do_actions import CompiledAction, compile_do
-from lumen.interpreters.statechart.types import type_checks
+from lumen.interpreters.statechart.type_checks import type_checks
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
 

@@ -13,7 +13,7 @@ from lumen.interpreters.statechart.do_actions import (
     TimedWait,
 )
 from lumen.interpreters.statechart.json_cursor import JsonCursor
-from lumen.interpreters.statechart.types import TypeCheck, fits, refusal
+from lumen.interpreters.statechart.type_checks import TypeCheck, fits, refusal
 from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Invoked, Position, Snapshot, Timer, Within
 from lumen.language.machines import MachineDefinition, State, StateKind
 

@@ -1,6 +1,6 @@
 """What a machine hears from outside, sorted: timers that have ended, the robot's answers, and everything else."""
 
-from lumen.interpreters.statechart.answers import CommandAnswer, answer_of, inside
+from lumen.interpreters.statechart.command_ids import CommandAnswer, answer_of, inner_id
 from lumen.interpreters.statechart.execution_context import ExecutionContext
 from lumen.interpreters.statechart.macrostep import complete
 from lumen.interpreters.statechart.microstep import take_enabled
@@ -28,7 +28,7 @@ def _end_timer(context: ExecutionContext, event: Event) -> None:
     """A timer has ended, its own or an invoked behaviour's; one that is no longer there was cancelled."""
     ended = [t for t in context.timers if t.id == event.sendid and t.event == event.name]
     if not ended:
-        id, owner = inside(event.sendid)
+        id, owner = inner_id(event.sendid)
         if owner in context.invocations.children:
             context.invocations.deliver(context, owner, event._replace(sendid=id))
         return
@@ -45,7 +45,7 @@ def _end_timer(context: ExecutionContext, event: Event) -> None:
 def _answer(context: ExecutionContext, event: Event, answer: CommandAnswer) -> None:
     """What became of a command: the `do` that awaits it goes on or fails; nobody else hears of it."""
     kind, id, reason = answer
-    own, owner = inside(id)
+    own, owner = inner_id(id)
     if owner:
         _hand_down(context, event, kind, own, owner)
         return

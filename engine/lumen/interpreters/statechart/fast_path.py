@@ -15,7 +15,7 @@ from lumen.interpreters.statechart.blocks import compile_value
 from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
 from lumen.interpreters.statechart.plans import Candidates, Configuration, MicrostepPlan, MicrostepPlanner, make_room
 from lumen.interpreters.statechart.referenced_names import assigned_sources, referenced_names, sources_of
-from lumen.interpreters.statechart.types import TypeCheck
+from lumen.interpreters.statechart.type_checks import TypeCheck
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.actions import Assign
 from lumen.language.events import Event

@@ -6,14 +6,14 @@ from typing import Any
 
 from lumen.errors import LumenError, UsageError
 from lumen.interpreters.expressions import ExpressionError
-from lumen.interpreters.statechart.answers import labelled
 from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
+from lumen.interpreters.statechart.command_ids import outer_command
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine
 from lumen.interpreters.statechart.execution_context import ExecutionContext
 from lumen.interpreters.statechart.external_events import process
 from lumen.interpreters.statechart.macrostep import enter_machine, exit_machine
 from lumen.interpreters.statechart.microstep import MAX_MICROSTEPS
-from lumen.interpreters.statechart.types import checked
+from lumen.interpreters.statechart.type_checks import checked
 from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
 from lumen.language.events import Event
 
@@ -114,7 +114,7 @@ class Invocations:
     def _follow(self, context: ExecutionContext, id: str, step: Step) -> None:
         """Take over what a step asks for, and what was lent for it."""
         self.steps += ((id, step),)
-        context.commands += tuple(labelled(command, id) for command in step.commands)
+        context.commands += tuple(outer_command(command, id) for command in step.commands)
         _take_back(context, step.snapshot)
 
 

@@ -5,13 +5,13 @@ from math import inf
 from typing import Any
 
 from lumen.errors import LumenError, SnapshotError, UsageError
-from lumen.interpreters.statechart.answers import outside
+from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.external_events import process
 from lumen.interpreters.statechart.invocations import open_context
 from lumen.interpreters.statechart.macrostep import enter_machine
 from lumen.interpreters.statechart.microstep import MAX_MICROSTEPS
-from lumen.interpreters.statechart.types import checked
+from lumen.interpreters.statechart.type_checks import checked
 from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
@@ -69,7 +69,7 @@ def due(snapshot: Snapshot) -> Event | None:
     for owner, child in snapshot.invoked.items():
         event = due(child.snapshot)
         if event and (found is None or event.at < found.at):
-            found = event._replace(sendid=outside(event.sendid, owner))
+            found = event._replace(sendid=outer_id(event.sendid, owner))
     return found
 
 

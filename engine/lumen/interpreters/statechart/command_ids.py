@@ -30,22 +30,22 @@ def answer_of(event: Event) -> CommandAnswer | None:
     return CommandAnswer(kind, id, str(data.get("reason", "")) or kind)
 
 
-def outside(id: str, owner: str) -> str:
+def outer_id(id: str, owner: str) -> str:
     """What an id of the invoked behaviour `owner` is called outside of it."""
     return f"{id}@{owner}"
 
 
-def inside(id: str) -> tuple[str, str]:
+def inner_id(id: str) -> tuple[str, str]:
     """An id as the behaviour that was invoked knows it, and which that is; empty for one's own."""
     own, separator, owner = id.rpartition("@")
     return (own, owner) if separator else (id, "")
 
 
-def labelled(command: Command, owner: str) -> Command:
+def outer_command(command: Command, owner: str) -> Command:
     """A command of an invoked behaviour as it is called outside."""
     match command:
         case Start(id, wanted):
-            return Start(outside(id, owner), wanted)
+            return Start(outer_id(id, owner), wanted)
         case Cancel(id):
-            return Cancel(outside(id, owner))
+            return Cancel(outer_id(id, owner))
     return command

@@ -14,15 +14,17 @@ ID_SEPARATOR = "/"
 """Stands between the id of an `invoke` and a state of the behaviour that runs under it."""
 
 
-def active(snapshot: "Snapshot") -> frozenset[str]:
+def active_names(snapshot: "Snapshot") -> frozenset[str]:
     """The names of all active states, those of invoked behaviours included."""
     if not snapshot.invoked:
         return snapshot.configuration
-    inner = (f"{id}{ID_SEPARATOR}{name}" for id, child in snapshot.invoked.items() for name in active(child.snapshot))
+    inner = (
+        f"{id}{ID_SEPARATOR}{name}" for id, child in snapshot.invoked.items() for name in active_names(child.snapshot)
+    )
     return snapshot.configuration.union(inner)
 
 
-def innermost(machine: MachineDefinition, snapshot: "Snapshot") -> Iterator[str]:
+def innermost_names(machine: MachineDefinition, snapshot: "Snapshot") -> Iterator[str]:
     """The names of the active states that have none active within, invoked behaviours' after those of their host."""
     for state in machine.states.values():
         if state.name in snapshot.configuration and not any(
@@ -31,17 +33,17 @@ def innermost(machine: MachineDefinition, snapshot: "Snapshot") -> Iterator[str]
             yield state.name
     for id, child in snapshot.invoked.items():
         other = machine.invoked[_behavior(machine, child.state, id)]
-        yield from (f"{id}{ID_SEPARATOR}{name}" for name in innermost(other, child.snapshot))
+        yield from (f"{id}{ID_SEPARATOR}{name}" for name in innermost_names(other, child.snapshot))
 
 
-def entered(step: "Step") -> Iterator[str]:
+def entered_names(step: "Step") -> Iterator[str]:
     """The names of all states that a step entered, those of invoked behaviours included."""
     yield from step.entered
     for id, inner in step.invoked:
-        yield from (f"{id}{ID_SEPARATOR}{name}" for name in entered(inner))
+        yield from (f"{id}{ID_SEPARATOR}{name}" for name in entered_names(inner))
 
 
-def unfolded(
+def flattened_steps(
     machine: MachineDefinition, step: "Step", prefix: str = ""
 ) -> "Iterator[tuple[str, MachineDefinition, Step]]":
     """A step and those of the behaviours invoked in it, each with its machine, and `quiz/` before its states' names.
@@ -55,7 +57,7 @@ def unfolded(
     yield from _below(machine, compress(step.invoked, map(not_, early)), prefix)
 
 
-def ran(machine: MachineDefinition, id: str, step: "Step") -> str:
+def behavior_of(machine: MachineDefinition, id: str, step: "Step") -> str:
     """The behaviour of which a step is, among those that the machine invokes under that id."""
     behaviors = [invoke.behavior for state in machine.states.values() for invoke in state.invoke if invoke.id == id]
     names = {*step.entered, *step.exited, *step.snapshot.configuration}
@@ -63,12 +65,12 @@ def ran(machine: MachineDefinition, id: str, step: "Step") -> str:
     return next((b for b in behaviors if names <= known[b]), behaviors[0])
 
 
-def meant(machine: MachineDefinition, name: str) -> Iterator[tuple[MachineDefinition, str]]:
+def resolutions(machine: MachineDefinition, name: str) -> Iterator[tuple[MachineDefinition, str]]:
     """The machines that a name may be about, and the name there: `quiz/ask` is `ask` of what is invoked as `quiz`."""
     invokes = {(invoke.id, invoke.behavior) for state in machine.states.values() for invoke in state.invoke}
     for id, behavior in sorted(invokes):
         if name.startswith(id + ID_SEPARATOR) and behavior in machine.invoked:
-            yield from meant(machine.invoked[behavior], name.removeprefix(id + ID_SEPARATOR))
+            yield from resolutions(machine.invoked[behavior], name.removeprefix(id + ID_SEPARATOR))
     yield machine, name
 
 
@@ -76,7 +78,7 @@ def _below(
     machine: MachineDefinition, steps: "Iterable[tuple[str, Step]]", prefix: str
 ) -> "Iterator[tuple[str, MachineDefinition, Step]]":
     for id, step in steps:
-        yield from unfolded(machine.invoked[ran(machine, id, step)], step, f"{prefix}{id}{ID_SEPARATOR}")
+        yield from flattened_steps(machine.invoked[behavior_of(machine, id, step)], step, f"{prefix}{id}{ID_SEPARATOR}")
 
 
 def _behavior(machine: MachineDefinition, state: str, id: str) -> str:
