@@ -117,3 +117,8 @@ class MachineDefinition:
     @property
     def root(self) -> State:
         return self.states[""]
+
+    def invoked_behavior(self, path: str, id: str) -> str:
+        """The behaviour that the state at that path invokes under that id; empty for none."""
+        invokes = self.states[path].invoke if path in self.states else ()
+        return next((invoke.behavior for invoke in invokes if invoke.id == id), "")

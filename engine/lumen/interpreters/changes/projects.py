@@ -66,8 +66,8 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
     """What else lumen.yaml says."""
     for name, title in RESTART_FIELDS.items():
         if getattr(old, name) != getattr(new, name):
-            told = f"{title} changed: active from the next start on"
-            yield Change("fixed", name, told, Risk.RESTART, "lumen.yaml")
+            sentence = f"{title} changed: active from the next start on"
+            yield Change("fixed", name, sentence, Risk.RESTART, "lumen.yaml")
     for language in dict.fromkeys((*old.languages, *new.languages)):
         if (language in old.languages) != (language in new.languages):
             how = "added" if language in new.languages else "removed"

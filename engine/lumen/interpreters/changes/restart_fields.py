@@ -17,5 +17,5 @@ RESTART_FIELDS: Mapping[str, str] = {
 
 
 def live(old: Project, new: Project) -> Project:
-    """The new bundle as far as it can be active at once: what is `FIXED` is as in the old one."""
+    """The new bundle as far as it can be active at once: `RESTART_FIELDS` are as in the old one."""
     return replace(new, **{name: getattr(old, name) for name in RESTART_FIELDS})

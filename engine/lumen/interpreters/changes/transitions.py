@@ -16,7 +16,7 @@ def transition_changes(
     old: State, new: State, title: str, file: str, mapped: PathMapping, name: StateNaming
 ) -> Iterator[Change]:
     """The changes, trigger by trigger; `mapped` gives old paths their new names, `name` what a state is called."""
-    comparison = _Comparison(title, file, name)
+    comparison = _TransitionComparison(title, file, name)
     before = _by_trigger([replace(t, targets=mapped(t.targets), source=new.path) for t in old.transitions])
     after = _by_trigger(list(new.transitions))
     fewer, more = [k for k in before if k not in after], [k for k in after if k not in before]
@@ -33,7 +33,7 @@ def transition_changes(
             yield from comparison.candidates(before.get(trigger, []), after[trigger], trigger)
 
 
-class _Comparison:
+class _TransitionComparison:
     def __init__(self, title: str, file: str, name: StateNaming) -> None:
         self.title, self.file, self.name = title, file, name
 
@@ -54,8 +54,8 @@ class _Comparison:
         if old.targets != new.targets:
             yield self.change(f"{self.title} {self.leads(new)} {trigger}{_if(new)} now, not {self.to(old)}")
         elif old.guard != new.guard:
-            asked = f"if {code(new.guard.source)}" if new.guard else "whatever is so"
-            yield self.change(f"{self.title} {self.leads(new)} {trigger} {asked} now")
+            condition = f"if {code(new.guard.source)}" if new.guard else "whatever is so"
+            yield self.change(f"{self.title} {self.leads(new)} {trigger} {condition} now")
         if old.reenter != new.reenter:
             how = "is left and entered" if new.reenter else "stays active"
             yield self.change(f"{self.title} {how} {trigger} now")

@@ -5,7 +5,7 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lumen.interpreters.exploration.expression_uses import invoked_behavior, of_state
+from lumen.interpreters.exploration.expression_uses import of_state
 from lumen.interpreters.exploration.liveness import Liveness
 from lumen.interpreters.expressions.tree import FunctionCall, Literal, walk
 from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
@@ -52,7 +52,7 @@ class Abstraction:
         )
 
     def _child(self, id: str, child: Invoked) -> ConfigurationKey:
-        behavior = invoked_behavior(self._machine, child.state, id)
+        behavior = self._machine.invoked_behavior(child.state, id)
         return (id, behavior, self._inner[behavior].key(child.snapshot))
 
     def value(self, value: Any) -> Any:

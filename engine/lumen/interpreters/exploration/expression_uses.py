@@ -69,11 +69,6 @@ def relevant(machine: MachineDefinition) -> frozenset[str]:
         found |= read
 
 
-def invoked_behavior(machine: MachineDefinition, state: str, id: str) -> str:
-    """The behaviour that a state, by its path, invokes under that id."""
-    return next(invoke.behavior for invoke in machine.states[state].invoke if invoke.id == id)
-
-
 def _of(value: ComputedValue, key: str = "") -> Iterator[ExpressionUse]:
     if isinstance(value, Expression):
         if (tree := tree_of(value.source)) is not None:

@@ -5,13 +5,14 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.exploration.expression_uses import invoked_behavior, of_transition
+from lumen.interpreters.exploration.expression_uses import of_transition
 from lumen.interpreters.exploration.samples import samples
 from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, names, unparse
 from lumen.interpreters.expressions.tree import children
-from lumen.interpreters.statechart import Awaiting, Fork, Position, Snapshot, Timer, Within
+from lumen.interpreters.statechart import Snapshot, Timer
 from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
+from lumen.interpreters.statechart.values import awaited
 from lumen.language.commands import BodyCommand
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
@@ -20,7 +21,7 @@ FAILURE_REASON = "it does not work"
 
 
 class StimulusKind(StrEnum):
-    """What a stimulus is: an event from outside, a timer's end, a command's end, or its failure."""
+    """Which sort of thing happens: an event from outside, a timer's end, a command's end, or its failure."""
 
     EVENT = "event"
     TIME = "time"
@@ -43,7 +44,7 @@ OVERTAKING_COST = 5
 class Stimulus(NamedTuple):
     """Something that can happen; `event` is what the behaviour steps with.
 
-    `waited` [s] is how long it takes, `pending` what the robot is asked to do meanwhile; `command` is what is answered.
+    `waited` [s] is how long it takes, `pending` what the robot is doing meanwhile; `command` is what is answered.
     `overtaking` is a timer that ends before one that is due earlier.
     """
 
@@ -64,32 +65,32 @@ class StimulusFinder:
 
     def __init__(self, machine: MachineDefinition, events: Mapping[str, Any]) -> None:
         self._machine, self._events = machine, events
-        self._program = compiled(machine)
+        self._compiled = compiled(machine)
         self._known: dict[tuple[Any, ...], tuple[Any, ...]] = {}
 
     def of(self, snapshot: Snapshot, commands: Mapping[str, BodyCommand]) -> Iterator[Stimulus]:
         """The stimuli of a snapshot; `commands` are those started so far, by id."""
-        awaited = [id for id in _awaited(snapshot) if not _pause(id)]
-        pending = tuple(commands[id] for id in awaited if id in commands)
-        for id in awaited:
+        commanded = [id for id in _awaited(snapshot) if not _is_wait(id)]
+        pending = tuple(commands[id] for id in commanded if id in commands)
+        for id in commanded:
             yield Stimulus(StimulusKind.DONE, Event(f"done.command.{id}", None, snapshot.at), 0.0, commands.get(id))
         for timer in _next(snapshot):
             at = max(timer.due, snapshot.at)
             event = Event(timer.event, timer.data, at, timer.id)
-            hanging = () if _pause(timer.id) else pending
+            unanswered = () if _is_wait(timer.id) else pending
             overtaking = any(t.due < timer.due for t in snapshot.timers)
-            yield Stimulus(StimulusKind.TIME, event, at - snapshot.at, None, hanging, overtaking)
+            yield Stimulus(StimulusKind.TIME, event, at - snapshot.at, None, unanswered, overtaking)
         for name in self._events:
             yield from (
                 Stimulus(StimulusKind.EVENT, Event(name, data, snapshot.at)) for data in self._data(name, snapshot)
             )
-        for id in awaited:
+        for id in commanded:
             event = Event(f"error.command.{id}", {"reason": FAILURE_REASON}, snapshot.at)
             yield Stimulus(StimulusKind.FAILED, event, 0.0, commands.get(id))
 
     def _data(self, name: str, snapshot: Snapshot) -> tuple[Any, ...]:
         """Data of an event, one for each sort that the transitions that may hear it tell apart."""
-        heard = tuple(_heard(self._program, snapshot, name))
+        heard = tuple(_heard(self._compiled, snapshot, name))
         if not heard:
             return ()
         known = (name, *(id(transition) for _, transition in heard))
@@ -111,13 +112,13 @@ class StimulusFinder:
                     yield data
 
 
-def _heard(program: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[tuple[MachineDefinition, Transition]]:
+def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[tuple[MachineDefinition, Transition]]:
     """The transitions that an event of that name may select, here or in what is invoked."""
-    for group in program.planner.configuration(snapshot.configuration).candidates(name):
-        yield from ((program.chart.definition, transition.definition) for transition in group)
+    for group in machine.planner.configuration(snapshot.configuration).candidates(name):
+        yield from ((machine.chart.definition, transition.definition) for transition in group)
     for id, child in snapshot.invoked.items():
-        behavior = invoked_behavior(program.chart.definition, child.state, id)
-        yield from _heard(program.invoked[behavior], child.snapshot, name)
+        behavior = machine.chart.definition.invoked_behavior(child.state, id)
+        yield from _heard(machine.invoked[behavior], child.snapshot, name)
 
 
 def _known_of_events(tree: ExpressionNode) -> Iterator[ExpressionNode]:
@@ -162,22 +163,11 @@ def _within(path: str, outer: str) -> bool:
 def _awaited(snapshot: Snapshot) -> Iterator[str]:
     """The ids that a `do` waits for, as they are called outside."""
     for position in snapshot.doing.values():
-        yield from _ids(position)
+        yield from awaited(position)
     for owner, child in snapshot.invoked.items():
         yield from (outer_id(id, owner) for id in _awaited(child.snapshot))
 
 
-def _ids(position: Position | None) -> Iterator[str]:
-    match position:
-        case Awaiting(id):
-            yield id
-        case Within(_, _, inner):
-            yield from _ids(inner)
-        case Fork(branches):
-            for branch in branches:
-                yield from _ids(branch)
-
-
-def _pause(id: str) -> bool:
+def _is_wait(id: str) -> bool:
     """Whether an id is that of a `wait`, which ends with its timer."""
     return id.startswith("w")

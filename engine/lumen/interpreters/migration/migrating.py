@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from lumen.errors import LumenError, SnapshotError
 from lumen.interpreters.migration import carried_state
 from lumen.interpreters.migration.placing import Placement, Unplaced, is_legal
-from lumen.interpreters.migration.situation import MigrationOptions, Situation, invoked_behavior
+from lumen.interpreters.migration.situation import MigrationOptions, Situation
 from lumen.interpreters.migration.verdicts import MigrationPlan, MigrationVerdict, Refusal
 from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.command_ids import outer_command
@@ -128,7 +128,7 @@ class _Migration:
         """Let an invoked behaviour go on under its new machine, as part of the new context."""
         after = self.after
         owner = next(image for node, image in self.placement.kept.items() if node.path == child.state)
-        behavior = invoked_behavior(self.new, owner.path, id)
+        behavior = self.new.chart.definition.invoked_behavior(owner.path, id)
         old, new = self.old.invoked[behavior].chart.definition, self.new.invoked[behavior].chart.definition
         lent = child.snapshot._replace(
             language=after.language, counters=after.counters, generator=after.generator, epoch=after.epoch

@@ -9,7 +9,7 @@ from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.migration.placing import Placement, Unplaced, place
 from lumen.interpreters.migration.verdicts import MigrationDelay, Refusal
 from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
+from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.values import Snapshot
 from lumen.language.machines import MachineDefinition
 
@@ -83,22 +83,18 @@ class Situation:
 
     def ending(self, placement: Placement) -> list[str]:
         """The ids of invoked behaviours that end: their state is left, or invokes another one now."""
-        kept = {node.path: image for node, image in placement.kept.items()}
+        kept = {node.path: image.path for node, image in placement.kept.items()}
+        old, new = self.old.chart.definition, self.new.chart.definition
         return [
             id
             for id, child in self.snapshot.invoked.items()
             if child.state not in kept
-            or invoked_behavior(self.old, child.state, id) != invoked_behavior(self.new, kept[child.state].path, id)
+            or old.invoked_behavior(child.state, id) != new.invoked_behavior(kept[child.state], id)
         ]
 
 
 def _gone(node: StateNode) -> MigrationDelay:
     return MigrationDelay(f"`{node.name}` is gone, and is still doing something", node.name)
-
-
-def invoked_behavior(machine: CompiledMachine, path: str, id: str) -> str:
-    """The behaviour that a state invokes under that id; empty for none."""
-    return next((i.behavior for i in machine.chart.nodes[path].invokes if i.id == id), "")
 
 
 def _is_busy(snapshot: Snapshot) -> bool:

@@ -28,12 +28,6 @@ def deserialize(machine: MachineDefinition, data: Mapping[str, Any]) -> Snapshot
         raise SnapshotError("the snapshot is damaged: it is nested too deeply") from None
 
 
-def invoked_by(machine: MachineDefinition, state: str, id: str) -> MachineDefinition | None:
-    """The machine that a state invokes under that id, None where there is none."""
-    invokes = machine.states[state].invoke if state in machine.states else ()
-    return next((machine.invoked[invoke.behavior] for invoke in invokes if invoke.id == id), None)
-
-
 def _snapshot(machine: MachineDefinition, data: JsonCursor) -> Snapshot:
     if data["version"].data != SNAPSHOT_VERSION:
         raise SnapshotError(
@@ -41,10 +35,10 @@ def _snapshot(machine: MachineDefinition, data: JsonCursor) -> Snapshot:
         )
     if difference := _difference(machine, data["machine"]):
         raise SnapshotError(f"the snapshot is not of `{machine.id}` as it is now: {difference}")
-    return _Reader(machine, data["configuration"]).read(data)
+    return _SnapshotReader(machine, data["configuration"]).read(data)
 
 
-class _Reader:
+class _SnapshotReader:
     """Reads what belongs to a machine of which these states are active."""
 
     def __init__(self, machine: MachineDefinition, configuration: JsonCursor) -> None:
@@ -143,7 +137,7 @@ class _Reader:
 
     def invoked(self, id: str, data: JsonCursor) -> Invoked:
         state = data["state"].text()
-        machine = invoked_by(self.machine, state, id)
+        machine = self.machine.invoked.get(self.machine.invoked_behavior(state, id))
         if machine is None or not self.active(state):
             raise data.refused(f"was invoked by `{state}`, which is not active or invokes nothing of that id")
         return Invoked(state, _snapshot(machine, data["snapshot"]), data["commands"].count())

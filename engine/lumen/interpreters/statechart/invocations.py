@@ -120,7 +120,7 @@ class Invocations:
 
 def invoked_machine(machine: CompiledMachine, state: str, id: str) -> CompiledMachine:
     """The machine that a state, by its path, invokes under that id."""
-    return machine.invoked[next(invoke.behavior for invoke in machine.chart.nodes[state].invokes if invoke.id == id)]
+    return machine.invoked[machine.chart.definition.invoked_behavior(state, id)]
 
 
 def output_of(step: Step, machine: CompiledMachine) -> Any:

@@ -1,4 +1,4 @@
-"""JSON data from outside, piece by piece, each with its place: what is not as it should be is told by it."""
+"""JSON data from outside, piece by piece, each with its place: an error names the piece that is not as it should be."""
 
 from collections.abc import Mapping
 from math import isfinite

@@ -3,18 +3,15 @@
 from collections.abc import Iterable, Iterator
 from itertools import compress
 from operator import not_
-from typing import TYPE_CHECKING
 
+from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.machines import MachineDefinition
-
-if TYPE_CHECKING:
-    from lumen.interpreters.statechart.values import Snapshot, Step
 
 ID_SEPARATOR = "/"
 """Stands between the id of an `invoke` and a state of the behaviour that runs under it."""
 
 
-def active_names(snapshot: "Snapshot") -> frozenset[str]:
+def active_names(snapshot: Snapshot) -> frozenset[str]:
     """The names of all active states, those of invoked behaviours included."""
     if not snapshot.invoked:
         return snapshot.configuration
@@ -24,7 +21,7 @@ def active_names(snapshot: "Snapshot") -> frozenset[str]:
     return snapshot.configuration.union(inner)
 
 
-def innermost_names(machine: MachineDefinition, snapshot: "Snapshot") -> Iterator[str]:
+def innermost_names(machine: MachineDefinition, snapshot: Snapshot) -> Iterator[str]:
     """The names of the active states that have none active within, invoked behaviours' after those of their host."""
     for state in machine.states.values():
         if state.name in snapshot.configuration and not any(
@@ -32,11 +29,11 @@ def innermost_names(machine: MachineDefinition, snapshot: "Snapshot") -> Iterato
         ):
             yield state.name
     for id, child in snapshot.invoked.items():
-        other = machine.invoked[_behavior(machine, child.state, id)]
+        other = machine.invoked[machine.invoked_behavior(child.state, id)]
         yield from (f"{id}{ID_SEPARATOR}{name}" for name in innermost_names(other, child.snapshot))
 
 
-def entered_names(step: "Step") -> Iterator[str]:
+def entered_names(step: Step) -> Iterator[str]:
     """The names of all states that a step entered, those of invoked behaviours included."""
     yield from step.entered
     for id, inner in step.invoked:
@@ -44,7 +41,7 @@ def entered_names(step: "Step") -> Iterator[str]:
 
 
 def flattened_steps(
-    machine: MachineDefinition, step: "Step", prefix: str = ""
+    machine: MachineDefinition, step: Step, prefix: str = ""
 ) -> "Iterator[tuple[str, MachineDefinition, Step]]":
     """A step and those of the behaviours invoked in it, each with its machine, and `quiz/` before its states' names.
 
@@ -57,7 +54,7 @@ def flattened_steps(
     yield from _below(machine, compress(step.invoked, map(not_, early)), prefix)
 
 
-def behavior_of(machine: MachineDefinition, id: str, step: "Step") -> str:
+def behavior_of(machine: MachineDefinition, id: str, step: Step) -> str:
     """The behaviour of which a step is, among those that the machine invokes under that id."""
     behaviors = [invoke.behavior for state in machine.states.values() for invoke in state.invoke if invoke.id == id]
     names = {*step.entered, *step.exited, *step.snapshot.configuration}
@@ -79,8 +76,3 @@ def _below(
 ) -> "Iterator[tuple[str, MachineDefinition, Step]]":
     for id, step in steps:
         yield from flattened_steps(machine.invoked[behavior_of(machine, id, step)], step, f"{prefix}{id}{ID_SEPARATOR}")
-
-
-def _behavior(machine: MachineDefinition, state: str, id: str) -> str:
-    """The behaviour that a state, by its path, invokes under that id."""
-    return next(invoke.behavior for invoke in machine.states[state].invoke if invoke.id == id)

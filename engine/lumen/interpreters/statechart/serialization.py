@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 from lumen.errors import SnapshotError, UsageError
-from lumen.interpreters.statechart.deserialization import SNAPSHOT_VERSION, invoked_by
+from lumen.interpreters.statechart.deserialization import SNAPSHOT_VERSION
 from lumen.interpreters.statechart.json_cursor import plain
 from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Snapshot, Timer, Within
 from lumen.language.machines import MachineDefinition
@@ -45,7 +45,9 @@ def _data(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
         "invoked": {
             id: {
                 "state": child.state,
-                "snapshot": _data(invoked_by(machine, child.state, id) or machine, child.snapshot),
+                "snapshot": _data(
+                    machine.invoked.get(machine.invoked_behavior(child.state, id), machine), child.snapshot
+                ),
                 "commands": child.commands,
             }
             for id, child in snapshot.invoked.items()
