@@ -17,6 +17,8 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.machines import Transition
 
+_new = tuple.__new__  # a third of the price of Scope(…), Snapshot(…), Step(…)
+
 
 class Beginning(NamedTuple):
     """What a state begins when the macrostep is done: its invocations, then its `do` (SCXML 6.4: `statesToInvoke`)."""
@@ -103,35 +105,15 @@ class ExecutionContext:
     def step(self) -> Step:
         """The step that was made; the context is of no use after it."""
         self.cached_scope = None  # which refers to this context: no need to wait for the garbage collector
-        snapshot = tuple.__new__(
-            Snapshot,
-            (
-                self.configuration.names,
-                self.data,
-                self.at,
-                self.language,
-                self.timers,
-                self.activities.positions,
-                self.history,
-                self.counters,
-                self.generator,
-                self.epoch,
-                self.invocations.children,
-            ),
-        )
-        return tuple.__new__(
-            Step,
-            (
-                self.trigger,
-                self.exited,
-                self.entered,
-                self.commands,
-                snapshot,
-                self.transitions,
-                self.raised,
-                self.invocations.steps,
-            ),
-        )
+        after = (
+            self.configuration.names, self.data, self.at, self.language, self.timers, self.activities.positions,
+            self.history, self.counters, self.generator, self.epoch, self.invocations.children,
+        )  # fmt: skip
+        made = (
+            self.trigger, self.exited, self.entered, self.commands, _new(Snapshot, after), self.transitions,
+            self.raised, self.invocations.steps,
+        )  # fmt: skip
+        return _new(Step, made)
 
     def evaluate_in(self, node: StateNode) -> None:
         """Let `state` in expressions be this one."""
@@ -145,20 +127,11 @@ class ExecutionContext:
             event, definition = self.event, self.machine.chart.definition
             if event is not None and self.event_data is None:
                 self.event_data = {"name": event.name, "data": event.data}
-            scope = self.cached_scope = tuple.__new__(  # a third of the price of Scope(…)
-                Scope,
-                (
-                    self.data,
-                    self.event_data,
-                    self.node.view(self.language),
-                    self.is_active,
-                    self.at,
-                    self.language,
-                    definition.phrases,
-                    definition.answers,
-                    self.epoch,
-                ),
-            )
+            seen = (
+                self.data, self.event_data, self.node.view(self.language), self.is_active, self.at, self.language,
+                definition.phrases, definition.answers, self.epoch,
+            )  # fmt: skip
+            scope = self.cached_scope = _new(Scope, seen)
         return scope
 
     def is_active(self, state: str) -> bool:

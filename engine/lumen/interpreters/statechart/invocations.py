@@ -47,7 +47,7 @@ class Invocations:
             return
         before = Snapshot(frozenset(), {**chart.definition.context, **given})
         self.children = {**self.children, id: Invoked(node.path, before, context.counters.commands)}
-        self._run(context, id, None)
+        self.deliver(context, id, None)
 
     def cancel(self, context: ExecutionContext, node: StateNode) -> None:
         """End what a state that is left has invoked, after its `exit`; nothing is heard of it any more."""
@@ -59,11 +59,7 @@ class Invocations:
     def forward(self, context: ExecutionContext, event: Event) -> None:
         """Let all of them hear an event, in the order in which they began."""
         for id in tuple(self.children):
-            self._run(context, id, event)
-
-    def deliver(self, context: ExecutionContext, id: str, event: Event) -> None:
-        """Let one of them hear an event."""
-        self._run(context, id, event)
+            self.deliver(context, id, event)
 
     def end(self, context: ExecutionContext, id: str) -> None:
         """End one of them: it leaves all its states."""
@@ -79,8 +75,8 @@ class Invocations:
         if machine.planner.configuration(child.snapshot.configuration).finished:
             self._finish(context, id, output)
 
-    def _run(self, context: ExecutionContext, id: str, event: Event | None) -> None:
-        """Let one of them hear an event, or begin (None), and follow what comes of it."""
+    def deliver(self, context: ExecutionContext, id: str, event: Event | None) -> None:
+        """Let one of them hear an event, or begin (None), and take over what comes of it."""
         state, _, commands = self.children[id]
         child = self._open(context, id, event)
         share = int(INVOKED_MICROSTEP_SHARE * (MAX_MICROSTEPS - context.microsteps))
