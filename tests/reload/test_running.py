@@ -172,8 +172,8 @@ def test_a_language_that_is_gone_is_no_longer_spoken() -> None:
     assert exhibition.runtime.snapshot.language == "nl"
 
 
-POINTS = ("situation.place", "situation.goes_on", "carrying.context", "carrying.timers", "carrying.history",
-          "moving.Session.microstep", "moving.Continued.settle")  # fmt: skip
+POINTS = ("situation.place", "situation.can_continue", "carried_state.context", "carried_state.timers",
+          "carried_state.history", "migrating.microstep", "migrating.complete")  # fmt: skip
 
 
 @pytest.mark.parametrize("point", POINTS)
