@@ -16,7 +16,10 @@ def whole(
     story: Story | None = None,
     narrator: Narrator | None = None,
     *,
+    language: str = "",
     silent: bool = False,
 ) -> WholeNode:
     """Not yet begun; its bus ends with it."""
-    return WholeNode(project, setup, validated(connect(url), project), story, narrator, silent=silent)
+    return WholeNode(
+        project, setup, validated(connect(url), project), story, narrator, language=language, silent=silent
+    )

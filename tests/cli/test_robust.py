@@ -76,9 +76,9 @@ def test_no_message_ends_it_or_switches_the_head_off(show: WholeNode, key: str, 
     with suppress(lumen.BusError):
         show.bus.publish(key, body)
     live(show, 6.0)
-    assert show.faces
-    assert show.faces.last
-    assert abs(show.faces.last[0] - 160) < 10
+    assert show.robot.faces
+    assert show.robot.faces.last
+    assert abs(show.robot.faces.last[0] - 160) < 10
 
 
 def edit(folder: Path, old: str, new: str, file: str = "behaviors/tour.yaml") -> Project:

@@ -13,8 +13,7 @@ from types import CodeType
 import pytest
 
 from lumen.app.reload.reloader import Reloader
-from lumen.app.reload.validation_worker import InlineValidation
-from lumen.app.reload.validator import BundleValidator, Validation
+from lumen.app.reload.validator import Validation
 from lumen.loading.files import read_files
 from lumen.runtime.watcher import SavedFiles
 from tests.live.faults import failing, name, steps
@@ -39,7 +38,6 @@ class Bench:
     def __init__(self, folder: Path) -> None:
         self.live = Live(folder)
         self.reloading = self.live.reloading
-        self._judge = BundleValidator(InlineValidation(folder), lambda: self.live.show.loop.project)
         self._first = read_files(folder)
         self._number = 0
 
@@ -55,7 +53,7 @@ class Bench:
         return SavedFiles(files, (), 0.0, 0.0)
 
     def validation(self, saved: SavedFiles) -> Validation:
-        return self.reloading._judge(self._judge, saved)
+        return self.reloading._judge(saved)
 
     def take(self, validation: Validation) -> None:
         """Live through what comes of it."""

@@ -99,9 +99,9 @@ def run(
     project: Project, seconds: float, touch: float = 99.0, language: str = ""
 ) -> tuple[Ear, RecordingRobot, WholeNode]:
     robot, ear = RecordingRobot(project.body), Ear()
-    show = whole(project, Setup(robot, SimulatedClock(robot.advance), robot), "memory://", silent=True)
+    show = whole(project, Setup(robot, SimulatedClock(robot.advance), robot), language=language, silent=True)
     show.loop.observers.append(ear)
-    show.behavior.start(language)
+    show.begin()
     for i in range(round(seconds / 0.02)):
         if i == round(touch / 0.02):
             robot.touch("FrontTactil", True)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lumen.app.exhibition import Exhibition
+from lumen.app.node import ROUNDING
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup
 from lumen.cli.main import ready
@@ -92,5 +93,6 @@ class _VisitorsTranscript(Transcript):
 
 
 def clock_time(now: float) -> str:
-    """`3:07` for 187 [s]."""
-    return f"{int(now // 60)}:{int(now % 60):02d}"
+    """`3:07` for 187 [s], which the sum of many ticks may fall short of."""
+    minutes, seconds = divmod(int(now + ROUNDING), 60)
+    return f"{minutes}:{seconds:02d}"
