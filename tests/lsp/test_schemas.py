@@ -23,6 +23,8 @@ COMPLETED = {
     "a state": (TOUR, "onDone: offer\n", "onDone: offer\n            |\n", {"on", "always", "entry", "invoke"}),
     "a list of actions": (TOUR, "- say:\n", "- |\n              - say:\n", {"say", "play", "walk", "publish", "if"}),
     "actions in one line": (TOUR, "entry: {", "entry: {|", {"say", "assign", "raise"}),
+    "a light": (TOUR, "eyes: turquoise", "eyes: turquoise, c|", {"chest", "left_ear"}),
+    "a colour": (TOUR, "eyes: turquoise", "eyes: |", {"turquoise", "rebeccapurple"}),
     "an interpolation": (GOODBYE, "keyframes:\n", "interpolation: |\nkeyframes:\n", {"cubic", "bezier", "linear"}),
     "a keyframe": (GOODBYE, "leds: {eyes: cyan}", "leds: {eyes: cyan}, j|", {"joints", "pose", "say", "play"}),
     "operators": ("fuzzy/head.yaml", "operators: {", "operators: {n|, ", {"conjunction", "accuracy"}),

@@ -6,7 +6,7 @@ from math import hypot, nan
 
 import pytest
 
-from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, Sense, Sonar
@@ -89,6 +89,24 @@ def test_lights_and_sounds(robot: Lockstep, live: Live, caplog: pytest.LogCaptur
     fades = [(group, colour) for group, colour, _ in robot.nao.world.called("fadeRGB")]
     assert fades == [("FaceLeds", 0xFF0000), ("LeftEarLeds", 0x0000FF)]
     assert ["none.wav" in record.getMessage() for record in caplog.records] == [True]
+
+
+def test_lights_of_a_behaviour(robot: Lockstep, live: Live) -> None:
+    robot.start("a", Leds({"eyes": "rebeccapurple", "left_ear": "off", "chest": "orange"}, 0.5))
+    assert answers(live(1.0)) == ["done.command.a"]
+    assert robot.nao.world.called("fadeRGB") == [
+        ("FaceLeds", 0x663399, 0.5),
+        ("LeftEarLeds", 0x000000, 0.5),
+        ("ChestLeds", 0xFF6000, 0.5),
+    ]
+
+
+def test_cancelled_lights_have_their_colours_at_once(robot: Lockstep, live: Live) -> None:
+    robot.start("a", Leds({"eyes": "red"}, 20.0))
+    live(0.3)
+    robot.cancel("a")
+    assert answers(live(0.5)) == ["cancelled.command.a"]
+    assert robot.nao.world.called("fadeRGB") == [("FaceLeds", 0xFF0000, 20.0), ("FaceLeds", 0xFF0000, 0.05)]
 
 
 def test_each_sentence_in_its_language(robot: Lockstep, live: Live, caplog: pytest.LogCaptureFixture) -> None:

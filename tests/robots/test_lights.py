@@ -40,6 +40,9 @@ def test_both_robots_and_motions_have_the_same_groups_and_colours() -> None:
     assert NAOQI_LED_GROUPS.keys() == LIGHT_GROUPS.keys() == {*LIGHTS, "eyes", "ears", "feet"}
     assert {*NAOQI_COLOURS, *RENDERED_COLOURS} <= COLOURS.keys()
     assert set(groups(load_schema("motion"))) == LIGHT_GROUPS.keys()
+    behavior = load_schema("behavior")
+    assert set(groups(behavior)) == {*LIGHT_GROUPS, "duration"}
+    assert behavior["$defs"]["colour"]["anyOf"][0]["enum"] == list(COLOURS)
 
 
 def test_a_colour_by_name_is_drawn_and_sent_as_it_looks_on_leds() -> None:

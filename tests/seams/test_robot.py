@@ -10,7 +10,7 @@ import pytest
 import lumen
 from lumen.bus import connect
 from lumen.buses.validated import validated
-from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake
+from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
@@ -115,6 +115,35 @@ def test_what_it_can_not_do_is_an_answer_and_not_an_exception(robot: Body) -> No
     [answer] = live(robot, 0.2)
     assert answer.name == "error.command.a"
     assert "Handstand" in answer.data["reason"]
+
+
+def test_lights_take_their_time_and_leave_the_body_alone(robot: Body) -> None:
+    robot.start("a", Leds({"eyes": "rebeccapurple", "chest": "#12a0ff"}, 1.0))
+    robot.start("b", Leds({"feet": "green"}))
+    robot.start("c", Leds({"left_eye": "red"}, 0.2))
+    robot.start("d", Look(0.3, 0.1))
+    events = live(robot, 3.0)
+    assert [n for n in names(events) if not n.endswith("d")] == [f"done.command.{id}" for id in "bac"]
+    ended = {event.name[-1]: event.at for event in events}
+    assert (ended["a"], ended["b"], ended["c"]) == pytest.approx((1.0, 0.0, 1.2), abs=0.15)
+    assert ended["d"] < 1.2
+
+
+@pytest.mark.parametrize("colours", [{"eyes": "bleu"}, {"eye": "blue"}, {"eyes": "#12g"}, {}])
+def test_lights_and_colours_that_it_does_not_have_are_an_answer(robot: Body, colours: dict[str, str]) -> None:
+    robot.start("a", Leds(colours))
+    [answer] = live(robot, 0.3)
+    assert answer.name == "error.command.a"
+    assert all(
+        text in answer.data["reason"] for pair in colours.items() for text in pair if text not in ("eyes", "blue")
+    )
+
+
+def test_cancelled_lights_are_at_their_goal_at_once(robot: Body) -> None:
+    robot.start("a", Leds({"eyes": "red"}, 30.0))
+    live(robot, 0.2)
+    robot.cancel("a")
+    assert names(live(robot, 0.6)) == ["cancelled.command.a"]
 
 
 def test_a_cancelled_command_says_so_within_a_second(robot: Body) -> None:

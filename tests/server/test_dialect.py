@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.errors import RobotError
-from lumen.language.commands import Language, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Language, Leds, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.motions import MotionDefinition
 from lumen.ports import Aim, Perform, Record
 from lumen.robots.command_codec import decode_command
@@ -37,6 +37,7 @@ def order(method: str, /, **parameter: Any) -> dict[str, Any]:
         (order("setAngles", jointNames=["HeadYaw", "HeadPitch"], angles=[0.5, -0.1], speed=0.2),
          Aim({"HeadYaw": 0.5, "HeadPitch": -0.1}, 0.2)),
         (order("setangles", jointNames="HeadYaw", angles=0.5), Aim({"HeadYaw": 0.5})),
+        (order("Leds", colours={"eyes": "blue", "chest": "#12A0ff"}), Leds({"eyes": "blue", "chest": "#12A0ff"})),
         (order("setangles", jointNames=["LHipPitch ", "LAngklePitch"], angles=[0.1, 0.2]),
          Aim({"LHipPitch": 0.1, "LAnklePitch": 0.2})),
         (order("setangles", jointNames=["HeadYaw"], angles=[100]), Aim({"HeadYaw": 2.0})),
@@ -91,6 +92,8 @@ def test_a_number_beyond_all_bounds_is_refused(number: float) -> None:
         order("say", text="", language="a\nb"),
         order("setangles", jointNames="a\nb", angles=1),
         order("setangles", jointNames="HeadYaw\n", angles=""),
+        order("leds", colours={"eyes\n": "a\nb"}),
+        order("leds", colours={"eyes": "a\nb"}),
     ],
 )
 def test_what_a_stranger_wrote_stays_in_one_line(body: Any) -> None:
@@ -121,6 +124,13 @@ def test_what_a_stranger_wrote_stays_in_one_line(body: Any) -> None:
         (order("say", text="x", language="Klingon"), "`klingon` is not spoken here"),
         (order("setlanguage"), "has to be a text"),
         (order("setstiffnesses", jointNames=["HeadYaw"]), "can't be done with this robot"),
+        (order("leds"), "needs `colours`"),
+        (order("leds", colours={}), "at least one light"),
+        (order("leds", colours={"eye": "red"}), "no light `eye`: did you mean `eyes`?"),
+        (order("leds", colours={"eyes": "bleu"}), "no colour `bleu`: did you mean `blue`?"),
+        (order("leds", colours={"eyes": "#12g"}), "`#12g` is no colour"),
+        (order("leds", colours={"eyes": 5}), "no colour `5`"),
+        (order("leds", colours={"eyes": "red"}, duration=61), "from 0 to 60 s, not 61 s"),
         (order("record", recordingName=5), "has to be a text"),
         (order("record", recordingName="a", duration=60), "between 0.1 and 20 s, not at 60"),
     ],

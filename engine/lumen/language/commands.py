@@ -4,6 +4,7 @@ Lengths in [m], angles in [rad], times in [s]; what a `Start` holds is answered 
 `done.command.ID`, `error.command.ID` or `cancelled.command.ID`.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -63,6 +64,14 @@ class Look:
 
 
 @dataclass(frozen=True, slots=True)
+class Leds:
+    """Give groups of lights their colours, by name or `#rrggbb`, on an even way of `duration` [s]."""
+
+    colours: Mapping[str, str]
+    duration: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Track:
     """Let a controller move its joints, or take them from it."""
 
@@ -109,7 +118,7 @@ class Log:
     text: str
 
 
-MotorCommand = Posture | Walk | Move | Look | Stop | Rest | Wake
+MotorCommand = Posture | Walk | Move | Look | Leds | Stop | Rest | Wake
 """What stands in the YAML as the robot performs it. A new one goes here, and into `verbs.py`."""
 
 VerbCommand = MotorCommand | Play | Track | Language

@@ -1,8 +1,8 @@
 """The verbs of the YAML that are commands: a row for each, with its fields and how it reads in transcripts and diffs.
 
-What is generic goes by these rows: `loading/actions.py` reads a command with them, `formats/action_data.py` writes it,
-the language server completes the names that it holds, the transcript and the diff of bundles say what it does. What a
-robot has to know of each besides stands in `robots/command_table.py`. `tests/seams/test_verbs.py` goes through both
+What is generic goes by these rows: `loading/actions.py` reads a command with them, `formats/behavior_data.py` writes
+it, the language server completes the names that it holds, the transcript and the diff of bundles say what it does. What
+a robot has to know of each besides stands in `robots/command_table.py`. `tests/seams/test_verbs.py` goes through both
 tables and the schemas.
 """
 
@@ -27,6 +27,7 @@ from lumen.language.actions import (
 )
 from lumen.language.commands import (
     Language,
+    Leds,
     Look,
     Move,
     Play,
@@ -55,12 +56,14 @@ class Quantity(Enum):
 class VerbField:
     """A field of a command, under the name that it has in the YAML and in the dataclass.
 
-    `names` is the kind of thing that it is the name of: `motion`, `posture`, `controller` or `language`.
+    `names` is the kind of thing that it is the name of: `motion`, `posture`, `controller` or `language`. One for the
+    `others` is a map of all keys that are no field's name.
     """
 
     name: str
     quantity: Quantity = Quantity.PLAIN
     names: str = ""
+    others: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +95,11 @@ class Verb(Generic[C]):
                 yield self.fields[0], (key,), key
                 yield self.fields[1], (key,), value
         else:
+            names = {field.name for field in self.fields if not field.others}
             for field in self.fields:
-                if field.name in data:
+                if field.others:
+                    yield field, (), {key: value for key, value in data.items() if key not in names}
+                elif field.name in data:
                     yield field, (field.name,), data[field.name]
 
     def data(self, command: C, written: Callable[[Quantity, Any], Any]) -> Any:
@@ -104,7 +110,8 @@ class Verb(Generic[C]):
         if self.pair:
             name, value = values.values()
             return {name: value}
-        return values
+        others = [values.pop(field.name) for field in self.fields if field.others]
+        return {key: value for given in (*others, values) for key, value in given.items()}
 
 
 _PLAY = Verb(
@@ -142,6 +149,13 @@ _LOOK = Verb(
     lambda c: "turns its head",
     lambda c: f"looks to yaw {c.yaw:.3g} rad, pitch {c.pitch:.3g} rad",
 )
+_LEDS = Verb(
+    "leds",
+    Leds,
+    (VerbField("colours", others=True), VerbField("duration", Quantity.DURATION)),
+    lambda c: f"lights {', '.join(f'{group} {colour}' for group, colour in c.colours.items())}",
+    lambda c: f"lights {', '.join(f'{group} `{colour}`' for group, colour in c.colours.items())} in {c.duration:g} s",
+)
 _TRACK = Verb(
     "track",
     Track,
@@ -164,7 +178,7 @@ _LANGUAGE = Verb(
 )
 
 VERBS: tuple[Verb[Any], ...] = (
-    _PLAY, _POSTURE, _MOVE, _WALK, _LOOK, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
+    _PLAY, _POSTURE, _MOVE, _WALK, _LOOK, _LEDS, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
 )  # fmt: skip
 """Of those that share a name the last is meant where no field says which."""
 

@@ -10,11 +10,12 @@ from math import hypot, inf
 from typing import Any, Generic, TypeVar, get_args
 
 from lumen.errors import BadCommandError
-from lumen.language.commands import Channel, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Channel, Leds, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.lights import light_fault
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, Record, RobotCommand
-from lumen.robots.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_motion
+from lumen.robots.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
 from lumen.robots.command_parameters import CommandParameters, shown
 from lumen.robots.motion_codec import decode_motion, encode_motion
 
@@ -28,6 +29,8 @@ SPEECH_PAUSE, SPEECH_PER_CHARACTER = 0.4, 0.06
 """How long a text takes to say where nobody says it [s], and each of its characters."""
 WALKING_SPEED, TURNING_SPEED = 0.1, 0.25
 """How fast a recorded walk goes [m/s] and turns [rad/s]: the simulated robot turns around by 90 degrees in 7 s."""
+MAX_FADE_DURATION = 60.0
+"""How long lights may take to their colours [s]."""
 USUAL_DURATION, LOOK_DURATION = 2.0, 1.0
 """How long the recording robot takes for a posture, and to turn its head [s]."""
 
@@ -88,6 +91,27 @@ def _check_posture(command: Posture, body: Body) -> None:
     if command.name not in body.postures:
         hint = did_you_mean(command.name, body.postures, "it knows")
         raise BadCommandError(f"no posture `{command.name}`: {hint}")
+
+
+def _check_lights(command: Leds, body: Body) -> None:
+    if not 0 <= command.duration <= MAX_FADE_DURATION:
+        raise BadCommandError(f"lights take from 0 to {MAX_FADE_DURATION:g} s, not {command.duration:g} s")
+    if not command.colours:
+        raise BadCommandError("`leds` needs at least one light")
+    for group, colour in command.colours.items():
+        if fault := light_fault(group, colour):
+            raise BadCommandError(fault)
+
+
+def _leds(p: CommandParameters) -> Leds:
+    colours = p.values.get("colours")
+    if not isinstance(colours, Mapping):
+        raise BadCommandError("`leds` needs `colours`, an object with a colour for each light")
+    command = Leds(
+        {shown(str(light)): shown(str(colour)) for light, colour in colours.items()}, p.number("duration", 0.0)
+    )
+    _check_lights(command, p.project.body)
+    return command
 
 
 def _stop(p: CommandParameters) -> Stop:
@@ -192,6 +216,18 @@ _LOOK = CommandRow(
     owns(HEAD),
     lambda c: LOOK_DURATION,
 )
+_LEDS = CommandRow(
+    Leds,
+    "leds",
+    3,
+    "leds",
+    "leds",
+    lambda c: {"colours": dict(c.colours), "duration": c.duration},
+    _leds,
+    lambda c, _body: parts_of_lights(c.colours),
+    lambda c: c.duration,
+    check=_check_lights,
+)
 _AIM = CommandRow(
     Aim,
     "aim",
@@ -205,7 +241,7 @@ _AIM = CommandRow(
 """Nobody waits for an aim, and it moves what no command owns."""
 
 COMMANDS: tuple[CommandRow[Any], ...] = (
-    _WAKE, _REST, _STOP, _POSTURE, _WALK, _MOVE, _SAY, _PERFORM, _RECORD, _LOOK, _AIM,
+    _WAKE, _REST, _STOP, _POSTURE, _WALK, _MOVE, _SAY, _PERFORM, _RECORD, _LOOK, _LEDS, _AIM,
 )  # fmt: skip
 
 _BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMANDS}

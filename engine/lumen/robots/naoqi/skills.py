@@ -6,7 +6,7 @@ from math import inf, isfinite
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
-from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, Record, RobotCommand
@@ -14,6 +14,7 @@ from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import check_command, parts_of
 from lumen.robots.cues import EventSink
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
+from lumen.robots.naoqi.lights import fades
 from lumen.robots.naoqi.microphones import Microphones
 from lumen.robots.naoqi.motion_player import MotionPlayer
 from lumen.robots.naoqi.session import NaoqiSession
@@ -61,6 +62,8 @@ class NaoqiSkills:
                 return self._posture(name, speed)
             case Wake():
                 return CallSequence(self._wake(), lambda: [self._post("ALRobotPosture", "stopMove")])
+            case Leds(colours, seconds):
+                return self._leds(colours, seconds)
             case Stop() | Aim():
                 raise BadCommandError(f"{type(command).__name__} does not last")
         if self.fallen:
@@ -99,6 +102,20 @@ class NaoqiSkills:
             )  # fmt: skip
         if said := words(text):
             yield self._post("ALTextToSpeech", "say", said, *([name] if name else []))
+
+    def _leds(self, colours: Mapping[str, str], seconds: float) -> CallSequence:
+        """A fade can't be called back: where it is cancelled, another one of no time takes its place."""
+        return CallSequence(
+            self._fade(colours, seconds), lambda: [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours)]
+        )
+
+    def _fade(self, colours: Mapping[str, str], seconds: float) -> CallSteps:
+        begin = self._clock()
+        calls = [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours, seconds)]
+        while self._clock() < begin + seconds and not any(call.failed for call in calls):
+            yield None
+        for call in calls:  # noqa: UP028  `yield from` would send its answers into a list
+            yield call
 
     def _posture(self, name: str, speed: float) -> CallSequence:
         return CallSequence(self._go(name, speed), lambda: [self._post("ALRobotPosture", "stopMove")])

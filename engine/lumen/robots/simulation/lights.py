@@ -37,8 +37,8 @@ class Lights:
         """Give each of these lights its colour, a name or `#rrggbb`; unknown lights and colours change nothing."""
         for light, colour in lights_of(colours):
             shown = rendered(colour)
-            if shown is not None and light in self._ids:
-                self._set(self._ids[light], shown)
+            if shown is not None:
+                self.draw(light, shown)
 
     def hold(self, props: Iterable[str]) -> None:
         """Let the robot hold these things, and no others."""
@@ -60,16 +60,41 @@ class Lights:
         """Give the lights of these groups the colours that they had when the robot was switched on."""
         for light, _ in lights_of(dict.fromkeys(groups)):
             if light in self._ids:
-                self._set(self._ids[light], self._first[self._ids[light], :3])
+                self.draw(light, self._first[self._ids[light], :3])
 
     def reset(self) -> None:
         """As the robot looked when it was switched on."""
         self._unlit.clear()
         self._colours[:] = self._first
 
-    def _set(self, i: int, shown: ArrayLike) -> None:
-        """Now, or once an ear is no longer lit by speech."""
-        self._unlit.get(i, self._colours[i])[:3] = shown
+    def shown(self, light: str) -> NDArray[np.float32]:
+        """How a light is drawn (red, green, blue from 0 to 1): Shape (3,)."""
+        i = self._ids.get(light)
+        return np.zeros(3, np.float32) if i is None else self._unlit.get(i, self._colours[i])[:3].copy()
+
+    def draw(self, light: str, shown: ArrayLike) -> None:
+        """Draw a light like this, or once it is no longer lit by speech."""
+        i = self._ids.get(light)
+        if i is not None:
+            self._unlit.get(i, self._colours[i])[:3] = shown
+
+
+class LightFade:
+    """Lights on an even way of `seconds` [s] to their colours; where it is cancelled they have them at once."""
+
+    def __init__(self, lights: Lights, colours: Mapping[str, object], seconds: float, now: float) -> None:
+        self._lights, self._seconds, self._begin = lights, seconds, now
+        goals = {light: rendered(colour) for light, colour in lights_of(colours)}
+        self._ways = [(light, lights.shown(light), np.array(goal)) for light, goal in goals.items() if goal]
+
+    def advance(self, now: float) -> bool:
+        part = min(1.0, (now - self._begin) / self._seconds) if self._seconds else 1.0
+        for light, start, goal in self._ways:
+            self._lights.draw(light, start + part * (goal - start))
+        return part >= 1.0
+
+    def cancel(self) -> None:
+        self._seconds = 0.0
 
 
 def rendered(colour: object) -> tuple[float, float, float] | None:

@@ -6,7 +6,7 @@ from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.postures import RESTFUL, UPRIGHT
-from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import check_command, parts_of
@@ -14,7 +14,7 @@ from lumen.robots.cues import EventSink
 from lumen.robots.executor import Activity
 from lumen.robots.silent_recording import SilentRecording
 from lumen.robots.simulation.joint_transition import JointTransition
-from lumen.robots.simulation.lights import Lights
+from lumen.robots.simulation.lights import LightFade, Lights
 from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.playback import MotionPlayback, SpeechActivity
 from lumen.robots.simulation.posture_planner import PosturePlanner, PostureState, lying
@@ -78,7 +78,7 @@ class SimulatedSkills:
     def begin(self, command: RobotCommand, now: float) -> Activity:
         """The command under way. Raises RobotError where the robot can't."""
         check_command(command, self._world.body)
-        if not isinstance(command, Say | Record | Rest | Wake | Posture):
+        if not isinstance(command, Say | Record | Leds | Rest | Wake | Posture):
             self._ready()
         match command:
             case Say(text, language):
@@ -91,6 +91,8 @@ class SimulatedSkills:
                 return self._posture(name, speed, now)
             case Look(yaw, pitch):
                 return self._look(yaw, pitch, now)
+            case Leds(colours, seconds):
+                return LightFade(self._lights, colours, seconds, now)
             case Rest():
                 return self._rest(now)
             case Wake():
