@@ -14,11 +14,10 @@ step of a flat surface leaves over need not wait for the next image.
 from collections.abc import Iterator, Mapping
 
 from lumen.interpreters.inference import Evaluator
+from lumen.interpreters.joint_history import JointAngles
 from lumen.interpreters.projection import after_turning
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
-
-JointAngles = dict[str, float]
 
 ZOOM_STEP = 2**0.5
 """From one magnification to the next."""

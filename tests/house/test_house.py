@@ -1,0 +1,22 @@
+"""What stays true of the house, whoever builds on it; `python scripts/shape.py` prints where it is not."""
+
+import pytest
+from scripts.shape import PACKAGE, ROOT, Shape, floor_order, measure, read
+
+
+@pytest.fixture(scope="module")
+def house() -> Shape:
+    order = floor_order((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    return measure(read(ROOT / PACKAGE), order)
+
+
+def test_a_public_class_or_alias_has_a_name_of_its_own(house: Shape) -> None:
+    assert house.repeated_types == {}
+
+
+def test_no_files_import_each_other_in_a_circle_for_types_and_late_neither(house: Shape) -> None:
+    assert [circle for found in house.circles.values() for circle in found] == []
+
+
+def test_no_file_imports_what_stands_above_or_beside_its_floor(house: Shape) -> None:
+    assert house.arrows_up == []
