@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ENGINE = Path(__file__).parents[2] / "engine/lumen"
-LINE = re.compile(r"^    (\w+(?:\.py|/))  +\S", re.MULTILINE)
+LINE = re.compile(r"^    (\w+(?:\.py|/)) +\S", re.MULTILINE)
 
 
 @pytest.mark.parametrize("folder", ["buses", "modules", "robots"])

@@ -8,6 +8,7 @@
 
 How a command is performed:
 
+    command_table.py      what every robot knows of each command: a row for each
     body_parts.py         which parts of the body a command owns
     executor.py           a command waits until its parts are free, then runs until it is done
     cues.py               the words and sounds of a motion, as their times come
@@ -18,6 +19,7 @@ A robot on the bus:
     server.py             Lumen Server: the senses out, the commands in
     robot_routes.py       under which keys a robot and its brain talk
     command_codec.py      commands as JSON, as those of 2015 and ours
+    command_parameters.py their parameters, in the ways that 2015's modules wrote them
     motion_codec.py       motions as JSON
     sense_codec.py        the five senses as JSON
     sense_publisher.py    the thread of a sense
