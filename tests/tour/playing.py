@@ -1,5 +1,6 @@
 """Plays a story in virtual time, on the recording robot or another, and keeps what happened."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -13,7 +14,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Hall, Robot
-from lumen.runtime.loop import Observer, TickHook
+from lumen.runtime.loop import Observer
 from tests.tour.names import GUIDE
 
 
@@ -66,7 +67,9 @@ class Log(Observer):
             self.run.played.append(self.playing[id])
 
 
-def play(project: Project, story: Story, performer: Performer | None = None, *, part: TickHook | None = None) -> Run:
+def play(
+    project: Project, story: Story, performer: Performer | None = None, *, part: Callable[[float], None] | None = None
+) -> Run:
     """The story played to its end, or to its failure; `part` lives with it."""
     run = Run()
     chosen = Setup(performer, SimulatedClock(performer.advance), performer) if performer else None
