@@ -12,13 +12,12 @@ from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.requests import COMMAND, STATUS
 from lumen.app.setup import Setup
-from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.home import Home
-from tests.nodes import whole
+from tests.nodes import Printed, whole
 from tests.waiting import Collector
 
 DEADLINE = 30.0
@@ -43,7 +42,8 @@ class Live:
         project = project or lumen.load(folder)
         self.robot = RecordingRobot(project.body, behaves)
         self.told = StringIO()
-        transcript = Transcript(lambda: self.show.now, lambda: self.show.project.machine, self.told)
+        transcript = Printed(lambda: self.show.now, lambda: self.show.project.machine)
+        transcript.stream = self.told
         setup = Setup(self.robot, SimulatedClock(self.robot.advance, 20.0), self.robot)
         self.show = whole(project, setup, url, None, transcript)
         self.home = Home(folder / ".lumen")
@@ -108,7 +108,7 @@ class Live:
 
     @property
     def transcript(self) -> str:
-        return self.told.getvalue().replace("\n" + " " * 18, " ")
+        return self.told.getvalue()
 
     @property
     def states(self) -> frozenset[str]:

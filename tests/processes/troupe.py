@@ -14,12 +14,11 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup, set_up
 from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
-from lumen.cli.transcript import Transcript
 from lumen.clocks.real import RealClock
 from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.presence import BRAIN, ROBOT
-from tests.nodes import whole
+from tests.nodes import Printed, whole
 from tests.waiting import Collector
 
 SPEED = "4"
@@ -72,7 +71,7 @@ class Member:
         clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(speed))
         played = project.stories[story] if story else None
         bus = validated(connect(url), project)
-        narrator = Transcript(clock.now, lambda: self.process.project.machine)
+        narrator = Printed(clock.now, lambda: self.process.project.machine)
         how = ProcessOptions(url, float(speed), "manual")
         self.process = assemble(project, names, bus, clock, narrator, self.run_directory, how, self.cast, played)
         brains = [part for part in self.process.parts if isinstance(part, RemoteBrainPart)]
