@@ -6,6 +6,7 @@ from typing import Any
 import jsonschema
 import pytest
 
+from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import schema_folder
 from lumen.loading.schema import FILE_KINDS, check_schema, load_schema
@@ -81,9 +82,9 @@ def test_a_misspelt_required_key_is_one_finding() -> None:
 
 def test_what_follows_from_a_lost_node_is_not_said() -> None:
     _, report = check("states: {a: {on: {go: b}}, b: []}")
-    report("unknown-state", ("states", "a", "on", "go"), "there is no state `b`")
-    report("unknown-state", ("states", "a", "on", "go"), "there is no state `#guide.b`")
-    report("unknown-state", ("states", "a", "on", "go"), "there is no state `c`")
+    report(UNKNOWN_STATE, ("states", "a", "on", "go"), "there is no state `b`")
+    report(UNKNOWN_STATE, ("states", "a", "on", "go"), "there is no state `#guide.b`")
+    report(UNKNOWN_STATE, ("states", "a", "on", "go"), "there is no state `c`")
     assert [d.message for d in report.diagnostics if d.code == "unknown-state"] == ["there is no state `c`"]
 
 

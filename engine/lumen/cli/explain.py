@@ -34,11 +34,6 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def family(code: str) -> str:
-    """The family that a code belongs to."""
-    return next(name for name, codes in FAMILIES.items() if code in codes)
-
-
 def _list(wanted: Collection[str], on: bool) -> str:
     width = max(map(len, wanted))
     blocks = []
@@ -57,8 +52,8 @@ def _json_list(wanted: Collection[str]) -> str:
 
 
 def _entry(code: str) -> dict[str, Any]:
-    severity, summary = CODES[code]
-    return {"code": code, "family": family(code), "severity": str(severity), "summary": summary}
+    known = CODES[code]
+    return {"code": code, "family": known.family, "severity": str(known.severity), "summary": known.summary}
 
 
 def _as_json(found: Page) -> dict[str, Any]:
@@ -72,8 +67,8 @@ def _as_json(found: Page) -> dict[str, Any]:
 
 
 def _text(found: Page, on: bool) -> str:
-    severity = CODES[found.code].severity
-    title = f"{paint(found.code, 'bold', SEVERITY_COLOURS[severity], on=on)}  {severity}, {family(found.code)}"
+    severity, family = CODES[found.code].severity, CODES[found.code].family
+    title = f"{paint(found.code, 'bold', SEVERITY_COLOURS[severity], on=on)}  {severity}, {family}"
     wrong = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.wrong)
     right = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.right)
     return "\n\n".join(

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from enum import StrEnum
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, Self
 
 MIN_FINDINGS_FOR_ROOT = 8
 """Findings from which on what they have in common is wrong, and not each of them."""
@@ -24,6 +24,9 @@ class Severity(StrEnum):
     ERROR = "error"
     WARNING = "warning"
     INFO = "info"
+
+
+ERROR, WARNING, INFO = Severity.ERROR, Severity.WARNING, Severity.INFO
 
 
 class Place(NamedTuple):
@@ -92,6 +95,32 @@ class Diagnostic:
                 for r in self.related
             ],
         }
+
+
+class Code(str):
+    """A kind of finding: as text its name; its family, how bad it is, and in a line what it means.
+
+    Each is declared once, as a value beside the check that raises it; `lumen.rules.codes` has them all, and
+    `rules/pages/CODE.md` says why it matters and shows what is wrong and what is right.
+    """
+
+    family: str
+    severity: Severity
+    summary: str
+
+    def __new__(cls, name: str, family: str, severity: Severity, summary: str) -> Self:
+        code = super().__new__(cls, name)
+        code.family, code.severity, code.summary = family, severity, summary
+        return code
+
+    def __reduce__(self) -> tuple[type[str], tuple[str]]:
+        return str, (str(self),)  # what is sent to another process is its name
+
+    def at(
+        self, place: Place, message: str, hint: str = "", related: tuple[Related, ...] = (), cause: str = ""
+    ) -> Diagnostic:
+        """A finding of this kind at that place."""
+        return Diagnostic(self, message, place, hint, self.severity, related, cause)
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:

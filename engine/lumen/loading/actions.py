@@ -19,12 +19,15 @@ from lumen.language.actions import (
     Wait,
 )
 from lumen.language.commands import VerbCommand
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.verbs import Quantity, Verb, verb_named
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.numbers import finite
-from lumen.loading.units import ANGLES, LENGTHS, seconds
+from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS, seconds
+
+ONLY_IN_DO = Code("only-in-do", "statecharts", ERROR, "a verb that waits stands outside `do`")
+
 
 DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
 
@@ -56,14 +59,14 @@ class Actions:
             hint = "move it into the `do` of a state" + (
                 ", or `send` an event with a `delay`" if verb == "wait" else ""
             )
-            self.report("only-in-do", (*where, verb), f"`{verb}` can stand only in `do`", hint=hint, key=True)
+            self.report(ONLY_IN_DO, (*where, verb), f"`{verb}` can stand only in `do`", hint=hint, key=True)
             return None
         return self._verb(verb, body, (*where, verb))
 
     def duration(self, text: Any, where: NodePath, *, key: bool = False) -> float | None:
         """[s], None (and reported) where the text is no duration."""
         if (length := seconds(text)) is None:
-            self.report("bad-duration", where, f"`{text}` is not a duration", hint=DURATION_HINT, key=key)
+            self.report(BAD_DURATION, where, f"`{text}` is not a duration", hint=DURATION_HINT, key=key)
         return length
 
     def _verb(self, verb: str, data: Any, where: NodePath) -> Action | None:

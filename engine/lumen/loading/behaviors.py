@@ -5,7 +5,8 @@ import json
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import Answer, MachineDefinition, State, StateKind
 from lumen.loading.actions import Actions
 from lumen.loading.document_report import DocumentReport
@@ -14,6 +15,9 @@ from lumen.loading.invocations import check_ids, invocations
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.shapes import check_shapes
 from lumen.loading.transitions import TransitionReader
+
+NOT_WITHIN = Code("not-within", "statecharts", ERROR, "a state is named that does not lie in the one meant")
+
 
 M = TypeVar("M", bound=MachineDefinition)
 
@@ -113,7 +117,7 @@ class _Builder:
             where = (*entry.where, "target")
             found = self.within(parent, entry, entry.data["target"], where)
             if any(state.kind is StateKind.HISTORY for state in found):
-                self.report("not-within", where, "a history can't lead to a history", hint="name a state")
+                self.report(NOT_WITHIN, where, "a history can't lead to a history", hint="name a state")
                 return ()
             return tuple(state.path for state in found)
         begin = _children(parent) if parent.kind is StateKind.PARALLEL else self.initial(parent)
@@ -127,7 +131,7 @@ class _Builder:
         for state in found:
             if state is home or not state.lies_in(home):
                 hint = did_you_mean(state.path, home.children, "it has")
-                self.report("not-within", where, f"`{state.path}` does not lie in {home.title}", hint=hint)
+                self.report(NOT_WITHIN, where, f"`{state.path}` does not lie in {home.title}", hint=hint)
                 return []
         return found
 
@@ -159,10 +163,10 @@ class _Builder:
         head, _, key = name.partition(".")
         if head == CONTEXT_PREFIX:
             known = [f"{CONTEXT_PREFIX}.{other}" for other in self.data.get("context") or {}]
-            self.report("unknown-context-key", where, f"`context` has no `{key}`", hint=did_you_mean(name, known))
+            self.report(UNKNOWN_CONTEXT_KEY, where, f"`context` has no `{key}`", hint=did_you_mean(name, known))
         else:
             hint = did_you_mean(name, filter(None, self.outline.entries))
-            self.report("unknown-state", where, f"there is no state `{name}`", hint=hint)
+            self.report(UNKNOWN_STATE, where, f"there is no state `{name}`", hint=hint)
 
 
 def _children(entry: OutlinedState) -> tuple[str, ...]:

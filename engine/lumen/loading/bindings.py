@@ -4,9 +4,16 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.language.controllers import InputBinding, OutputBinding, Variable
-from lumen.language.diagnostics import NodePath, Severity, did_you_mean
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.numbers import EMPTY_RANGE
+from lumen.loading.rulebook import UNKNOWN_VARIABLE
 from lumen.loading.units import ANGLES
+
+UNBOUND_INPUT = Code(
+    "unbound-input", "controllers", ERROR, "an input of a bound controller has no message field to come from"
+)
+UNBOUND_OUTPUT = Code("unbound-output", "controllers", WARNING, "an output of a bound controller moves no joint")
 
 
 class Bindings:
@@ -23,7 +30,7 @@ class Bindings:
     def inputs(self) -> Iterator[InputBinding]:
         """Each bound input with its route and field."""
         message, hint = "gets its value from nowhere", "route.field"
-        self.all_bound("inputs", self.fields, Severity.ERROR, message, hint)
+        self.all_bound("inputs", self.fields, UNBOUND_INPUT, message, hint)
         for name, field in self.fields.items():
             if self.known("inputs", name):
                 route, *path = field.split(".")
@@ -32,7 +39,7 @@ class Bindings:
     def outputs(self) -> Iterator[OutputBinding]:
         """Each bound output with its joint."""
         message, hint = "moves nothing", "{joint: HeadYaw, gain: 1.5}"
-        self.all_bound("outputs", self.joints, Severity.WARNING, message, hint)
+        self.all_bound("outputs", self.joints, UNBOUND_OUTPUT, message, hint)
         for name, spec in self.joints.items():
             if self.known("outputs", name) and name in self.usable and "joint" in spec:
                 yield from self.output(self.usable[name], spec)
@@ -45,7 +52,7 @@ class Bindings:
             low, high = (end * self.angle for end in spec["limits"])
             if not low < high:
                 message = f"the limits of `{spec['joint']}` leave it no way to move"
-                self.report("empty-range", (*path, "limits"), message, hint="the second number has to be greater")
+                self.report(EMPTY_RANGE, (*path, "limits"), message, hint="the second number has to be greater")
                 return
         yield OutputBinding(variable.name, spec["joint"], float(spec.get("gain", 1.0)), low, high, unit, path)
 
@@ -56,12 +63,12 @@ class Bindings:
         hint = did_you_mean(name, self.data[side], f"the {side} are")
         message = f"there is no {side[:-1]} `{name}`"
         cause = f"{self.report.document.file} unknown-variable {name}"
-        self.report("unknown-variable", ("bind", side, name), message, hint=hint, key=True, cause=cause)
+        self.report(UNKNOWN_VARIABLE, ("bind", side, name), message, hint=hint, key=True, cause=cause)
         return False
 
-    def all_bound(self, side: str, bound: Mapping[str, Any], severity: Severity, lack: str, example: str) -> None:
+    def all_bound(self, side: str, bound: Mapping[str, Any], code: Code, lack: str, example: str) -> None:
         """Report variables that are bound to nothing, in a file that binds."""
         for name in self.data[side] if "bind" in self.data else ():
             if name not in bound and name not in self.report.lost:
                 message, hint = f"`{name}` is not bound: it {lack}", f"write `{name}: {example}` under `bind`, `{side}`"
-                self.report(f"unbound-{side[:-1]}", (side, name), message, hint=hint, key=True, severity=severity)
+                self.report(code, (side, name), message, hint=hint, key=True)

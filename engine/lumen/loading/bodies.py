@@ -6,10 +6,20 @@ from itertools import pairwise
 from math import inf, isfinite
 from typing import Any
 
-from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.robots import Body, Camera, CoupledLimit, Joint, LinkInertia, Ultrasound
+from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.numbers import EMPTY_RANGE
+from lumen.loading.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
 from lumen.loading.units import ANGLES, LENGTHS
+
+UNKNOWN_MODEL = Code("unknown-model", "references", ERROR, "a robot's body is named that is not in models/")
+INCOMPLETE_POSTURE = Code("incomplete-posture", "robot", ERROR, "a posture leaves out a joint")
+JOINT_IN_TWO_PARTS = Code("joint-in-two-parts", "robot", ERROR, "a joint stands in two parts of the body")
+JOINT_WITHOUT_PART = Code("joint-without-part", "robot", ERROR, "a joint stands in no part of the body")
+UNSORTED_ROWS = Code("unsorted-rows", "robot", ERROR, "the rows of a table do not rise")
+
 
 COMMON_POSTURES = ("Stand", "Crouch")
 """Those that every robot knows: where it begins, and where it may go limp."""
@@ -43,7 +53,7 @@ def build_likes(
             found[name] = _Builder({"joints": {}, **data}, report).like(bodies[data["like"]], name)
         elif data["like"] not in names or "like" in (sources.get(data["like"], ((), None))[0] or ()):
             hint = did_you_mean(data["like"], bodies, "there are") if bodies else "there is none that says all itself"
-            report("unknown-model", ("like",), f"there is no model `{data['like']}` to be like", hint=hint)
+            report(UNKNOWN_MODEL, ("like",), f"there is no model `{data['like']}` to be like", hint=hint)
     return found
 
 
@@ -99,7 +109,7 @@ class _Builder:
         low, high = spec["range"]
         if not low < high:
             hint = f"write [{high}, {low}]" if high < low else "the second number has to be greater"
-            self.report("empty-range", ("joints", name, "range"), f"`{name}` can't move in [{low}, {high}]", hint=hint)
+            self.report(EMPTY_RANGE, ("joints", name, "range"), f"`{name}` can't move in [{low}, {high}]", hint=hint)
             self.report.lost.add(name)
             return None
         unit = self.unit(name)
@@ -111,9 +121,7 @@ class _Builder:
             return True
         if name not in self.data["joints"]:
             hint = did_you_mean(name, self.joints, "the joints are")
-            self.report(
-                "unknown-joint", path, f"`{name}` is not a joint of this robot", hint=hint, cause=f"joint {name}"
-            )
+            self.report(UNKNOWN_JOINT, path, f"`{name}` is not a joint of this robot", hint=hint, cause=f"joint {name}")
         return False
 
     def parts(self) -> dict[str, tuple[str, ...]]:
@@ -126,10 +134,10 @@ class _Builder:
                     message = f"`{name}` stands in `{owner[name]}` and in `{part}`"
                     related = [(("parts", owner[name]), "the other part stands here")]
                     hint = "a joint has one owner"
-                    self.report("joint-in-two-parts", ("parts", part, i), message, hint=hint, related=related)
+                    self.report(JOINT_IN_TWO_PARTS, ("parts", part, i), message, hint=hint, related=related)
             parts[part] = tuple(n for n in names if owner.get(n) == part)
         for name in [n for n in self.joints if n not in owner and whole]:
-            self.report("joint-without-part", ("joints", name), f"no part moves `{name}`", hint="name it in `parts`")
+            self.report(JOINT_WITHOUT_PART, ("joints", name), f"no part moves `{name}`", hint="name it in `parts`")
         return parts
 
     def shared(self) -> dict[str, str]:
@@ -146,7 +154,7 @@ class _Builder:
             return None
         if any(a[0] >= b[0] for a, b in pairwise(rows)):
             message = f"the angles of `{on}` do not rise from row to row"
-            self.report("unsorted-rows", (*path, "rows"), message, hint="sort the rows by their first number")
+            self.report(UNSORTED_ROWS, (*path, "rows"), message, hint="sort the rows by their first number")
             return None
         scaled = tuple((a * self.unit(on), b * self.unit(joint), c * self.unit(joint)) for a, b, c in rows)
         return CoupledLimit(joint, on, scaled)
@@ -160,7 +168,7 @@ class _Builder:
                 hint = (
                     f"every robot has {' and '.join(f'`{n}`' for n in COMMON_POSTURES)}: give the angle of each joint"
                 )
-                self.report("missing-key", ("postures",), message, hint=hint, key=True)
+                self.report(MISSING_KEY, ("postures",), message, hint=hint, key=True)
         return found
 
     def posture(self, posture: str, spec: Mapping[str, float]) -> dict[str, float]:
@@ -171,7 +179,7 @@ class _Builder:
         if missing and not self.report.broken(path) and spec.keys() <= self.data["joints"].keys():
             names = ", ".join(f"`{n}`" for n in missing)
             hint = "a posture holds every joint"
-            self.report("incomplete-posture", path, f"`{posture}` says nothing of {names}", hint=hint, key=True)
+            self.report(INCOMPLETE_POSTURE, path, f"`{posture}` says nothing of {names}", hint=hint, key=True)
         return {n: self.angle_of(n, spec[n], (*path, n)) for n in self.joints if n in spec}
 
     def angle_of(self, name: str, value: float, path: NodePath) -> float:
@@ -181,7 +189,7 @@ class _Builder:
         if not (isfinite(angle) and joint.minimum - POSTURE_TOLERANCE <= angle <= joint.maximum + POSTURE_TOLERANCE):
             message = f"`{name}` can't stand at {value}"
             hint = f"it moves between {joint.minimum / unit:.6g} and {joint.maximum / unit:.6g}"
-            self.report("angle-out-of-range", path, message, hint=hint, root=f"the range of `{name}` in models/")
+            self.report(ANGLE_OUT_OF_RANGE, path, message, hint=hint, root=f"the range of `{name}` in models/")
         return min(max(angle, joint.minimum), joint.maximum)
 
     def camera(self, spec: Mapping[str, Any]) -> Camera:

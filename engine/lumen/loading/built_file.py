@@ -5,6 +5,7 @@ from pathlib import PurePosixPath
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from lumen.language.diagnostics import Diagnostic
+from lumen.loading.document import TOO_LARGE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.memoization import memoize
 from lumen.loading.schema import check_schema
@@ -51,5 +52,5 @@ def unless_too_deep(report: DocumentReport, build: Callable[[], T | None]) -> T 
     try:
         return build()
     except RecursionError:
-        report("too-large", (), "the file is nested too deeply to be read", hint="use fewer levels")
+        report(TOO_LARGE, (), "the file is nested too deeply to be read", hint="use fewer levels")
         return None

@@ -5,8 +5,16 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.language.diagnostics import NodePath, did_you_mean, nearest
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, nearest
 from lumen.loading.schema_messages import Error, describe, node, wording
+
+MISSING_KEY = Code("missing-key", "shape", ERROR, "a key that is needed is not there")
+ONE_VERB = Code("one-verb", "shape", ERROR, "an item says nothing, or two things at once")
+UNKNOWN_KEY = Code("unknown-key", "shape", ERROR, "a key that means nothing here")
+WRONG_KEY = Code("wrong-key", "shape", ERROR, "a name has a form that is not allowed")
+WRONG_TYPE = Code("wrong-type", "shape", ERROR, "a text, a number, a list or a map stands where another is wanted")
+WRONG_VALUE = Code("wrong-value", "shape", ERROR, "a value is not one of those allowed")
+
 
 MAX_UNKNOWN_KEYS = 50
 """Unknown keys of a node for which it is looked what was meant; if there are more, it is something else."""
@@ -19,7 +27,7 @@ class Complaint:
     `missing` is the key that is not there, `suggestion` the one that an unknown key was probably meant to be.
     """
 
-    code: str
+    code: Code
     path: NodePath
     message: str
     hint: str
@@ -63,7 +71,7 @@ def _missing(error: Error, path: NodePath, schema: Any) -> Complaint:
     missing = next(key for key in error.validator_value if key not in error.instance and f"'{key}'" in error.message)
     hint = describe(_property(schema, missing)) or f"write `{missing}:` here"
     message = f"{node(path)} needs the key `{missing}`"
-    return Complaint("missing-key", (*path, missing), message, hint, path, _spared(path), missing=missing)
+    return Complaint(MISSING_KEY, (*path, missing), message, hint, path, _spared(path), missing=missing)
 
 
 def _dependents(error: Error, path: NodePath) -> Iterator[Complaint]:
@@ -72,7 +80,7 @@ def _dependents(error: Error, path: NodePath) -> Iterator[Complaint]:
             if key in error.instance and missing not in error.instance:
                 message = f"`{key}` needs `{missing}` beside it"
                 hint = f"write `{missing}:` in the same place"
-                yield Complaint("missing-key", (*path, key), message, hint, path, (*path, key), True, missing)
+                yield Complaint(MISSING_KEY, (*path, key), message, hint, path, (*path, key), True, missing)
 
 
 def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint]:
@@ -82,7 +90,7 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
     unknown = [k for k in error.instance if not (k in known or any(re.search(pattern, k) for pattern in patterns))]
     for key in unknown[MAX_UNKNOWN_KEYS:]:
         here, message = (*path, key), f"`{key}` is not a key of {node(path)}"
-        yield Complaint("unknown-key", here, message, "", path, here, True)
+        yield Complaint(UNKNOWN_KEY, here, message, "", path, here, True)
     for key in unknown[:MAX_UNKNOWN_KEYS]:
         meant = also if (also := _ALSO.get(key, "")) in free else nearest(key, free)
         hint = f"did you mean `{meant}`?" if meant else did_you_mean(key, free, "allowed here:")
@@ -94,7 +102,7 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
             hint = f"it belongs into {owner}"
         message = f"`{key}` is not a key of {node(path)}" if path else f"`{key}` is not a key that can stand here"
         here = (*path, key)
-        yield Complaint("unknown-key", here, message, hint, path, here, True, suggestion=meant)
+        yield Complaint(UNKNOWN_KEY, here, message, hint, path, here, True, suggestion=meant)
 
 
 _ALSO = {
@@ -116,9 +124,9 @@ def _bad_key(error: Error, path: NodePath) -> Complaint:
     here = (*path, error.instance)
     if error.validator == "enum":
         hint = did_you_mean(error.instance, map(str, error.validator_value), "allowed here:")
-        return Complaint("unknown-key", here, f"`{error.instance}` can't stand in {node(path)}", hint, path, here, True)
+        return Complaint(UNKNOWN_KEY, here, f"`{error.instance}` can't stand in {node(path)}", hint, path, here, True)
     hint = describe(error.schema) or "use letters, digits and `_`"
-    return Complaint("wrong-key", here, f"`{error.instance}` can't be a key of {node(path)}", hint, path, here, True)
+    return Complaint(WRONG_KEY, here, f"`{error.instance}` can't be a key of {node(path)}", hint, path, here, True)
 
 
 def _verbs(error: Error, path: NodePath) -> Complaint:
@@ -127,15 +135,15 @@ def _verbs(error: Error, path: NodePath) -> Complaint:
     if len(keys) > 1:
         message = f"`{keys[0]}` and `{keys[1]}` stand in one item, which says one thing only"
         hint = f"begin a new item: `- {keys[1]}: …`"
-        return Complaint("one-verb", (*path, keys[1]), message, hint, path, _spared(path), True)
+        return Complaint(ONE_VERB, (*path, keys[1]), message, hint, path, _spared(path), True)
     message = f"{node(path)} says nothing: it needs one key, the verb"
-    return Complaint("one-verb", path, message, "write the verb, as in `say: Hello`", path, _spared(path))
+    return Complaint(ONE_VERB, path, message, "write the verb, as in `say: Hello`", path, _spared(path))
 
 
 def _wrong(error: Error, path: NodePath) -> Complaint:
-    code = "wrong-type" if error.validator == "type" else "wrong-value"
+    code = WRONG_TYPE if error.validator == "type" else WRONG_VALUE
     message, hint = wording(error, path)
-    return Complaint(code, path, message, hint, path, path if code == "wrong-type" else _spared(path))
+    return Complaint(code, path, message, hint, path, path if code == WRONG_TYPE else _spared(path))
 
 
 def _property(schema: Any, key: str) -> Any:

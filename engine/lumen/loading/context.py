@@ -6,6 +6,7 @@ from typing import Any
 from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
+from lumen.loading.complaints import WRONG_VALUE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.messages import examine
 from lumen.loading.numbers import finite
@@ -24,7 +25,7 @@ def check_memory(machine: MachineDefinition, report: DocumentReport) -> list[tup
         odd = [path for path, number in _numbers(value, ("context", key)) if not finite(number, report, path)]
         if not odd and key in machine.types and ("types", key) not in unsound and not fits(value, checks[key]):
             hint = "begin with a value that fits, or widen its schema under `types:`"
-            report("wrong-value", ("context", key), f"`{key}` {refusal(value, checks[key])}", hint=hint)
+            report(WRONG_VALUE, ("context", key), f"`{key}` {refusal(value, checks[key])}", hint=hint)
     return unsound
 
 

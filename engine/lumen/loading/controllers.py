@@ -10,7 +10,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import without_extremes
 from lumen.loading.rulebook import Rulebook
 from lumen.loading.table import spread, termless
-from lumen.loading.units import ANGLES, seconds
+from lumen.loading.units import ANGLES, BAD_DURATION, seconds
 from lumen.loading.variables import build_variables
 
 C = TypeVar("C", bound=ControllerDefinition)
@@ -51,7 +51,7 @@ def _tracking(data: Mapping[str, Any], report: DocumentReport, angle: float) -> 
     for key in ("period", "stale"):
         if times[key] == 0:
             message = f"`{key}` has to be longer than nothing"
-            report("bad-duration", ("track", key), message, hint="leave it out, or raise it")
+            report(BAD_DURATION, ("track", key), message, hint="leave it out, or raise it")
     said.update({key: time for key, time in times.items() if time is not None})
     for key in ("sweep", "ahead"):
         said[key] = {joint: float(value) * angle for joint, value in (data.get(key) or {}).items()}

@@ -7,7 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from lumen.language.diagnostics import NodePath, Place
+from lumen.language.diagnostics import ERROR, Code, NodePath, Place
+
+TOO_LARGE = Code("too-large", "text", ERROR, "a file is too large, or nested too deeply")
+
 
 MAX_NODE_DEPTH = 100
 """Levels of nodes within one another that a document may have."""

@@ -4,7 +4,8 @@ import re
 from collections.abc import Callable, Hashable, Iterable
 from typing import Any, TypeVar
 
-from lumen.language.diagnostics import Diagnostic, NodePath, Related, Severity
+from lumen.language.diagnostics import Code, Diagnostic, NodePath, Related
+from lumen.loading.complaints import UNKNOWN_KEY
 from lumen.loading.document import Document
 from lumen.loading.memoization import memoize
 
@@ -33,13 +34,12 @@ class DocumentReport:
 
     def __call__(
         self,
-        code: str,
+        code: Code,
         path: NodePath,
         message: str,
-        *,
         hint: str = "",
+        *,
         key: bool = False,
-        severity: Severity = Severity.ERROR,
         related: Iterable[tuple[NodePath, str]] = (),
         cause: str = "",
         root: str = "",
@@ -51,7 +51,7 @@ class DocumentReport:
         if not self.follows(code, message):
             place = self.document.place(path, key=key)
             others = tuple(Related(self.document.place(where, key=True), what) for where, what in related)
-            self.diagnostics.append(Diagnostic(code, message, place, hint, severity, others, cause, root))
+            self.diagnostics.append(Diagnostic(code, message, place, hint, code.severity, others, cause, root))
 
     def copy(self) -> "DocumentReport":
         """Another report that says the same, and to which more can be said."""
@@ -78,5 +78,5 @@ class DocumentReport:
 
     def follows(self, code: str, message: str) -> bool:
         """Whether a finding only follows from what was pruned: a name is unknown that stood there."""
-        named = code.startswith("unknown-") and code != "unknown-key" and self.lost
+        named = code.startswith("unknown-") and code != UNKNOWN_KEY and self.lost
         return bool(named) and not self.lost.isdisjoint(_QUOTED.findall(message))

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.language.controllers import ControllerDefinition
-from lumen.language.diagnostics import Diagnostic, Place, Severity, gathered
+from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
@@ -61,6 +61,6 @@ class ProjectDraft:
         """The report of `FOLDER/NAME.yaml`."""
         return self.reports[f"{folder}/{name}.yaml"]
 
-    def say(self, code: str, file: str, message: str, hint: str, severity: Severity = Severity.ERROR) -> None:
+    def say(self, code: Code, file: str, message: str, hint: str) -> None:
         """Report something of a file as a whole."""
-        self.loose.append(Diagnostic(code, message, Place(file), hint, severity))
+        self.loose.append(code.at(Place(file), message, hint))

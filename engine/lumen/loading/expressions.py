@@ -4,8 +4,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template
+from lumen.interpreters.expressions.expression_findings import UNGUARDED_FIELD, UNKNOWN_CONTEXT_KEY
 from lumen.language.actions import ComputedValue, Expression, Template
-from lumen.language.diagnostics import Diagnostic, NodePath, Place, did_you_mean
+from lumen.language.diagnostics import NodePath, Place, did_you_mean
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import finite
@@ -62,26 +63,24 @@ class Expressions:
         hint = did_you_mean(key, self.keys, "`context` has")
         message = f"the context has no `{key}`"
         cause = f"{self.report.document.file} context {key}"
-        self.report("unknown-context-key", where, message, hint=hint, key=True, cause=cause)
+        self.report(UNKNOWN_CONTEXT_KEY, where, message, hint=hint, key=True, cause=cause)
         return False
 
     def _sound(self, findings: Iterable[ExpressionFinding], source: str, where: NodePath) -> bool:
         """Whether nothing was found but fields that may be missing: those depend on who calls."""
-        found = [finding for finding in findings if finding.code != "unguarded-field"]
+        found = [finding for finding in findings if finding.code != UNGUARDED_FIELD]
         for finding in found:
             place = place_within(self.report.document, where, source, finding.offset, finding.length)
             cause = cause_of(self.report.document.file, finding)
-            self.report.diagnostics.append(Diagnostic(finding.code, finding.message, place, finding.hint, cause=cause))
+            self.report.diagnostics.append(finding.code.at(place, finding.message, finding.hint, cause=cause))
         return not found
 
 
 def cause_of(file: str, finding: ExpressionFinding) -> str:
     """What a name that is unknown, or may be missing, has in common with the same one elsewhere in the file."""
-    if finding.code == "unknown-context-key":
+    if finding.code == UNKNOWN_CONTEXT_KEY:
         return f"{file} context {finding.message.split('`')[1]}"
-    return (
-        f"{file} {finding.message}" if finding.code.startswith("unknown-") or finding.code == "unguarded-field" else ""
-    )
+    return f"{file} {finding.message}" if finding.code.startswith("unknown-") or finding.code == UNGUARDED_FIELD else ""
 
 
 def place_within(document: Document, path: NodePath, source: str, offset: int, length: int) -> Place:

@@ -4,6 +4,13 @@ from collections.abc import Sequence
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions import parse_expression
+from lumen.interpreters.expressions.expression_findings import (
+    EXPRESSION_SYNTAX,
+    TYPE_MISMATCH,
+    UNKNOWN_FUNCTION,
+    UNKNOWN_NAME,
+    WRONG_ARGUMENT_COUNT,
+)
 from lumen.interpreters.expressions.tree import (
     Binary,
     Conditional,
@@ -16,7 +23,7 @@ from lumen.interpreters.expressions.tree import (
     walk,
 )
 from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
-from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.language.diagnostics import Code, NodePath, did_you_mean
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.word_places import report_word
 
@@ -28,36 +35,36 @@ def check_formula(text: str, names: Sequence[str], report: DocumentReport, path:
     try:
         tree = parse_expression(text)
     except ExpressionError as error:
-        report_word(report, "expression-syntax", path, text, error.offset, 1, error.message, error.hint)
+        report_word(report, EXPRESSION_SYNTAX, path, text, error.offset, 1, error.message, error.hint)
         return False
     found = [_sound(node, text, names, report, path) for node, _ in walk(tree)]
     return all(found)
 
 
 def _sound(node: ExpressionNode, text: str, names: Sequence[str], report: DocumentReport, path: NodePath) -> bool:
-    def refuse(code: str, offset: int, length: int, message: str, hint: str) -> bool:
+    def refuse(code: Code, offset: int, length: int, message: str, hint: str) -> bool:
         report_word(report, code, path, text, offset, length, message, hint)
         return False
 
     match node:
         case Identifier(name) if name not in (*names, "x", "pi"):
             hint = did_you_mean(name, ("x", "pi", *names), "here can stand")
-            return refuse("unknown-name", node.offset, len(name), f"there is no `{name}` in this formula", hint)
+            return refuse(UNKNOWN_NAME, node.offset, len(name), f"there is no `{name}` in this formula", hint)
         case FunctionCall(name) if name not in FORMULA_FUNCTIONS:
             hint = did_you_mean(name, FORMULA_FUNCTIONS, "the functions are")
-            return refuse("unknown-function", node.named, len(name), f"a formula has no function `{name}`", hint)
+            return refuse(UNKNOWN_FUNCTION, node.named, len(name), f"a formula has no function `{name}`", hint)
         case FunctionCall(name, arguments) if len(arguments) != FORMULA_FUNCTIONS[name]:
             wanted = FORMULA_FUNCTIONS[name]
             message = f"`{name}` has {len(arguments)} argument{'s' * (len(arguments) != 1)}, it takes {wanted}"
             hint = f"write {name}({', '.join('ab'[:wanted])})"
-            return refuse("wrong-argument-count", node.named, len(name), message, hint)
+            return refuse(WRONG_ARGUMENT_COUNT, node.named, len(name), message, hint)
         case Literal(value) if isinstance(value, bool) or not isinstance(value, int | float):
             length = node.end - node.offset
-            return refuse("type-mismatch", node.offset, length, "a formula counts with numbers alone", "write a number")
+            return refuse(TYPE_MISMATCH, node.offset, length, "a formula counts with numbers alone", "write a number")
         case Binary("in"):
-            return refuse("type-mismatch", node.offset, 1, "a formula knows no lists", "compare with `==`")
+            return refuse(TYPE_MISMATCH, node.offset, 1, "a formula knows no lists", "compare with `==`")
         case FunctionCall() | Literal() | Binary():
             return True
     if not isinstance(node, _PLAIN):
-        return refuse("type-mismatch", node.offset, 1, "a formula knows no lists and no fields", "use numbers alone")
+        return refuse(TYPE_MISMATCH, node.offset, 1, "a formula knows no lists and no fields", "use numbers alone")
     return True

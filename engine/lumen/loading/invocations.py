@@ -8,7 +8,7 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, StateKind
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
-from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.loading.outline import DUPLICATE_ID, BehaviorOutline, OutlinedState
 
 
 def invocations(entry: OutlinedState, expressions: Expressions) -> tuple[Invoke, ...]:
@@ -42,7 +42,7 @@ def check_ids(outline: BehaviorOutline, report: DocumentReport) -> None:
             if where not in said and _together(one, other):
                 said.add(where)
                 message = f"{one.title} invokes something as `{id}` too, and both can run at once"
-                report("duplicate-id", where, message, hint="give each an `id` of its own")
+                report(DUPLICATE_ID, where, message, hint="give each an `id` of its own")
 
 
 def _together(one: OutlinedState, other: OutlinedState) -> bool:

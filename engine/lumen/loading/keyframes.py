@@ -5,11 +5,25 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.interpreters.choreography import at_speed, joined, mirrored, placed
-from lumen.language.diagnostics import NodePath, did_you_mean, has_errors
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, has_errors
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.poses import PoseReader
 from lumen.loading.units import seconds
+
+UNKNOWN_MOTION = Code("unknown-motion", "references", ERROR, "a motion is named that is not in motions/")
+HANDLES_WITHOUT_KEY = Code(
+    "handles-without-key", "motions", ERROR, "handles are given for a joint that has no key there"
+)
+MIXED_KEYFRAME = Code("mixed-keyframe", "motions", ERROR, "a keyframe is a block and a pose at once")
+MOTION_CYCLE = Code("motion-cycle", "motions", ERROR, "a motion plays itself in the end")
+NO_TEMPO = Code("no-tempo", "motions", ERROR, "beats are counted without a tempo")
+NO_TIME = Code("no-time", "motions", ERROR, "a keyframe has no time")
+TIME_NOT_INCREASING = Code("time-not-increasing", "motions", ERROR, "a keyframe comes before the one above it")
+TOO_MANY_KEYS = Code("too-many-keys", "motions", ERROR, "a motion is longer than can be played")
+TWO_TIMES = Code("two-times", "motions", ERROR, "a keyframe has a time and a beat")
+ZERO_DURATION = Code("zero-duration", "motions", ERROR, "a motion takes no time")
+
 
 MAX_MOTION_KEYS = 200_000
 """Of all joints together, unrolled; an hour of dancing with every joint on every beat has as many."""
@@ -70,12 +84,12 @@ class KeyframeReader:
         for joint in handles.keys() - tracks.keys():
             hint = f"give `{joint}` an angle under `joints`, or delete its handles"
             self.report(
-                "handles-without-key", (*here, "handles", joint), f"`{joint}` has no key here", hint=hint, key=True
+                HANDLES_WITHOUT_KEY, (*here, "handles", joint), f"`{joint}` has no key here", hint=hint, key=True
             )
         for word in ("repeat", "speed"):
             if word in item:
                 hint = "put the keyframes that it is for into a block: `keyframes:` beside it"
-                self.report("mixed-keyframe", (*here, word), f"`{word}` is for blocks", hint=hint, key=True)
+                self.report(MIXED_KEYFRAME, (*here, word), f"`{word}` is for blocks", hint=hint, key=True)
         cues = tuple(Cue(0.0, kind, item[kind], (*here, kind)) for kind in _CUES if kind in item)
         part = MotionDefinition("", 0.0, tracks, cues)
         return mirrored(part) if item.get("mirror") is True else part
@@ -94,7 +108,7 @@ class KeyframeReader:
             if word in item:
                 hint = "put it into a keyframe of its own, with its own time"
                 what = "`keyframes`" if "keyframes" in item else "`play`"
-                self.report("mixed-keyframe", (*here, word), f"`{word}` can't stand beside {what}", hint=hint, key=True)
+                self.report(MIXED_KEYFRAME, (*here, word), f"`{word}` can't stand beside {what}", hint=hint, key=True)
         if "play" in item:
             part = self._played(item["play"], here)
         else:
@@ -109,10 +123,10 @@ class KeyframeReader:
         if name in self.motions:
             return placed(self.motions[name], path)
         if name == self.name:
-            self.report("motion-cycle", path, f"`{name}` plays itself", hint="play another motion, or use `repeat`")
+            self.report(MOTION_CYCLE, path, f"`{name}` plays itself", hint="play another motion, or use `repeat`")
         elif name not in self.broken:
             hint = did_you_mean(name, {*self.motions, *self.broken}, "motions/ has")
-            self.report("unknown-motion", path, f"there is no motion `{name}`", hint=hint)
+            self.report(UNKNOWN_MOTION, path, f"there is no motion `{name}`", hint=hint)
         return MotionDefinition(name, 0.0, {})
 
     def _repeated(self, part: MotionDefinition, times: int, mirror: bool | str, here: NodePath) -> MotionDefinition:
@@ -120,7 +134,7 @@ class KeyframeReader:
             if has_errors(self.report.diagnostics):
                 return part  # what would take its time is broken
             hint = "its last keyframe says how long a round takes: give it a time above 0"
-            self.report("zero-duration", here, "a block that is repeated needs a length", hint=hint)
+            self.report(ZERO_DURATION, here, "a block that is repeated needs a length", hint=hint)
             return part
         if _size(part) * times > MAX_MOTION_KEYS:
             self._too_many(here)
@@ -133,7 +147,7 @@ class KeyframeReader:
         """When an item begins, from the beginning of its list [s]; None where it says nothing that can be used."""
         if "at" in item and "beat" in item:
             hint = "keep one of them"
-            self.report("two-times", (*here, "beat"), "a keyframe has `at` or `beat`, not both", hint=hint, key=True)
+            self.report(TWO_TIMES, (*here, "beat"), "a keyframe has `at` or `beat`, not both", hint=hint, key=True)
         if "at" in item:
             return seconds(item["at"])
         if "beat" not in item:
@@ -144,7 +158,7 @@ class KeyframeReader:
             hint = "write `tempo: 120` (beats per minute) at the top, or use `at`"
             cause = f"{self.report.document.file} no-tempo"
             message = "`beat` needs the motion's tempo"
-            self.report("no-tempo", (*here, "beat"), message, hint=hint, key=True, cause=cause)
+            self.report(NO_TEMPO, (*here, "beat"), message, hint=hint, key=True, cause=cause)
             return None
         return item["beat"] * self.beat if self.poses.number(item["beat"], (*here, "beat")) else None
 
@@ -152,7 +166,7 @@ class KeyframeReader:
         gone = {(*here, key) for key in ("at", "beat", "keyframes", "play")}
         if "at" not in item and "beat" not in item and not self.report.pruned & gone:
             hint = "write `at: 1.5s`" if self.beat is None else "write `beat: 4` or `at: 1.5s`"
-            self.report("no-time", here, "this keyframe does not say when", hint=hint)
+            self.report(NO_TIME, here, "this keyframe does not say when", hint=hint)
 
     def _too_early(self, item: Mapping[str, Any], here: NodePath, begin: float, now: float) -> None:
         path = (*here, "at") if "at" in item else (*here, "beat") if "beat" in item else here
@@ -163,11 +177,11 @@ class KeyframeReader:
             message = f"at {begin:g} s is not after what stands before it"
             hint = f"that lasts until {now:g} s{beats}; times count from the beginning of their list and increase"
         cause = f"{self.report.document.file} {here[:-1]} until {now}"
-        self.report("time-not-increasing", path, message, hint=hint, cause=cause)
+        self.report(TIME_NOT_INCREASING, path, message, hint=hint, cause=cause)
 
     def _too_many(self, here: NodePath) -> None:
         hint = "use fewer keyframes, joints or rounds"
-        self.report("too-many-keys", here, f"the motion would have more than {MAX_MOTION_KEYS:,} keys", hint=hint)
+        self.report(TOO_MANY_KEYS, here, f"the motion would have more than {MAX_MOTION_KEYS:,} keys", hint=hint)
 
 
 def _size(part: MotionDefinition) -> int:

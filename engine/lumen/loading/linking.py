@@ -4,11 +4,17 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Generic, TypeVar
 
+from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH, UNKNOWN_CONTEXT_KEY
 from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
 from lumen.language.actions import Expression
-from lumen.language.diagnostics import did_you_mean
+from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.machines import Invoke, MachineDefinition
+from lumen.loading.document import TOO_LARGE
 from lumen.loading.document_report import DocumentReport
+
+UNKNOWN_BEHAVIOR = Code("unknown-behavior", "references", ERROR, "a behaviour is named that is not in behaviors/")
+INVOKE_CYCLE = Code("invoke-cycle", "statecharts", ERROR, "a behaviour would invoke itself in the end")
+
 
 M = TypeVar("M", bound=MachineDefinition)
 
@@ -57,10 +63,10 @@ class _Linker(Generic[M]):
         if wanted in self.way:
             way = " → ".join(f"`{n}`" for n in (*self.way[self.way.index(wanted) :], wanted))
             message = f"`{wanted}` would invoke itself without end: {way}"
-            report("invoke-cycle", where, message, hint="let one of them go on in a state of its own instead")
+            report(INVOKE_CYCLE, where, message, hint="let one of them go on in a state of its own instead")
         elif wanted not in self.names:
             hint = did_you_mean(wanted, self.names, "behaviors/ has")
-            report("unknown-behavior", where, f"there is no behaviour `{wanted}`", hint=hint)
+            report(UNKNOWN_BEHAVIOR, where, f"there is no behaviour `{wanted}`", hint=hint)
         elif wanted in self.machines:
             if (
                 len(self.way) < MAX_INVOKE_DEPTH
@@ -69,9 +75,7 @@ class _Linker(Generic[M]):
             ):
                 return machine
             hint = "put the states of some into one file"
-            report(
-                "too-large", where, f"more than {MAX_INVOKE_DEPTH} behaviours would run within one another", hint=hint
-            )
+            report(TOO_LARGE, where, f"more than {MAX_INVOKE_DEPTH} behaviours would run within one another", hint=hint)
         return None
 
     def check_input(self, name: str, invoke: Invoke, machine: MachineDefinition) -> None:
@@ -82,7 +86,7 @@ class _Linker(Generic[M]):
             if key in checks:
                 if not (isinstance(value, Expression) or value is None or fits(value, check)):
                     message = f"`{key}` of `{called}` {refusal(value, check)}"
-                    report("type-mismatch", where, message, hint="give it a value of that type")
+                    report(TYPE_MISMATCH, where, message, hint="give it a value of that type")
             elif key not in self.reports[called].lost:
                 hint = did_you_mean(key, checks, "it has")
-                report("unknown-context-key", where, f"the context of `{called}` has no `{key}`", hint=hint, key=True)
+                report(UNKNOWN_CONTEXT_KEY, where, f"the context of `{called}` has no `{key}`", hint=hint, key=True)

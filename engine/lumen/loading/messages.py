@@ -6,12 +6,18 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
-from lumen.language.diagnostics import Diagnostic, NodePath, Place
-from lumen.loading.document import MAX_NODE_DEPTH, Document
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
+from lumen.loading.complaints import WRONG_TYPE, WRONG_VALUE
+from lumen.loading.document import MAX_NODE_DEPTH, TOO_LARGE, Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import schema_faults
-from lumen.loading.yaml_errors import merge_conflict
-from lumen.loading.yaml_reader import parse
+from lumen.loading.yaml_errors import NOT_UTF8, merge_conflict
+from lumen.loading.yaml_reader import EMPTY_FILE, parse
+
+JSON_SYNTAX = Code("json-syntax", "text", ERROR, "a message schema is not JSON")
+ENDLESS_REFERENCE = Code("endless-reference", "routes", ERROR, "a reference in a message schema leads back to itself")
+FOREIGN_REFERENCE = Code("foreign-reference", "routes", ERROR, "a message schema refers to something outside itself")
+
 
 SCHEMA_SUFFIX = ".schema.json"
 
@@ -38,7 +44,7 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
     if isinstance(data, dict):
         examine(data, report)
     else:
-        report("wrong-type", (), "a message schema should be a map of keys and values", hint='as in {"type": "object"}')
+        report(WRONG_TYPE, (), "a message schema should be a map of keys and values", hint='as in {"type": "object"}')
     return (None if report.diagnostics else data), tuple(report.diagnostics)
 
 
@@ -84,12 +90,12 @@ def _refer(data: Any, report: DocumentReport, where: NodePath) -> None:
             _pattern(path, text, report)
         elif key == "$ref" and not text.startswith("#"):
             hint = "write the definition into this file, under `$defs`"
-            report("foreign-reference", path, f"`{text}` lies outside this file", hint=hint)
+            report(FOREIGN_REFERENCE, path, f"`{text}` lies outside this file", hint=hint)
         elif key == "$ref" and _target(data, text) is None:
-            report("foreign-reference", path, f"`{text}` is not in this schema", hint="name a definition under `$defs`")
+            report(FOREIGN_REFERENCE, path, f"`{text}` is not in this schema", hint="name a definition under `$defs`")
         elif key == "$ref" and _circles(data, text):
             hint = "let a reference stand in `properties` or `items`"
-            report("endless-reference", path, f"`{text}` leads back to itself, for the same value", hint=hint)
+            report(ENDLESS_REFERENCE, path, f"`{text}` leads back to itself, for the same value", hint=hint)
 
 
 def _texts(data: Any) -> Iterator[tuple[NodePath, str, str]]:
@@ -114,7 +120,7 @@ def _pattern(path: NodePath, text: str, report: DocumentReport) -> None:
     try:
         re.compile(text)
     except (re.error, RecursionError, OverflowError) as error:
-        report("wrong-value", path, f"`{text}` is no regular expression: {error}", hint="look for a missing bracket")
+        report(WRONG_VALUE, path, f"`{text}` is no regular expression: {error}", hint="look for a missing bracket")
 
 
 def _target(data: Any, reference: str) -> Any:
@@ -165,11 +171,11 @@ def _syntax(file: str, content: bytes, error: Exception) -> Diagnostic:
     if conflict := merge_conflict(file, content.decode("utf-8", "replace")):
         return conflict
     if not content.strip():
-        return Diagnostic("empty-file", "the file is empty", Place(file), "write its content, or delete it")
+        return EMPTY_FILE.at(Place(file), "the file is empty", "write its content, or delete it")
     if isinstance(error, json.JSONDecodeError):
         place = Place(file, error.lineno, error.colno, error.lineno, error.colno + 1)
         hint = "look for a missing comma, quote or bracket here or in the line above"
-        return Diagnostic("json-syntax", f"this is not JSON: {error.msg}", place, hint)
+        return JSON_SYNTAX.at(place, f"this is not JSON: {error.msg}", hint)
     if isinstance(error, UnicodeDecodeError):
-        return Diagnostic("not-utf8", "the file is not UTF-8 text", Place(file), "save it as UTF-8")
-    return Diagnostic("too-large", "the file nests too deeply or holds too long a number", Place(file), "simplify it")
+        return NOT_UTF8.at(Place(file), "the file is not UTF-8 text", "save it as UTF-8")
+    return TOO_LARGE.at(Place(file), "the file nests too deeply or holds too long a number", "simplify it")

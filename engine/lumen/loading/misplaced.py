@@ -4,7 +4,10 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
+from lumen.language.diagnostics import ERROR, Code
 from lumen.loading.document_report import DocumentReport
+
+MISPLACED_FILE = Code("misplaced-file", "text", ERROR, "a file stands in the folder of another kind")
 
 
 class _Kind(NamedTuple):
@@ -39,5 +42,5 @@ def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
     where = next(key for key in data if key in {*other.marks, other.alone})
     message = f"this is {other.name}, where {own.name} should stand"
     hint = f"its place is {other.folder}"
-    report("misplaced-file", (where,), message, hint=hint, key=True, cause=f"{meant} {file.stem}")
+    report(MISPLACED_FILE, (where,), message, hint=hint, key=True, cause=f"{meant} {file.stem}")
     return True

@@ -12,7 +12,7 @@ from lumen.language.motions import Interpolation, MotionDefinition
 from lumen.language.robots import Body
 from lumen.loading.built_file import unless_too_deep
 from lumen.loading.document_report import DocumentReport
-from lumen.loading.keyframes import KeyframeReader
+from lumen.loading.keyframes import MOTION_CYCLE, TOO_MANY_KEYS, ZERO_DURATION, KeyframeReader
 from lumen.loading.poses import PoseReader
 from lumen.loading.units import ANGLES, seconds
 
@@ -54,7 +54,7 @@ def build_motion(
     if part.duration <= 0.0:
         if not has_errors(report.diagnostics):
             hint = "give its last keyframe a time above 0"
-            report("zero-duration", ("keyframes",), "the motion takes no time", hint=hint, key=True)
+            report(ZERO_DURATION, ("keyframes",), "the motion takes no time", hint=hint, key=True)
         return None
     return _finished(part, data, poses, name, into)
 
@@ -73,7 +73,7 @@ def build_motions(
     order, circles = _order({name: [p for p in played if p in files and p != name] for name, played in plays.items()})
     for name, other in circles:
         message = f"`{name}` plays `{other}`, which in the end plays `{name}`"
-        files[name][1]("motion-cycle", plays[name][other], message, hint="let one of them play something else")
+        files[name][1](MOTION_CYCLE, plays[name][other], message, hint="let one of them play something else")
     built: dict[str, M] = {}
     for name in order:
         data, report = files[name]
@@ -92,7 +92,7 @@ def countable(data: Any, report: DocumentReport) -> bool:
     if len(data["keyframes"]) <= MAX_KEYFRAMES:
         return True
     hint = f"a list can have {MAX_KEYFRAMES:,}; use blocks with `repeat`, or several motions"
-    report("too-many-keys", ("keyframes",), f"{len(data['keyframes']):,} keyframes are too many", hint=hint, key=True)
+    report(TOO_MANY_KEYS, ("keyframes",), f"{len(data['keyframes']):,} keyframes are too many", hint=hint, key=True)
     return False
 
 

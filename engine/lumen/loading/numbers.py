@@ -4,9 +4,15 @@ from collections.abc import Callable, Iterator, Mapping
 from math import isfinite, isinf, isnan
 from typing import Any
 
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.pruning import prune
+
+EXTREME_NUMBER = Code("extreme-number", "shape", ERROR, "a number is too large or too small to count with")
+NOT_A_NUMBER = Code("not-a-number", "shape", ERROR, "a number is infinite or none")
+EMPTY_RANGE = Code("empty-range", "shape", ERROR, "a range holds nothing")
+NOT_FINITE = Code("not-finite", "controllers", ERROR, "a number is infinite where it can't be")
+
 
 LEAST_NUMBER, GREATEST_NUMBER = 1e-12, 1e12
 """A number of a controller is 0, or its size lies between these: their squares and quotients are floats as well."""
@@ -20,7 +26,7 @@ def finite(value: float, report: DocumentReport, path: NodePath) -> bool:
         sound = False
     if not sound:
         shown = f".{value}".replace(".-", "-.") if isinstance(value, float) else "an endless row of digits"
-        report("not-a-number", path, f"`{shown}` can't be used here", hint="write an ordinary number")
+        report(NOT_A_NUMBER, path, f"`{shown}` can't be used here", hint="write an ordinary number")
     return sound
 
 
@@ -39,15 +45,15 @@ def without_extremes(data: Any, report: DocumentReport, endless: Callable[[NodeP
 def _usable(number: float, report: DocumentReport, path: NodePath, endless: Callable[[NodePath], bool]) -> bool:
     if isinstance(number, float) and isnan(number):
         message = "`.nan` is not a number that a controller can use"
-        report("not-a-number", path, message, hint="write a number")
+        report(NOT_A_NUMBER, path, message, hint="write a number")
     elif isinstance(number, float) and isinf(number):
         if endless(path):
             return True
-        report("not-finite", path, "this number is infinite, and has to have an end", hint="write a number")
+        report(NOT_FINITE, path, "this number is infinite, and has to have an end", hint="write a number")
     elif number and not LEAST_NUMBER <= abs(number) <= GREATEST_NUMBER:
         size = "large" if abs(number) > 1 else "small"
         hint = f"write 0, or a number between {LEAST_NUMBER:g} and {GREATEST_NUMBER:g}"
-        report("extreme-number", path, f"this number is too {size} to count with", hint=hint)
+        report(EXTREME_NUMBER, path, f"this number is too {size} to count with", hint=hint)
     else:
         return True
     return False

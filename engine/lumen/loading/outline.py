@@ -4,9 +4,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.language.diagnostics import MAX_COMPARED_NAMES, NodePath, did_you_mean, nearest
+from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
+from lumen.language.diagnostics import ERROR, MAX_COMPARED_NAMES, Code, NodePath, did_you_mean, nearest
 from lumen.language.machines import StateKind
 from lumen.loading.document_report import DocumentReport
+
+DUPLICATE_ID = Code(
+    "duplicate-id", "statecharts", ERROR, "two states, or two behaviours that are invoked at once, have the same id"
+)
 
 
 @dataclass(slots=True)
@@ -70,7 +75,7 @@ class BehaviorOutline:
         self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
         message = f"there is no state `{written}` to go to from {source.title}"
         if len(self.report.missed) > MAX_COMPARED_NAMES:  # what was meant by each would take long to find out
-            self.report("unknown-state", where, message, hint="it has to be a state of this file")
+            self.report(UNKNOWN_STATE, where, message, hint="it has to be a state of this file")
             return
         known = self._known(source, target)
         hint = self._hint(source, target, known)
@@ -80,7 +85,7 @@ class BehaviorOutline:
         meant = self._meant(source, nearest(target, known))
         related = [(meant.where, f"`{meant.name}` stands here")] if meant and "mean" in hint else []
         cause = f"{self.report.document.file} state {target.lstrip('#.')}"
-        self.report("unknown-state", where, message, hint=hint, related=related, cause=cause)
+        self.report(UNKNOWN_STATE, where, message, hint=hint, related=related, cause=cause)
 
     def _known(self, source: OutlinedState, target: str) -> list[str]:
         """What could have been written in place of a target."""
@@ -136,7 +141,7 @@ class BehaviorOutline:
             message = f"the id `{alias}` of `{entry.path}` already belongs to {first.title}"
             hint = "give each state an id of its own"
             before = [((*first.where, "id") if first.alias == alias else first.where, "it belongs to this one")]
-            self.report("duplicate-id", (*entry.where, "id"), message, hint=hint, related=before)
+            self.report(DUPLICATE_ID, (*entry.where, "id"), message, hint=hint, related=before)
             self.report.lost |= {alias, *entry.path.split(".")}
             entry.alias = ""
 

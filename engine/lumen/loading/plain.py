@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.diagnostics import Diagnostic, NodePath, Place
-from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
+from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place
+from lumen.loading.complaints import WRONG_TYPE
+from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Document, NodeSpan
 
 
 def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnostic]]:
@@ -39,7 +40,7 @@ class _Reader:
             case None | bool() | int() | float() | str():
                 return value
         hint = "use texts, numbers, true, false, null, lists and dicts"
-        self.say("wrong-type", path, f"a {type(value).__name__} can't stand in a file", hint)
+        self.say(WRONG_TYPE, path, f"a {type(value).__name__} can't stand in a file", hint)
         return None
 
     def overflow(self, path: NodePath) -> None:
@@ -51,16 +52,16 @@ class _Reader:
                 else f"more than {MAX_NODES:,} values"
             )
             self.say(
-                "too-large", path, f"this is too large to be read: {what}", "use fewer levels, and no dict in itself"
+                TOO_LARGE, path, f"this is too large to be read: {what}", "use fewer levels, and no dict in itself"
             )
 
     def is_key(self, key: object, path: NodePath) -> bool:
         if not isinstance(key, str):
-            self.say("wrong-type", path, f"the key {key!r} is not a text", "put quotes around it")
+            self.say(WRONG_TYPE, path, f"the key {key!r} is not a text", "put quotes around it")
         return isinstance(key, str)
 
-    def say(self, code: str, path: NodePath, message: str, hint: str) -> None:
-        self.diagnostics.append(Diagnostic(code, message, self.place(path), hint))
+    def say(self, code: Code, path: NodePath, message: str, hint: str) -> None:
+        self.diagnostics.append(code.at(self.place(path), message, hint))
 
     def place(self, path: NodePath) -> Place:
         shown = ".".join(map(str, path[:12])) + (" …" if len(path) > 12 else "")

@@ -6,10 +6,19 @@ from math import isfinite, pi
 from typing import Any
 
 from lumen.interpreters.choreography import mirrored_joint
-from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.numbers import NOT_A_NUMBER
 from lumen.loading.units import ANGLES, seconds
+
+UNKNOWN_JOINT = Code("unknown-joint", "references", ERROR, "the robot has no joint of that name")
+UNKNOWN_POSE = Code("unknown-pose", "references", ERROR, "a pose is named that the motion does not define")
+UNKNOWN_POSTURE = Code("unknown-posture", "references", ERROR, "the robot knows no posture of that name")
+ANGLE_OUT_OF_RANGE = Code("angle-out-of-range", "motions", ERROR, "an angle lies outside the joint's limits")
+HAND_OUT_OF_RANGE = Code("hand-out-of-range", "motions", ERROR, "a hand is opened to less than 0 or more than 1")
+SHARED_DRIVE = Code("shared-drive", "motions", ERROR, "two joints with one motor stand at different angles")
+
 
 PlacedAngles = dict[str, tuple[float, NodePath]]
 """For every joint its angle [rad; a hand 0..1] and where it stands in the file."""
@@ -53,13 +62,13 @@ class PoseReader:
         if name in self.body.postures:
             return self.body.postures[name]
         hint = did_you_mean(name, self.body.postures, f"{self.body.name} knows")
-        self.report("unknown-posture", path, f"there is no posture `{name}`", hint=hint, cause=f"posture {name}")
+        self.report(UNKNOWN_POSTURE, path, f"there is no posture `{name}`", hint=hint, cause=f"posture {name}")
         return None
 
     def number(self, value: float, path: NodePath) -> bool:
         """Whether a number is one to count with."""
         if not isfinite(value):
-            self.report("not-a-number", path, f"`{value}` can't be used here", hint="write an ordinary number")
+            self.report(NOT_A_NUMBER, path, f"`{value}` can't be used here", hint="write an ordinary number")
         return isfinite(value)
 
     def handles(self, item: Mapping[str, Any], here: NodePath) -> Handles:
@@ -85,7 +94,7 @@ class PoseReader:
         if name not in self.poses and ("poses",) not in self.report.pruned:
             hint = did_you_mean(name, self.poses, "`poses` has")
             cause = f"{self.report.document.file} pose {name}"
-            self.report("unknown-pose", path, f"there is no pose `{name}`", hint=hint, cause=cause)
+            self.report(UNKNOWN_POSE, path, f"there is no pose `{name}`", hint=hint, cause=cause)
         return {joint: (angle, path) for joint, (angle, _) in self.poses.get(name, {}).items()}
 
     def _joints(self, joints: Mapping[str, float], path: NodePath) -> PlacedAngles:
@@ -104,7 +113,7 @@ class PoseReader:
         if joint not in self.body.joints:
             hint = did_you_mean(joint, self.body.joints, f"{self.body.name} has")
             self.report(
-                "unknown-joint", path, f"there is no joint `{joint}`", hint=hint, key=True, cause=f"joint {joint}"
+                UNKNOWN_JOINT, path, f"there is no joint `{joint}`", hint=hint, key=True, cause=f"joint {joint}"
             )
         return joint in self.body.joints
 
@@ -123,7 +132,7 @@ class PoseReader:
         elif mirrored_joint(name)[0] != name and self._fits(name, -value * self.factor):
             hint = f"left and right turn opposite ways: write {-value:g} if that is meant; {hint}"
         message = f"`{name}` can't go to {value:g} {self.unit}"
-        self.report("angle-out-of-range", path, message, hint=hint, cause=cause, root=root)
+        self.report(ANGLE_OUT_OF_RANGE, path, message, hint=hint, cause=cause, root=root)
         return False
 
     def _fits(self, name: str, angle: float) -> bool:
@@ -143,7 +152,7 @@ class PoseReader:
         if 0.0 <= value <= 1.0:
             return {joint: (value, path)}
         hint = "0 is closed, 1 is open"
-        self.report("hand-out-of-range", path, f"a hand can't be opened to {value:g}", hint=hint)
+        self.report(HAND_OUT_OF_RANGE, path, f"a hand can't be opened to {value:g}", hint=hint)
         return {}
 
     def _shared(self, angles: PlacedAngles, own: PlacedAngles) -> PlacedAngles:
@@ -151,7 +160,7 @@ class PoseReader:
         for follower, leader in self.body.shared.items():
             if follower in own and leader in own and abs(own[follower][0] - own[leader][0]) > DRIVE_TOLERANCE:
                 message = f"`{leader}` and `{follower}` share one motor and can't stand at different angles"
-                self.report("shared-drive", own[follower][1], message, hint=f"give only `{leader}`")
+                self.report(SHARED_DRIVE, own[follower][1], message, hint=f"give only `{leader}`")
             chosen = next((source[j] for source in (own, angles) for j in (leader, follower) if j in source), None)
             if chosen:
                 angles |= {leader: chosen, follower: chosen}

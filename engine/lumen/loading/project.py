@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any, TypeVar
 
-from lumen.language.diagnostics import Severity, has_errors
+from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -23,6 +23,11 @@ from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.settings import build_settings
 from lumen.loading.stories import build_story
 
+MISSING_FILE = Code("missing-file", "text", ERROR, "a file that is needed is not there")
+NOT_READ = Code("not-read", "text", WARNING, "a file ends in .yml and is not read")
+UNREADABLE_FILE = Code("unreadable-file", "text", ERROR, "a file can't be opened")
+
+
 T = TypeVar("T")
 
 _KINDS: Mapping[str, str] = {
@@ -39,7 +44,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     """Everything that can be built from these files; it depends on nothing else and never raises for what they say."""
     found = ProjectDraft(files)
     if (content := files.get(MAIN_FILE)) is None:
-        found.say("missing-file", MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
+        found.say(MISSING_FILE, MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
     elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
         found.settings = main.built
     models, behaviors = _each(found, "models", build_body), _each(found, "behaviors", _machine)
@@ -97,7 +102,7 @@ def _each(found: ProjectDraft, folder: str, build: Build[T]) -> dict[str, BuiltF
             continue
         if path.suffix == ".yml":
             hint = f"rename it to {path.stem}.yaml, or delete it"
-            found.say("not-read", file, "files that end in .yml are not read", hint, Severity.WARNING)
+            found.say(NOT_READ, file, "files that end in .yml are not read", hint)
             continue
         names.add(path.stem)
         if (each := _read(found, file, content, _KINDS[folder], build)) is not None:
@@ -115,7 +120,7 @@ def _read(found: ProjectDraft, file: str, content: bytes, kind: str, build: Buil
     """What one document holds, None where it can't be read at all."""
     if isinstance(content, Unreadable):
         hint = "put a readable file there, or delete it"
-        found.say("unreadable-file", file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)
+        found.say(UNREADABLE_FILE, file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)
         return None
     read, diagnostics = read_file(file, content, kind, build)
     found.loose += diagnostics
@@ -150,7 +155,7 @@ def _messages(found: ProjectDraft) -> None:
         names.add(name)
         if isinstance(content, Unreadable):
             reason = content.decode("utf-8", "replace")
-            found.say("unreadable-file", file, f"this can't be read: {reason}", "put a readable file there")
+            found.say(UNREADABLE_FILE, file, f"this can't be read: {reason}", "put a readable file there")
             continue
         schema, diagnostics = build_message(file, content)
         found.loose += diagnostics

@@ -6,7 +6,7 @@ from typing import Any
 from lumen.language.diagnostics import NodePath
 from lumen.language.routes import COMMAND, STOP, Carried, Direction, Route, Size
 from lumen.loading.document_report import DocumentReport
-from lumen.loading.units import seconds
+from lumen.loading.units import BAD_DURATION, seconds
 
 DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
 DEFAULT_LATENCY = 0.15
@@ -54,10 +54,8 @@ def duration(
         return None
     length = seconds(data[key])
     if length is None:
-        report("bad-duration", (*where, key), f"`{data[key]}` is not a duration", hint=DURATION_HINT)
+        report(BAD_DURATION, (*where, key), f"`{data[key]}` is not a duration", hint=DURATION_HINT)
     elif positive and length <= 0.0:
-        report(
-            "bad-duration", (*where, key), f"`{key}` has to be longer than nothing", hint="leave it out, or raise it"
-        )
+        report(BAD_DURATION, (*where, key), f"`{key}` has to be longer than nothing", hint="leave it out, or raise it")
         return None
     return length

@@ -4,10 +4,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.controllers import Activation, Operators, Rule, RuleBlock, Variable
-from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.rule_parser import Mention, RuleSyntaxError, RuleWord, parse_rule
 from lumen.loading.word_places import report_word
+
+NO_RULES = Code("no-rules", "controllers", ERROR, "a controller has no rules")
+NOT_AN_OUTPUT = Code(
+    "not-an-output", "controllers", ERROR, "a rule concludes something of a variable that is no output"
+)
+RULE_SYNTAX = Code("rule-syntax", "controllers", ERROR, "a rule can't be read")
+UNKNOWN_TERM = Code("unknown-term", "controllers", ERROR, "a rule names a term that the variable does not have")
+UNKNOWN_VARIABLE = Code(
+    "unknown-variable", "controllers", ERROR, "a rule or a binding names a variable that does not exist"
+)
 
 
 class Rulebook:
@@ -36,7 +46,7 @@ class Rulebook:
             rules = tuple(self.rules(("blocks", name, "rules"), spec.get("rules") or ()))
             blocks.append(RuleBlock(rules, self.combination(spec.get("operators") or {}), name))
         if not any(block.rules for block in blocks) and not self.report.diagnostics:
-            self.report("no-rules", (), "the controller has no rules", hint="write `rules:` and a list of them")
+            self.report(NO_RULES, (), "the controller has no rules", hint="write `rules:` and a list of them")
         return blocks
 
     def combination(self, differing: Mapping[str, Any]) -> Operators:
@@ -55,7 +65,7 @@ class Rulebook:
         try:
             said = parse_rule(text)
         except RuleSyntaxError as error:
-            self.at_word("rule-syntax", path, text, error.word, error.message, error.hint)
+            self.at_word(RULE_SYNTAX, path, text, error.word, error.message, error.hint)
             return None
         known = [self.mentioned(path, text, mention) for mention in said.mentions]
         return Rule(said.antecedent, said.consequents, said.weight, text, path) if all(known) else None
@@ -71,7 +81,7 @@ class Rulebook:
         terms = spec.get("terms", {})
         if term and term.text not in terms:
             hint = did_you_mean(term.text, terms, f"`{word.text}` has")
-            self.at_word("unknown-term", path, text, term, f"`{word.text}` has no term `{term.text}`", hint)
+            self.at_word(UNKNOWN_TERM, path, text, term, f"`{word.text}` has no term `{term.text}`", hint)
             return False
         variable = self.built[side].get(word.text)
         return variable is not None and (term is None or term.text in variable.terms)
@@ -81,12 +91,12 @@ class Rulebook:
         if mention.concluded and word.text in self.data["inputs"]:
             hint = did_you_mean(word.text, self.data["outputs"], "the outputs are")
             message = f"`{word.text}` is an input: a rule concludes an output"
-            self.at_word("not-an-output", path, text, word, message, hint)
+            self.at_word(NOT_AN_OUTPUT, path, text, word, message, hint)
             return
         names = [*([] if mention.concluded else self.data["inputs"]), *self.data["outputs"]]
         hint = did_you_mean(word.text, names, "the variables are")
-        self.at_word("unknown-variable", path, text, word, f"there is no variable `{word.text}`", hint)
+        self.at_word(UNKNOWN_VARIABLE, path, text, word, f"there is no variable `{word.text}`", hint)
 
-    def at_word(self, code: str, path: NodePath, text: str, word: RuleWord, message: str, hint: str) -> None:
+    def at_word(self, code: Code, path: NodePath, text: str, word: RuleWord, message: str, hint: str) -> None:
         """Report something of one word of a rule."""
         report_word(self.report, code, path, text, word.offset, len(word.text), message, hint)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from lumen.errors import LumenError
 from lumen.language.diagnostics import NodePath
-from lumen.loading.complaints import Complaint, complaints
-from lumen.loading.document import Document
+from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_TYPE, Complaint, complaints
+from lumen.loading.document import TOO_LARGE, Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
@@ -23,7 +23,7 @@ FILE_KINDS = ("lumen", "behavior", "story", "controller", "motion", "body", "mes
 
 MAX_PRUNING_ROUNDS = 20
 
-_ASTRAY = ("unknown-key", "one-verb")
+_ASTRAY = (UNKNOWN_KEY, ONE_VERB)
 """What is said of keys that belong below the one above them."""
 
 
@@ -44,7 +44,7 @@ def check_schema(document: Document, kind: str, report: DocumentReport) -> Any:
                 return None
             found = list(_complaints(_validator(kind), report.document.data))
         except RecursionError:
-            report("too-large", (), "the file is nested too deeply to be read", hint="use fewer levels")
+            report(TOO_LARGE, (), "the file is nested too deeply to be read", hint="use fewer levels")
             return None
         doomed = _judge(found, report, said)
         if () in doomed:
@@ -83,7 +83,7 @@ def _followed(validator: "Draft202012Validator", data: Any) -> list[Complaint]:
     try:
         return list(_complaints(validator, data))
     except RecursionError:
-        return [Complaint("too-large", (), "this is nested too deeply to be read", "use fewer levels", (), ())]
+        return [Complaint(TOO_LARGE, (), "this is nested too deeply to be read", "use fewer levels", (), ())]
 
 
 def _fits(fits: Quick, data: Any) -> bool:
@@ -145,7 +145,7 @@ def _judge(found: list[Complaint], report: DocumentReport, said: set[NodePath]) 
 
 def _emptied(found: list[Complaint], report: DocumentReport) -> dict[NodePath, NodePath]:
     """The nodes in which a key is empty and keys after it are unknown, each with that key: those belong below it."""
-    empty = {c.about[:-1]: c.path for c in found if c.code == "wrong-type" and c.path and _at(report, c.path) is None}
+    empty = {c.about[:-1]: c.path for c in found if c.code == WRONG_TYPE and c.path and _at(report, c.path) is None}
     found_below: dict[NodePath, NodePath] = {}
     for complaint in found:
         if complaint.code in _ASTRAY and complaint.about:
@@ -169,7 +169,7 @@ def _stands_after(report: DocumentReport, path: NodePath, other: NodePath) -> bo
 
 def _cause(complaint: Complaint, report: DocumentReport) -> str:
     """What several keys of one node have in common that mean nothing there, or are missing: they are one mistake."""
-    if complaint.suggestion or complaint.code not in ("unknown-key", "missing-key"):
+    if complaint.suggestion or complaint.code not in (UNKNOWN_KEY, MISSING_KEY):
         return ""
     if not complaint.about and complaint.hint:  # of the root's keys each may be a mistake of its own
         return ""

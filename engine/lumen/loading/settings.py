@@ -5,12 +5,15 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
+from lumen.language.diagnostics import ERROR, Code
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.routes import build_routes, duration
 from lumen.loading.units import LENGTHS
+
+BAD_STAGE = Code("bad-stage", "robot", ERROR, "the stage does not hold the place where the robot starts")
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:
         low, high = data["stage"][axis]
         if not (isfinite(low) and isfinite(high) and low <= 0.0 <= high and low < high):
             message = f"the robot starts at 0, which is not inside [{low:g}, {high:g}]"
-            report("bad-stage", ("stage", axis), message, hint="the first number is at most 0, the second at least 0")
+            report(BAD_STAGE, ("stage", axis), message, hint="the first number is at most 0, the second at least 0")
             return None
         spans.append((low * unit, high * unit))
     return Stage(*spans)

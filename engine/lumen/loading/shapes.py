@@ -1,9 +1,15 @@
 """What a state may hold, by its type; a schema can say it only in riddles."""
 
-from lumen.language.diagnostics import did_you_mean
+from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.machines import StateKind
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.outline import BehaviorOutline, OutlinedState
+
+FINAL_IN_PARALLEL = Code("final-in-parallel", "statecharts", ERROR, "a final state is a region of a parallel state")
+MISPLACED_KEY = Code("misplaced-key", "statecharts", ERROR, "a key stands in a kind of state that does not have it")
+NO_STATES = Code("no-states", "statecharts", ERROR, "a compound or parallel state has no states")
+NEVER_DONE = Code("never-done", "statecharts", ERROR, "an `onDone` stands in a state that has no `do`")
+
 
 _COMMON = {"id", "description", "type"}
 _HISTORY = {*_COMMON, "history", "target"}
@@ -41,7 +47,7 @@ def _check_keys(entry: OutlinedState, report: DocumentReport) -> None:
             hint = "add `type: history`" if key == "history" else "transitions stand under `on`, `always` or `after`"
         report.missed.update(filter(lambda value: isinstance(value, str), [entry.data[key]]))
         message = f"{_ARTICLES.get(entry.kind, f'a {entry.kind}')} state has no `{key}`"
-        report("misplaced-key", (*entry.where, key), message, hint=hint, key=True)
+        report(MISPLACED_KEY, (*entry.where, key), message, hint=hint, key=True)
 
 
 def _check_children(entry: OutlinedState, report: DocumentReport) -> None:
@@ -49,14 +55,14 @@ def _check_children(entry: OutlinedState, report: DocumentReport) -> None:
         return
     if all(child.kind is StateKind.HISTORY for child in entry.children.values()):
         hint = "give it `states`, or leave out its `type`"
-        report("no-states", entry.where, f"{entry.title} has no states to be in", hint=hint, key=True)
+        report(NO_STATES, entry.where, f"{entry.title} has no states to be in", hint=hint, key=True)
 
 
 def _check_parent(entry: OutlinedState, report: DocumentReport) -> None:
     parent = entry.parent
     if entry.kind is StateKind.FINAL and parent and parent.kind is StateKind.PARALLEL:
         hint = "a parallel state is done when each of its regions has reached a final state of its own"
-        report("final-in-parallel", entry.where, f"`{entry.path}` is final in a parallel state", hint=hint, key=True)
+        report(FINAL_IN_PARALLEL, entry.where, f"`{entry.path}` is final in a parallel state", hint=hint, key=True)
 
 
 def _check_done(entry: OutlinedState, report: DocumentReport) -> None:
@@ -64,6 +70,4 @@ def _check_done(entry: OutlinedState, report: DocumentReport) -> None:
         return
     if entry.kind is StateKind.ATOMIC and "onDone" in entry.data and "do" not in entry.data:
         hint = "give it a `do`, or use `always`"
-        report(
-            "never-done", (*entry.where, "onDone"), f"{entry.title} has no `do` to be done with", hint=hint, key=True
-        )
+        report(NEVER_DONE, (*entry.where, "onDone"), f"{entry.title} has no `do` to be done with", hint=hint, key=True)

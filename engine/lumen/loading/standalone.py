@@ -8,6 +8,7 @@ from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.loading.behaviors import build_machine
+from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.context import check_memory
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
@@ -77,7 +78,7 @@ class _Family(Generic[M]):
         machine = build_machine(check_schema(document, "behavior", report), report, name=name, into=self.into)
         if machine is None:
             if not has_errors([*diagnostics, *report.diagnostics]):
-                report("missing-key", (), "a behaviour needs `states`", hint="write `states:` with at least one state")
+                report(MISSING_KEY, (), "a behaviour needs `states`", hint="write `states:` with at least one state")
             return []
         check_memory(machine, report)
         self.machines[name] = machine

@@ -20,8 +20,9 @@ from lumen.language.stories import (
     VisitorAction,
 )
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.numbers import NOT_A_NUMBER
 from lumen.loading.routes import duration
-from lumen.loading.units import seconds
+from lumen.loading.units import BAD_DURATION, seconds
 
 DEFAULT_WITHIN = 30.0
 """How long an expectation waits where it does not say [s]."""
@@ -53,7 +54,7 @@ def _performance(how: str, report: DocumentReport, where: NodePath) -> str | flo
         return how
     length = seconds(how)
     if length is None:
-        report("bad-duration", where, f"`{how}` is not a duration", hint="write `fails`, `hangs` or one such as `2s`")
+        report(BAD_DURATION, where, f"`{how}` is not a duration", hint="write `fails`, `hangs` or one such as `2s`")
         return "fails"
     return length
 
@@ -84,7 +85,7 @@ def _visitor(body: Any, report: DocumentReport, where: NodePath) -> VisitorActio
         return Arrive(Visitor()) if body == "arrives" else Leave()
     for key, value in body.items():
         if not isfinite(value):
-            report("not-a-number", (*where, key), f"`{value}` can't be used here", hint="write an ordinary number")
+            report(NOT_A_NUMBER, (*where, key), f"`{value}` can't be used here", hint="write an ordinary number")
             return None
     return Arrive(Visitor(**{key: float(value) for key, value in body.items()}))
 

@@ -4,8 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.document import Document, NodeSpan
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.rulebook import UNKNOWN_VARIABLE
+from lumen.loading.terms import TWO_SHAPES
 
 
 def spread(report: DocumentReport) -> Any:
@@ -45,12 +48,12 @@ class _Table:
             names = [name for variables in self.sides.values() for name in variables]
             hint = did_you_mean(name, names, "the variables are")
             message, cause = f"there is no variable `{name}`", f"{self.report.document.file} unknown-variable {name}"
-            self.report("unknown-variable", path, message, hint=hint, key=True, cause=cause)
+            self.report(UNKNOWN_VARIABLE, path, message, hint=hint, key=True, cause=cause)
             self.report.lost.add(term)  # its own variable has none of that name now
             return
         if term in self.sides[side][name]["terms"]:
             message = f"`{name}` has a term `{term}` already: a term has one shape"
-            self.report("two-shapes", path, message, hint="delete one of them", key=True)
+            self.report(TWO_SHAPES, path, message, hint="delete one of them", key=True)
             return
         self.sides[side][name]["terms"][term] = {kind: parameters}
         self.moved(path, (side, name, "terms", term), kind)
@@ -74,4 +77,4 @@ def termless(data: Mapping[str, Any], report: DocumentReport) -> None:
         if not (spec.get("terms") or report.broken(path) or report.broken(("terms",))):
             message = f"the output `{name}` has no terms"
             hint = "write `terms:` in it, or a table `terms:` for all variables"
-            report("missing-key", path, message, hint=hint, key=True)
+            report(MISSING_KEY, path, message, hint=hint, key=True)

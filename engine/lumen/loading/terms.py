@@ -5,10 +5,20 @@ from math import inf, isfinite
 from typing import Any
 
 from lumen.language.controllers import TERM_PARAMETERS, Term
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.formulas import check_formula
+from lumen.loading.numbers import NOT_FINITE
 from lumen.loading.rule_parser import KEYWORDS
+
+EMPTY_TERM = Code("empty-term", "controllers", ERROR, "a term covers nothing")
+NO_SHAPE = Code("no-shape", "controllers", ERROR, "a term has no shape")
+NOT_ASCENDING = Code("not-ascending", "controllers", ERROR, "the corners of a term do not rise")
+NOT_POSITIVE = Code("not-positive", "controllers", ERROR, "a width is not more than 0")
+RESERVED_NAME = Code("reserved-name", "controllers", ERROR, "a variable or term is called like a word of the rules")
+TWO_SHAPES = Code("two-shapes", "controllers", ERROR, "a term has two shapes")
+WRONG_PARAMETERS = Code("wrong-parameters", "controllers", ERROR, "a term has too few or too many numbers")
+
 
 _POSITIVE: Mapping[str, tuple[int, ...]] = {
     "gaussian": (1,), "gaussian-product": (1, 3), "bell": (1,), "spike": (1,), "cosine": (1,),
@@ -33,7 +43,7 @@ def build_terms(
 def plain_name(name: str, report: DocumentReport, path: NodePath) -> None:
     """Report a name that a rule could not tell from its own words."""
     if name.lower() in KEYWORDS:
-        report("reserved-name", path, f"`{name}` is a word of the rules", hint="choose another name", key=True)
+        report(RESERVED_NAME, path, f"`{name}` is a word of the rules", hint="choose another name", key=True)
 
 
 class _Term:
@@ -73,10 +83,10 @@ class _Term:
     def shapeless(self) -> None:
         if len(self.kinds) > 1:
             message = f"`{self.name}` is a `{self.kinds[0]}` and a `{self.kinds[1]}`: a term has one shape"
-            self.report("two-shapes", (*self.path, self.kinds[1]), message, hint="make them two terms", key=True)
+            self.report(TWO_SHAPES, (*self.path, self.kinds[1]), message, hint="make them two terms", key=True)
         elif not any(pruned[: len(self.path)] == self.path for pruned in self.report.pruned):
             hint = "write, for example, `gaussian: [0, 80]`"
-            self.report("no-shape", self.path, f"`{self.name}` has no shape", hint=hint, key=True)
+            self.report(NO_SHAPE, self.path, f"`{self.name}` has no shape", hint=hint, key=True)
 
     def counted(self, kind: str, parameters: tuple[float, ...]) -> bool:
         names, count = TERM_PARAMETERS[kind], len(parameters)
@@ -90,7 +100,7 @@ class _Term:
         if not right and not self.report.broken((*self.path, kind)):
             message = f"`{kind}` of `{self.name}` has {count} parameter{'s' * (count != 1)}, it takes {wanted}"
             hint = f"write `{kind}: [{', '.join(names)}]`" if kind not in ("discrete", "linear") else ""
-            self.report("wrong-parameters", (*self.path, kind), message, hint=hint)
+            self.report(WRONG_PARAMETERS, (*self.path, kind), message, hint=hint)
         return right
 
     def sound(self, kind: str, parameters: tuple[float, ...]) -> bool:
@@ -102,7 +112,7 @@ class _Term:
                 if parameter in (inf, -inf) and kind in _INFINITE:
                     continue
                 message = f"{self.what(kind, i)} of `{self.name}` is not a finite number"
-                self.report("not-finite", self.at(kind, i), message, hint="write a number")
+                self.report(NOT_FINITE, self.at(kind, i), message, hint="write a number")
                 return False
         return True
 
@@ -110,7 +120,7 @@ class _Term:
         for i in _POSITIVE.get(kind, ()):
             if not parameters[i] > 0:
                 message = f"{self.what(kind, i)} of `{self.name}` is {parameters[i]:g}: it has to be above 0"
-                self.report("not-positive", self.at(kind, i), message, hint="it says how wide the term is")
+                self.report(NOT_POSITIVE, self.at(kind, i), message, hint="it says how wide the term is")
                 return False
         return True
 
@@ -121,11 +131,11 @@ class _Term:
                 if values[i] < values[i - 1]:
                     message = f"{self.what(kind, i)} of `{self.name}`, {values[i]:g}, comes before {values[i - 1]:g}"
                     hint = f"write them in ascending order: {', '.join(f'{v:g}' for v in sorted(values))}"
-                    self.report("not-ascending", self.at(kind, i), message, hint=hint)
+                    self.report(NOT_ASCENDING, self.at(kind, i), message, hint=hint)
                     return False
         if kind in _DIFFERENT and values[0] == values[1]:
             message = f"`{kind}` of `{self.name}` begins and ends at {values[0]:g}"
-            self.report("empty-term", (*self.path, kind), message, hint="give it two different numbers")
+            self.report(EMPTY_TERM, (*self.path, kind), message, hint="give it two different numbers")
             return False
         return True
 

@@ -4,13 +4,19 @@ from collections.abc import Iterator, Mapping
 from itertools import combinations
 from typing import Any
 
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.machines import StateKind, Transition
 from lumen.loading.actions import Actions
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import invoked
 from lumen.loading.outline import BehaviorOutline, OutlinedState
+
+CONFLICTING_TARGETS = Code(
+    "conflicting-targets", "statecharts", ERROR, "the states of a target can't be active together"
+)
+ENDLESS_ALWAYS = Code("endless-always", "statecharts", ERROR, "an `always` would run for ever")
+
 
 PlacedValue = tuple[NodePath, Any]
 
@@ -100,7 +106,7 @@ class TransitionReader:
             return None
         if not (event or targets or guard):
             hint = "give it a `target` or a `guard`"
-            self.report("endless-always", where, "an `always` without target and guard would run for ever", hint=hint)
+            self.report(ENDLESS_ALWAYS, where, "an `always` without target and guard would run for ever", hint=hint)
             return None
         paths = tuple(target.path for target in targets)
         return Transition(entry.path, event, paths, guard, actions, row.get("reenter", False))
@@ -110,7 +116,7 @@ class TransitionReader:
             if not _fit(one, other):
                 message = f"`{one.path}` and `{other.path}` can't be active together"
                 hint = "the targets of a list have to lie in different regions of a parallel state"
-                self.report("conflicting-targets", where, message, hint=hint)
+                self.report(CONFLICTING_TARGETS, where, message, hint=hint)
                 return False
         return True
 

@@ -4,6 +4,11 @@ import re
 from collections.abc import Mapping
 from math import pi
 
+from lumen.language.diagnostics import ERROR, Code
+
+BAD_DURATION = Code("bad-duration", "shape", ERROR, "a duration can't be read")
+
+
 ANGLES: Mapping[str, float] = {"rad": 1.0, "deg": pi / 180}
 LENGTHS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 

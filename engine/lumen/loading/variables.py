@@ -7,9 +7,16 @@ from typing import Any
 
 from lumen.interpreters.inference.weighted import INVERSE_MEMBERSHIPS
 from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, Variable
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.numbers import EMPTY_RANGE, NOT_FINITE
 from lumen.loading.terms import build_terms, plain_name
+
+DUPLICATE_VARIABLE = Code("duplicate-variable", "controllers", ERROR, "an input and an output have the same name")
+TERM_WITHOUT_SET = Code("term-without-set", "controllers", ERROR, "a term has no set, and the defuzzifier needs one")
+TERM_WITHOUT_VALUE = Code(
+    "term-without-value", "controllers", ERROR, "a term has no value, and the defuzzifier needs one"
+)
 
 
 def build_variables(data: Mapping[str, Any], report: DocumentReport, side: str) -> dict[str, Variable]:
@@ -58,7 +65,7 @@ class _Variables:
         plain_name(name, self.report, (self.side, name))
         if self.side == "outputs" and name in self.data["inputs"]:
             message = f"`{name}` is an input already"
-            self.report("duplicate-variable", ("outputs", name), message, hint="give one another name", key=True)
+            self.report(DUPLICATE_VARIABLE, ("outputs", name), message, hint="give one another name", key=True)
 
     def named_in(self, name: str) -> tuple[str, ...]:
         """The variables that a formula of this one's terms may ask for: with weights, what is known before it."""
@@ -76,10 +83,10 @@ class _Variables:
         path: NodePath = (self.side, name, "range")
         if not low < high:
             hint = f"write [{high:g}, {low:g}]" if high < low else "the second number has to be greater"
-            self.report("empty-range", path, f"the range [{low:g}, {high:g}] of `{name}` is empty", hint=hint)
+            self.report(EMPTY_RANGE, path, f"the range [{low:g}, {high:g}] of `{name}` is empty", hint=hint)
         elif self.side == "outputs" and not (isfinite(low) and isfinite(high)):
             message = f"the range of the output `{name}` has no end"
-            self.report("not-finite", path, message, hint="its set is sampled between two numbers")
+            self.report(NOT_FINITE, path, message, hint="its set is sampled between two numbers")
         else:
             return True
         return False
@@ -108,9 +115,9 @@ class _Variables:
                 hint = (
                     f"use one of `constant`, `linear`, `function`, {', '.join(f'`{k}`' for k in INVERSE_MEMBERSHIPS)}"
                 )
-                self.report("term-without-value", path, message, hint=hint, key=True)
+                self.report(TERM_WITHOUT_VALUE, path, message, hint=hint, key=True)
             elif not weighted and term.kind in VALUE_TERMS:
                 what = f"`{variable.defuzzifier}` needs sets" if output else "an input needs sets"
                 hint = "use `defuzzifier: weighted-average`" if output else "use a shape, as `triangle`"
                 message = f"{what}, and `{term.kind}` is a single value"
-                self.report("term-without-set", path, message, hint=hint, key=True)
+                self.report(TERM_WITHOUT_SET, path, message, hint=hint, key=True)

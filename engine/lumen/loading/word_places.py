@@ -2,13 +2,13 @@
 
 from dataclasses import replace
 
-from lumen.language.diagnostics import NodePath, Place
+from lumen.language.diagnostics import Code, NodePath, Place
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 
 
 def report_word(
-    report: DocumentReport, code: str, path: NodePath, text: str, offset: int, length: int, message: str, hint: str
+    report: DocumentReport, code: Code, path: NodePath, text: str, offset: int, length: int, message: str, hint: str
 ) -> None:
     """Report something of `text[offset : offset + length]`, where `text` is the scalar at `path`."""
     before = len(report.diagnostics)

@@ -4,7 +4,14 @@ import re
 
 import yaml
 
-from lumen.language.diagnostics import Diagnostic, Place
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, Place
+from lumen.loading.document import TOO_LARGE
+
+MERGE_CONFLICT = Code("merge-conflict", "text", ERROR, "both sides of a merge stand in the file")
+NOT_UTF8 = Code("not-utf8", "text", ERROR, "a file is not UTF-8 text")
+TAB = Code("tab", "text", ERROR, "a tab stands in the indentation")
+YAML_SYNTAX = Code("yaml-syntax", "text", ERROR, "a file is not YAML")
+
 
 _LOOK = "look at the indentation, a missing colon, quote or bracket here or in the line above"
 _HINTS = {
@@ -27,7 +34,7 @@ def merge_conflict(file: str, text: str) -> Diagnostic | None:
     line = text.count("\n", 0, found.start()) + 1
     place = Place(file, line, 1, line, len(found[0]) + 1)
     hint = "keep one of the two versions, and delete the lines with <<<<<<<, ======= and >>>>>>>"
-    return Diagnostic("merge-conflict", "both sides of a merge stand in the file", place, hint)
+    return MERGE_CONFLICT.at(place, "both sides of a merge stand in the file", hint)
 
 
 def not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
@@ -40,14 +47,14 @@ def not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
         message = (
             f"the file is not UTF-8 text: `{content[at : at + 1].decode('latin-1')}` may be from Windows or Latin-1"
         )
-    return Diagnostic("not-utf8", message, Place(file, line, column, line, column + 1), "save it as UTF-8")
+    return NOT_UTF8.at(Place(file, line, column, line, column + 1), message, "save it as UTF-8")
 
 
 def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     if isinstance(error, yaml.reader.ReaderError):
         line = text.count("\n", 0, error.position) + 1
         place = Place(file, line, 1, line, 2)
-        return Diagnostic("yaml-syntax", "the file holds a character that YAML does not allow", place, "delete it")
+        return YAML_SYNTAX.at(place, "the file holds a character that YAML does not allow", "delete it")
     if conflict := merge_conflict(file, text):
         return conflict
     context = getattr(error, "context", None) or ""
@@ -55,30 +62,30 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         start = error.context_mark  # type: ignore[attr-defined]
         place = Place(file, start.line + 1, start.column + 1, start.line + 1, start.column + 2)
         hint = "close it with the same sign; a quote inside the text needs the other kind of quotes around it"
-        return Diagnostic("yaml-syntax", "a quoted text begins here and is not closed where it should be", place, hint)
+        return YAML_SYNTAX.at(place, "a quoted text begins here and is not closed where it should be", hint)
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     if "simple key" in context and not text.splitlines()[error.context_mark.line].lstrip().startswith(("-", "?")):  # type: ignore[attr-defined]
         mark = error.context_mark  # type: ignore[attr-defined]
     if mark is None:
-        return Diagnostic("too-large", "the file is nested too deeply to be read", Place(file), "use fewer levels")
+        return TOO_LARGE.at(Place(file), "the file is nested too deeply to be read", "use fewer levels")
     place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2)
     lines = text.splitlines()
     source = lines[mark.line] if mark.line < len(lines) else ""
     if "\t" in source[: mark.column + 1] and not source[: mark.column].strip():
         column = source.index("\t") + 1
         place = Place(file, mark.line + 1, column, mark.line + 1, column + 1)
-        return Diagnostic("tab", "a tab stands in the indentation", place, "YAML is indented with spaces: use two")
+        return TAB.at(place, "a tab stands in the indentation", "YAML is indented with spaces: use two")
     from lumen.loading.slips import slip_near  # only where something slipped
 
     if slip := slip_near(lines, mark.line):
         row, column, length, message, hint = slip
-        return Diagnostic("yaml-syntax", message, Place(file, row, column, row, column + length), hint)
+        return YAML_SYNTAX.at(Place(file, row, column, row, column + length), message, hint)
     problem = " ".join(str(getattr(error, "problem", error)).split())
     detail = f"{problem} {context}" if context else problem
     hint = next((words for sign, words in _HINTS.items() if sign in problem), _LOOK)
     if "mapping values" in problem and _too_deep(lines, mark.line):
         hint = "this line stands further in than the one above, which has its value already: align the two"
-    return Diagnostic("yaml-syntax", f"this is not YAML: {detail}", place, hint)
+    return YAML_SYNTAX.at(place, f"this is not YAML: {detail}", hint)
 
 
 def _too_deep(lines: list[str], index: int) -> bool:

@@ -11,11 +11,18 @@ from typing import Any
 
 import yaml
 
-from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related
-from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place, Related
+from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Document, NodeSpan
 from lumen.loading.memoization import memoize
 from lumen.loading.yaml_errors import merge_conflict, not_utf8, syntax_error
 from lumen.loading.yaml_scalars import resolve
+
+COMPLEX_KEY = Code("complex-key", "text", ERROR, "a key is a list or a map")
+DUPLICATE_KEY = Code("duplicate-key", "text", ERROR, "a key stands twice in the same place")
+DECIMAL_COMMA = Code("decimal-comma", "text", ERROR, "a number is written with a comma")
+EMPTY_FILE = Code("empty-file", "text", ERROR, "a file holds nothing")
+YAML_TAG = Code("yaml-tag", "text", ERROR, "a tag stands before a value")
+
 
 _WHOLE, _DECIMALS = re.compile(r"[-+]?[0-9]+"), re.compile(r"[0-9]+(ms|s|min|h)?")
 _TAGS = {"!include": "write here what stands in that file: one file can't include another"}
@@ -51,7 +58,7 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
     finally:
         loader.dispose()
     if node is None:
-        return None, [Diagnostic("empty-file", "the file is empty", Place(file), "write its content, or delete it")]
+        return None, [EMPTY_FILE.at(Place(file), "the file is empty", "write its content, or delete it")]
     reader = _Reader(file)
     data = reader.read(node, (), None, 0)
     if "<<<<<<< " in text and (conflict := merge_conflict(file, text)):
@@ -76,7 +83,7 @@ class _Reader:
             return None
         if node.tag not in _PLAIN:
             self.say(
-                "yaml-tag",
+                YAML_TAG,
                 node,
                 "a tag (a word that begins with `!`) means nothing here",
                 _TAGS.get(node.tag, "delete the tag"),
@@ -97,7 +104,7 @@ class _Reader:
                 data[next(reversed(data))] = resolve(number)
             elif not isinstance(key, yaml.ScalarNode):
                 hint = "put quotes around a text that begins with `{`"
-                self.say("complex-key", key, "a key has to be a single word or text", hint)
+                self.say(COMPLEX_KEY, key, "a key has to be a single word or text", hint)
             elif key.value in data:
                 self.duplicate(key, path)
                 if data[key.value] is None:  # the line was doubled, and the second one goes on
@@ -113,7 +120,7 @@ class _Reader:
         start, end = before.start_mark, key.end_mark
         place = Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
         message = f"a comma ends the number {before.value}, and `{key.value}` would be a key"
-        self.diagnostics.append(Diagnostic("decimal-comma", message, place, f"write a point: {number}"))
+        self.diagnostics.append(DECIMAL_COMMA.at(place, message, f"write a point: {number}"))
 
     def duplicate(self, key: yaml.Node, path: NodePath) -> None:
         """Report a key that stands a second time; those of one map are one finding."""
@@ -121,9 +128,7 @@ class _Reader:
         hint = f"the first one stands in line {first.line}" if first else ""
         related = (Related(first, "the first one stands here"),) if first else ()
         message, cause = f"`{key.value}` stands twice in the same place", f"{self.file} twice in {path}"
-        self.diagnostics.append(
-            Diagnostic("duplicate-key", message, self.place(key), hint, related=related, cause=cause)
-        )
+        self.diagnostics.append(DUPLICATE_KEY.at(self.place(key), message, hint, related=related, cause=cause))
 
     def overflow(self, node: yaml.Node, depth: int) -> None:
         if not self.full:
@@ -133,10 +138,10 @@ class _Reader:
                 if depth > MAX_NODE_DEPTH
                 else f"more than {MAX_NODES:,} values"
             )
-            self.say("too-large", node, f"the file is too large to be read: {what}", "split it, or use fewer aliases")
+            self.say(TOO_LARGE, node, f"the file is too large to be read: {what}", "split it, or use fewer aliases")
 
-    def say(self, code: str, node: yaml.Node, message: str, hint: str) -> None:
-        self.diagnostics.append(Diagnostic(code, message, self.place(node), hint))
+    def say(self, code: Code, node: yaml.Node, message: str, hint: str) -> None:
+        self.diagnostics.append(code.at(self.place(node), message, hint))
 
     def place(self, node: yaml.Node) -> Place:
         start, end = node.start_mark, node.end_mark

@@ -9,51 +9,9 @@ from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.loading.project import assemble, draft
-from lumen.rules import (
-    controllers,
-    effects,
-    events,
-    expressions,
-    guards,
-    models,
-    motions,
-    references,
-    renaming,
-    routes,
-    schemas,
-    speech,
-    statecharts,
-    stories,
-    timing,
-    traps,
-    units,
-    unused,
-)
-from lumen.rules import dead_ends as ways
+from lumen.rules.checks import CHECKS
+from lumen.rules.codes import CODES
 from lumen.rules.ignores import obey
-
-FAMILIES = (
-    traps,
-    schemas,
-    references,
-    models,
-    expressions,
-    events,
-    routes,
-    speech,
-    controllers,
-    motions,
-    units,
-    guards,
-    statecharts,
-    ways,
-    timing,
-    stories,
-    renaming,
-    effects,
-    unused,
-)
-"""The rules, in the order they look: what is unused or never reached is looked for where nothing else is wrong."""
 
 
 def load(path: str | Path | None = None) -> Project:
@@ -81,8 +39,8 @@ def check_files(root: Path, files: Mapping[str, bytes]) -> tuple[Project | None,
     """The project that these files make, None where they have errors, and everything wrong with them."""
     found = draft(files)
     found.root = root
-    for family in FAMILIES:
-        family.check(found)
-    diagnostics = obey(found.diagnostics, {file: report.document for file, report in found.reports.items()})
+    for rule in CHECKS:
+        rule.check(found)
+    diagnostics = obey(found.diagnostics, {file: report.document for file, report in found.reports.items()}, CODES)
     project = None if has_errors(diagnostics) else assemble(found, str(root.absolute()))
     return project, diagnostics

@@ -1,12 +1,19 @@
 """Controllers that are bound: whether a joint is turned the right way, as far as it can, and not too eagerly."""
 
 from lumen.language.controllers import ControllerDefinition, OutputBinding, Proposition, Variable
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.robots import Body
 from lumen.language.scales import ranks
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import find, first
+from lumen.rules.finding import first
+
+HIGH_GAIN = Code("high-gain", "controllers", WARNING, "a binding's gain makes the loop overshoot")
+RANGE_BEYOND_JOINT = Code(
+    "range-beyond-joint", "controllers", WARNING, "an output can ask for more than its joint can do"
+)
+WRONG_SIGN = Code("wrong-sign", "controllers", WARNING, "what is turned goes the other way than what is seen")
+
 
 MAX_GAIN = 2.0
 """With images and commands 100 to 200 ms on their way a loop of gain 1.5 does not overshoot, and one of 3 by 46 %."""
@@ -42,7 +49,7 @@ def _sense(controller: ControllerDefinition, output: Variable, report: DocumentR
             )
             way = OPPOSITE[output.direction]
             hint = f"write `direction: {way}`, and a gain with the other sign; or swap what the rules conclude"
-            find(report, "wrong-sign", (*output.where, "direction"), message, hint, key=True,
+            report(WRONG_SIGN, (*output.where, "direction"), message, hint, key=True,
                  related=[((*variable.where, "direction"), "the input's")])  # fmt: skip
 
 
@@ -71,7 +78,7 @@ def _sign(variable: Variable, binding: OutputBinding, path: NodePath, report: Do
         message = f"`{variable.name}` counts {variable.direction}, and `{binding.joint}` {counts}"
         hint = f"write `gain: {-binding.gain:g}`, or another `direction`"
         others = [((*variable.where, "direction"), "the output's")]
-        find(report, "wrong-sign", path, message, hint, related=others)
+        report(WRONG_SIGN, path, message, hint, related=others)
 
 
 def _gain(
@@ -87,7 +94,7 @@ def _gain(
     late = max((routes[b.route].latency for b in controller.input_bindings if b.route in routes), default=0.0)
     age = f", and what it sees is {1000 * late:.0f} ms old" if late else ""
     message = f"a gain of {binding.gain:g} overshoots: each answer turns farther than it says{age}"
-    find(report, "high-gain", path, message, f"write at most {MAX_GAIN:g}; 1.5 is quick and does not overshoot")
+    report(HIGH_GAIN, path, message, f"write at most {MAX_GAIN:g}; 1.5 is quick and does not overshoot")
 
 
 def _limits(
@@ -101,4 +108,4 @@ def _limits(
         most, whole = far / controller.angle, (high - low) / controller.angle
         message = f"`{variable.name}` can ask for a turn of {most:.4g}, and `{joint.name}` has {whole:.4g} in all"
         hint = "narrow the range or the gain; mind the unit"
-        find(report, "range-beyond-joint", (*variable.where, "range"), message, hint)
+        report(RANGE_BEYOND_JOINT, (*variable.where, "range"), message, hint)

@@ -3,14 +3,15 @@
 from collections.abc import Mapping
 from typing import Any
 
+from lumen.interpreters.expressions.expression_findings import UNKNOWN_FIELD
 from lumen.language.controllers import ControllerDefinition, InputBinding, OutputBinding
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import memoize
+from lumen.loading.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
 from lumen.rules import aims, rulebooks, shapes, surfaces
-from lumen.rules.finding import find
 from lumen.rules.references import known_route
 
 LIMIT_TOLERANCE = 2e-3
@@ -50,7 +51,7 @@ def _input(draft: ProjectDraft, report: DocumentReport, binding: InputBinding) -
         if step not in fields:
             owner = ".".join((binding.route, *binding.path[:i]))
             hint = did_you_mean(step, fields, f"`{owner}` has")
-            find(report, "unknown-field", path, f"the messages of `{owner}` have no `{step}`", hint)
+            report(UNKNOWN_FIELD, path, f"the messages of `{owner}` have no `{step}`", hint)
             return
         schema = fields[step]
 
@@ -70,7 +71,7 @@ def _known(
 ) -> bool:
     if joint not in body.joints and joint not in lost:
         hint = did_you_mean(joint, body.joints, f"{body.name} has")
-        find(report, "unknown-joint", path, f"there is no joint `{joint}`", hint, key=key, cause=f"joint {joint}")
+        report(UNKNOWN_JOINT, path, f"there is no joint `{joint}`", hint, key=key, cause=f"joint {joint}")
     return joint in body.joints
 
 
@@ -82,4 +83,4 @@ def _limits(
         if limit is not None and not joint.minimum - LIMIT_TOLERANCE <= limit <= joint.maximum + LIMIT_TOLERANCE:
             low, high, given = (round(angle / controller.angle, 1) for angle in (joint.minimum, joint.maximum, limit))
             message = f"`{joint.name}` can't go to {given:g}"
-            find(report, "angle-out-of-range", (*path, i), message, f"it goes from {low:g} to {high:g}")
+            report(ANGLE_OUT_OF_RANGE, (*path, i), message, f"it goes from {low:g} to {high:g}")

@@ -4,18 +4,28 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from lumen.language.actions import Raise, Send
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import find
-from lumen.rules.statecharts import reachable
+from lumen.loading.transitions import ENDLESS_ALWAYS
+from lumen.rules.statecharts import ALWAYS_LOOP, reachable
 from lumen.rules.walk import nested
+
+DEAD_END = Code("dead-end", "statecharts", WARNING, "nothing leads on from a state")
+NO_WAY_BACK = Code(
+    "no-way-back", "statecharts", WARNING, "no way leads back from a state to where the behaviour begins"
+)
+HISTORY_OF_END = Code(
+    "history-of-end", "statecharts", WARNING, "a history is gone to that remembers the end of its state"
+)
+WAITS_FOR_EVER = Code("waits-for-ever", "statecharts", WARNING, "a state is left only if a visitor does something")
+
 
 GraphNode = tuple[str, str]
 """`in` a state, or on the way `to` one (which then begins), or `any` state below one; and its path."""
 
-_RESTLESS = ("endless-always", "always-loop")
+_RESTLESS = (ENDLESS_ALWAYS, ALWAYS_LOOP)
 
 
 def check(draft: ProjectDraft) -> None:
@@ -42,7 +52,7 @@ def _ended(machine: MachineDefinition, report: DocumentReport) -> None:
                 message = f"`{path}` remembers the end of `{parent.name}`, which is over at once"
                 hint = f"go to `{parent.name}` itself to begin it anew"
                 related = [(done[0].where, "it was left at its end here")]
-                find(report, "history-of-end", transition.where, message, hint, related=related)
+                report(HISTORY_OF_END, transition.where, message, hint, related=related)
 
 
 @dataclass
@@ -182,7 +192,7 @@ class _Ways:
         state = self.machine.states[path]
         hint = "give it a transition, or `type: final` where the behaviour is at its end"
         message = f"nothing leads on from `{state.name}`: whoever comes here stays for ever"
-        find(self.report, "dead-end", state.where, message, hint, key=True, related=self.from_where(path))
+        self.report(DEAD_END, state.where, message, hint, key=True, related=self.from_where(path))
 
     def lost(self, track: State, home: State, lost: list[str], dead: Iterable[str]) -> None:
         """States from which no way leads home; of those that lead to one another only the first is told."""
@@ -198,7 +208,7 @@ class _Ways:
             state = self.machine.states[path]
             message = f"no way leads back from `{state.name}` to `{home.name}`, where it began"
             hint = f"let a transition lead to `{home.name}`, here or in a state that follows"
-            find(self.report, "no-way-back", state.where, message, hint, key=True, related=self.from_where(path))
+            self.report(NO_WAY_BACK, state.where, message, hint, key=True, related=self.from_where(path))
 
     def waiting(self, state: State) -> None:
         """A state that is left only if a visitor does something."""
@@ -211,7 +221,7 @@ class _Ways:
             heard = " or ".join(f"`{name}`" for name in names)
             message = f"`{state.name}` waits for {heard} for ever"
             hint = "visitors walk away: give it `after:` as well, such as `after: {30s: …}`"
-            find(self.report, "waits-for-ever", state.where, message, hint, key=True)
+            self.report(WAITS_FOR_EVER, state.where, message, hint, key=True)
 
     def in_course(self, transition: Transition) -> bool:
         """Whether a transition belongs to the ordinary course, not to an alarm around it."""

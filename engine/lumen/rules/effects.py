@@ -2,11 +2,14 @@
 
 from pathlib import Path
 
+from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import find
+
+NO_EFFECT = Code("no-effect", "statecharts", WARNING, "something that is read, and has no effect")
+MISSING_SOUND = Code("missing-sound", "motions", WARNING, "a sound file is not there, so that a motion is silent")
 
 
 def check(draft: ProjectDraft) -> None:
@@ -23,7 +26,7 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
         if state.on_reload and not state.children:
             message = "`onReload` has no effect in a state without states: nothing within it can be gone"
             hint = "let the state around it have it"
-            find(report, "no-effect", (*state.where, "onReload"), message, hint, key=True)
+            report(NO_EFFECT, (*state.where, "onReload"), message, hint, key=True)
 
 
 def _sounds(motion: MotionDefinition, report: DocumentReport, root: Path) -> None:
@@ -32,7 +35,7 @@ def _sounds(motion: MotionDefinition, report: DocumentReport, root: Path) -> Non
         if cue.kind == "sound" and cue.where[-1:] == ("sound",) and not _there(root, str(cue.value)):
             message = f"there is no file {cue.value} in the project: the motion is silent here"
             hint = "put the file there, or name one that is"
-            find(report, "missing-sound", cue.where, message, hint, cause=f"sound {cue.value}")
+            report(MISSING_SOUND, cue.where, message, hint, cause=f"sound {cue.value}")
 
 
 def _there(root: Path, file: str) -> bool:

@@ -4,14 +4,18 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.language.actions import Raise, Send
-from lumen.language.diagnostics import NodePath, did_you_mean, nearest
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import MachineDefinition, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.endings import ending_fault
-from lumen.rules.finding import find, first
+from lumen.rules.finding import first
 from lumen.rules.walk import action_sites
+
+UNKNOWN_EVENT = Code("unknown-event", "references", ERROR, "a behaviour waits for an event that nothing raises")
+UNUSED_EVENT = Code("unused-event", "statecharts", WARNING, "an event is raised that nothing waits for")
+
 
 BUILT_IN_FAMILIES = (
     "done.state.", "done.do.", "done.invoke.", "done.command.", "error.do.", "error.invoke.", "error.command.",
@@ -109,7 +113,7 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
             if _of_the_engine(event):
                 if sound and not report.lost.intersection(event.split(".")) and (hint := ending_fault(machine, event)):
                     path, message = _descriptor(transition.where, event), f"nothing raises the event `{event}`"
-                    find(report, "unknown-event", path, message, hint, key=True)
+                    report(UNKNOWN_EVENT, path, message, hint, key=True)
             else:
                 path = _descriptor(transition.where, event)
                 lost = draft.main.lost | report.lost
@@ -120,7 +124,7 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
                 if not routed:
                     hint, cause = "no route of lumen.yaml has an `event`: look whether `routes` is whole", "no routes"
                 message = f"nothing raises the event `{event}`"
-                find(report, "unknown-event", path, message, hint, key=True, cause=cause)
+                report(UNKNOWN_EVENT, path, message, hint, key=True, cause=cause)
 
 
 def _of_the_engine(event: str) -> bool:
@@ -145,4 +149,4 @@ def _raised(machine: MachineDefinition, report: DocumentReport) -> None:
                     continue  # it was meant there
                 hint = did_you_mean(event, {d for d in waited if "*" not in d})
                 hint = hint if "mean" in hint else "react to it with `on:`, or delete this"
-                find(report, "unused-event", path, f"nothing waits for the event `{event}`", hint)
+                report(UNUSED_EVENT, path, f"nothing waits for the event `{event}`", hint)

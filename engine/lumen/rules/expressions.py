@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template, schema_of
+from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH
 from lumen.language.actions import Template
-from lumen.language.diagnostics import Diagnostic, Related
+from lumen.language.diagnostics import Related
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import cause_of, place_within
-from lumen.rules.codes import CODES
 from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.walk import ExpressionSite, expression_sites
 
@@ -67,7 +67,7 @@ class _Expressions:
 
     def declared(self, spot: ExpressionSite, part: str, finding: ExpressionFinding) -> Iterator[Related]:
         """Where the context keys stand whose types don't fit."""
-        if finding.code == "type-mismatch":
+        if finding.code == TYPE_MISMATCH:
             keys = [*re.findall(r"\bcontext\.(\w+)", part), *([spot.key] if spot.key else [])]
             for key in dict.fromkeys(k for k in keys if k in self.machine.context):
                 place = self.report.document.place(("context", key), key=True)
@@ -76,16 +76,15 @@ class _Expressions:
     def nulls(self, part: str, finding: ExpressionFinding) -> str:
         """What parts have in common whose one context key begins with nothing, where something was meant."""
         keys = {key for key in re.findall(r"\bcontext\.(\w+)", part) if key in self.machine.context}
-        key = keys.pop() if len(keys) == 1 and finding.code == "type-mismatch" else ""
+        key = keys.pop() if len(keys) == 1 and finding.code == TYPE_MISMATCH else ""
         alone = key and self.machine.context[key] is None and key not in self.machine.types
         return f"{self.report.document.file} null {key}" if alone else ""
 
     def say(self, spot: ExpressionSite, finding: ExpressionFinding) -> None:
         source = spot.text.text if isinstance(spot.text, Template) else spot.text.source
         place = place_within(self.report.document, spot.text.where, source, finding.offset, finding.length)
-        severity = CODES[finding.code].severity
         part = source[finding.offset : finding.offset + finding.length]
         related = tuple(self.declared(spot, part, finding))
         cause = cause_of(self.report.document.file, finding) or self.nulls(part, finding)
-        found = Diagnostic(finding.code, finding.message, place, finding.hint, severity, related, cause)
+        found = finding.code.at(place, finding.message, finding.hint, related, cause)
         self.report.diagnostics.append(found)

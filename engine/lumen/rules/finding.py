@@ -1,29 +1,23 @@
-"""How a rule says what it found."""
+"""Names of files that a rule looks up, and where in a document it points."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.loading.bodies import UNKNOWN_MODEL
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.codes import CODES
+from lumen.loading.keyframes import UNKNOWN_MOTION
+from lumen.loading.linking import UNKNOWN_BEHAVIOR
 
-
-def find(
-    report: DocumentReport,
-    code: str,
-    path: NodePath,
-    message: str,
-    hint: str = "",
-    *,
-    key: bool = False,
-    related: Iterable[tuple[NodePath, str]] = (),
-    cause: str = "",
-    root: str = "",
-) -> None:
-    """Report a finding of that code, as bad as `CODES` says."""
-    severity = CODES[code].severity
-    report(code, path, message, hint=hint, key=key, severity=severity, related=related, cause=cause, root=root)
+MISSING_FOLDER = Code(
+    "missing-folder", "text", ERROR, "something is named that should be in a folder in which nothing is"
+)
+UNKNOWN_CONTROLLER = Code("unknown-controller", "references", ERROR, "a controller is named that is not in fuzzy/")
+UNKNOWN_MESSAGE = Code(
+    "unknown-message", "references", ERROR, "a message schema is named that is not in schemas/messages/"
+)
+UNKNOWN_STORY = Code("unknown-story", "references", ERROR, "a story is named that is not in behaviors/stories/")
 
 
 def first(report: DocumentReport, *paths: NodePath) -> NodePath:
@@ -42,14 +36,15 @@ def value_at(report: DocumentReport, path: NodePath) -> Any:
     return node
 
 
-_FOLDERS: Mapping[str, tuple[str, str]] = {
-    "behavior": ("behaviors", "behaviour"),
-    "story": ("behaviors/stories", "story"),
-    "controller": ("fuzzy", "controller"),
-    "motion": ("motions", "motion"),
-    "model": ("models", "robot"),
-    "message": ("schemas/messages", "message schema"),
+_FOLDERS: Mapping[str, tuple[str, str, Code]] = {
+    "behavior": ("behaviors", "behaviour", UNKNOWN_BEHAVIOR),
+    "story": ("behaviors/stories", "story", UNKNOWN_STORY),
+    "controller": ("fuzzy", "controller", UNKNOWN_CONTROLLER),
+    "motion": ("motions", "motion", UNKNOWN_MOTION),
+    "model": ("models", "robot", UNKNOWN_MODEL),
+    "message": ("schemas/messages", "message schema", UNKNOWN_MESSAGE),
 }
+"""For each kind of file its folder, what a message calls it, and the code of a name that is none's."""
 
 
 class References:
@@ -61,17 +56,17 @@ class References:
 
     def look_up(self, report: DocumentReport, path: NodePath, kind: str, name: str, *, key: bool = False) -> bool:
         """Whether there is a file of that kind and name; reported at `path` where there is none."""
-        folder, what = _FOLDERS[kind]
+        folder, what, code = _FOLDERS[kind]
         names = self._names.get(folder, frozenset())
         if name in names:
             return True
         if names:
             hint = did_you_mean(name.rpartition("/")[2].removesuffix(".yaml"), names, f"{folder}/ has")
             cause = f"{kind} {name}"
-            find(report, f"unknown-{kind}", path, f"there is no {what} `{name}`", hint, key=key, cause=cause)
+            report(code, path, f"there is no {what} `{name}`", hint, key=key, cause=cause)
         elif folder not in self._missing:
             self._missing.add(folder)
             hint = f"make the folder {folder}/ and put the file into it"
             message = f"there is no {what} `{name}`: {folder}/ is missing or empty"
-            find(report, "missing-folder", path, message, hint, key=key)
+            report(MISSING_FOLDER, path, message, hint, key=key)
         return False

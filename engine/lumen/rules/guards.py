@@ -6,14 +6,22 @@ from typing import NamedTuple
 from lumen.interpreters.expressions.phrases import is_heard
 from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal, Logic
 from lumen.language.actions import Expression
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import INFO, WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition, State, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import hears
-from lumen.rules.finding import find
 from lumen.rules.logic import always, implies, never, tree
 from lumen.rules.walk import expression_sites
+
+CONSTANT_GUARD = Code("constant-guard", "statecharts", WARNING, "a guard is always true, or never")
+OVERLAPPING_GUARDS = Code(
+    "overlapping-guards", "statecharts", INFO, "phrases are taken for others that are asked for earlier"
+)
+SHADOWED_TRANSITION = Code(
+    "shadowed-transition", "statecharts", WARNING, "a transition is never taken, because one before it always is"
+)
+
 
 MAX_COMPARED_CANDIDATES = 60
 """Candidates of a state that are compared with one another."""
@@ -48,9 +56,9 @@ def _constant(guard: Expression, report: DocumentReport) -> None:
     condition = tree(guard.source)
     if never(condition):
         message = "this is never true" if _simple(condition) else "this is never true: its parts contradict each other"
-        find(report, "constant-guard", guard.where, message, "look at the signs and numbers, or delete what it guards")
+        report(CONSTANT_GUARD, guard.where, message, "look at the signs and numbers, or delete what it guards")
     elif always(condition):
-        find(report, "constant-guard", guard.where, "this is always true", "leave it out, or look at its signs")
+        report(CONSTANT_GUARD, guard.where, "this is always true", "leave it out, or look at its signs")
 
 
 def _simple(node: ExpressionNode) -> bool:
@@ -83,7 +91,7 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
         message = f"this is never taken: the transition in line {line} always is, before it"
         hint = "give that one a `guard`, or swap them"
         cause = f"{report.document.file} shadowed by {earlier.where}"
-        find(report, "shadowed-transition", later.where, message, hint, related=related, cause=cause)
+        report(SHADOWED_TRANSITION, later.where, message, hint, related=related, cause=cause)
         return True
     if later.guard is None:
         return False
@@ -95,17 +103,17 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
         if one != other:
             wide = _short(earlier.guard.source)
             message, hint = f"this is never taken: `{wide}` is true wherever its guard is", "put this one before it"
-        find(report, "shadowed-transition", later.where, message, hint, related=related)
+        report(SHADOWED_TRANSITION, later.where, message, hint, related=related)
         return True
     if taken and first and second and not _alike(earlier, later):
         said = sorted({p for texts in machine.phrases[second.name].values() for p in texts})
         whole = taken.issuperset(said)
-        code = "shadowed-transition" if whole else "overlapping-guards"
+        code = SHADOWED_TRANSITION if whole else OVERLAPPING_GUARDS
         shown = ", ".join(f"`{phrase}`" for phrase in sorted(taken)[:3])
         message = (
             f"{shown} of `{second.name}` {'are' if len(taken) > 1 else 'is'} taken for `{first.name}`, asked first"
         )
-        find(report, code, later.where, message, "put the longer phrases first", related=related)
+        report(code, later.where, message, "put the longer phrases first", related=related)
         return whole
     return False
 

@@ -8,9 +8,14 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.language.diagnostics import Diagnostic, NodePath, Place, Severity, did_you_mean, has_errors
+from lumen.language.diagnostics import WARNING, Code, Diagnostic, NodePath, Place, Severity, did_you_mean, has_errors
 from lumen.loading.document import Document
-from lumen.rules.codes import CODES
+
+IGNORE_WITHOUT_REASON = Code("ignore-without-reason", "comments", WARNING, "an ignore comment does not say why")
+IGNORED_ERROR = Code("ignored-error", "comments", WARNING, "an ignore comment names a code that is an error")
+UNKNOWN_CODE = Code("unknown-code", "comments", WARNING, "an ignore comment names a code that does not exist, or none")
+UNUSED_IGNORE = Code("unused-ignore", "comments", WARNING, "an ignore comment hides nothing")
+
 
 _COMMENT = re.compile(r"(?<!\S)#[ \t]*lumen:[ \t]*ignore\b[ \t]*(?:\[(?P<codes>[^\]]*)\])?[ \t]*(?P<reason>.*)")
 _WORD = re.compile(r"[^,\s]+")
@@ -26,7 +31,9 @@ class Ignore(NamedTuple):
     reason: str
 
 
-def obey(diagnostics: Iterable[Diagnostic], documents: Mapping[str, Document]) -> tuple[Diagnostic, ...]:
+def obey(
+    diagnostics: Iterable[Diagnostic], documents: Mapping[str, Document], codes: Mapping[str, Code]
+) -> tuple[Diagnostic, ...]:
     """The findings without those that are ignored, and what is wrong with the comments, by file and line."""
     found = list(diagnostics)
     comments = [c for d in documents.values() if "ignore" in d.text for c in comments_of(d)]
@@ -36,7 +43,7 @@ def obey(diagnostics: Iterable[Diagnostic], documents: Mapping[str, Document]) -
     hidden = [d for d in found if d.severity is not Severity.ERROR and _spot(d) in by_line]
     gone = {_spot(d) for d in hidden}
     said = [*(d for d in found if d not in hidden)]
-    said += [f for c in comments for f in _faults(c, gone, whole=not has_errors(found))]
+    said += [f for c in comments for f in _faults(c, gone, codes, whole=not has_errors(found))]
     return tuple(sorted(said, key=lambda d: (d.place, d.code, d.message)))
 
 
@@ -91,26 +98,28 @@ def _spot(diagnostic: Diagnostic) -> tuple[str, int, str]:
     return diagnostic.place.file, diagnostic.place.line, diagnostic.code
 
 
-def _faults(comment: Ignore, gone: set[tuple[str, int, str]], *, whole: bool) -> Iterator[Diagnostic]:
+def _faults(
+    comment: Ignore, gone: set[tuple[str, int, str]], codes: Mapping[str, Code], *, whole: bool
+) -> Iterator[Diagnostic]:
     """What is wrong with a comment; what it does not hide can be told where the whole project was looked at."""
     if not comment.codes:
-        yield _fault("unknown-code", comment.place, "this does not say what to ignore", "write `ignore[CODE] reason`")
+        yield _fault(UNKNOWN_CODE, comment.place, "this does not say what to ignore", "write `ignore[CODE] reason`")
     elif not comment.reason:
         hint = "write it behind the bracket, for whoever reads this next year"
-        yield _fault("ignore-without-reason", comment.place, "this does not say why", hint)
+        yield _fault(IGNORE_WITHOUT_REASON, comment.place, "this does not say why", hint)
     for code, place in comment.codes:
-        if code not in CODES:
-            hint = did_you_mean(code, CODES)
+        if code not in codes:
+            hint = did_you_mean(code, codes)
             hint = hint if hint.startswith("did") else "`lumen explain` lists them all"
-            yield _fault("unknown-code", place, f"there is no code `{code}`", hint)
+            yield _fault(UNKNOWN_CODE, place, f"there is no code `{code}`", hint)
         elif (comment.place.file, comment.line, code) in gone:
             continue
-        elif CODES[code].severity is Severity.ERROR:
+        elif codes[code].severity is Severity.ERROR:
             hint = "repair what it is about, and delete this"
-            yield _fault("ignored-error", place, f"`{code}` is an error, which can't be ignored", hint)
+            yield _fault(IGNORED_ERROR, place, f"`{code}` is an error, which can't be ignored", hint)
         elif whole:
-            yield _fault("unused-ignore", place, f"there is no `{code}` here to ignore", "delete this")
+            yield _fault(UNUSED_IGNORE, place, f"there is no `{code}` here to ignore", "delete this")
 
 
-def _fault(code: str, place: Place, message: str, hint: str) -> Diagnostic:
-    return Diagnostic(code, message, place, hint, CODES[code].severity)
+def _fault(code: Code, place: Place, message: str, hint: str) -> Diagnostic:
+    return code.at(place, message, hint)

@@ -8,10 +8,12 @@ from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 from xml.parsers import expat
 
-from lumen.language.diagnostics import Diagnostic, Place, nearest
+from lumen.language.diagnostics import ERROR, Code, Place, nearest
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import Unreadable
-from lumen.rules.codes import CODES
+
+BROKEN_MODEL = Code("broken-model", "robot", ERROR, "a model is no MJCF, or lacks a file or a joint")
+
 
 _FOLDERS = {"mesh": "meshdir", "skin": "meshdir", "texture": "texturedir", "hfield": "meshdir"}
 
@@ -111,9 +113,9 @@ def _joints(draft: ProjectDraft, name: str, elements: list[ModelElement]) -> Non
             near = nearest(joint, joints)
             hint = f"did you mean `{near}`?" if near else f"give models/{name} a joint of that name"
             message = f"models/{name} has no joint `{joint}`"
-            report("broken-model", ("joints", joint), message, hint=hint, key=True, cause=f"joints of {name}")
+            report(BROKEN_MODEL, ("joints", joint), message, hint=hint, key=True, cause=f"joints of {name}")
 
 
 def _say(draft: ProjectDraft, file: str, line: int, column: int, length: int, message: str, hint: str) -> None:
     place = Place(file, line, column, line, column + length)
-    draft.loose.append(Diagnostic("broken-model", message, place, hint, CODES["broken-model"].severity))
+    draft.loose.append(BROKEN_MODEL.at(place, message, hint))

@@ -7,14 +7,18 @@ from math import ceil
 
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import memoize
+from lumen.loading.poses import ANGLE_OUT_OF_RANGE
 from lumen.loading.units import ANGLES
-from lumen.rules.finding import find, value_at
+from lumen.rules.finding import value_at
+
+TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
+
 
 PASSAGES = "models/passages"
 """The motions from posture to posture."""
@@ -67,9 +71,8 @@ def _too_fast(report: DocumentReport, excesses: Sequence[Excess], unit: str, bod
         message += f"; too fast are {names}{' and others' if len(others) > 3 else ''}, too"
     percent = ceil(100 * (excess.value / excess.limit - 1))
     cause = f"{report.document.file} {value:g} {limit:g}"  # of the left and of the right, wherever the pose stands
-    find(
-        report,
-        "too-fast",
+    report(
+        TOO_FAST,
         excess.key.where,
         message,
         f"give it {percent} % more time",
@@ -84,9 +87,8 @@ def _too_far(report: DocumentReport, excess: Excess, unit: str, body: Body) -> N
     coupled = [c.on for c in body.coupled if c.joint == excess.joint]
     hint = f"how far it can go depends on `{coupled[0]}`" if coupled else "bring the handles nearer to the key"
     cause = f"{report.document.file} {message}"
-    find(
-        report,
-        "angle-out-of-range",
+    report(
+        ANGLE_OUT_OF_RANGE,
         excess.key.where,
         message,
         hint,

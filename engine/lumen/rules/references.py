@@ -2,14 +2,18 @@
 
 from lumen.language.actions import PublishBody
 from lumen.language.commands import VerbCommand
-from lumen.language.diagnostics import Diagnostic, NodePath, Related, did_you_mean
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, Related, did_you_mean
 from lumen.language.routes import Direction
 from lumen.language.verbs import verb_of
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.codes import CODES
-from lumen.rules.finding import References, find, first
+from lumen.loading.poses import UNKNOWN_POSTURE
+from lumen.loading.project import MISSING_FILE
+from lumen.rules.finding import References, first
 from lumen.rules.walk import ActionSite, action_sites
+
+UNKNOWN_ROUTE = Code("unknown-route", "references", ERROR, "a route is named that is not in lumen.yaml")
+WRONG_DIRECTION = Code("wrong-direction", "routes", WARNING, "a route is used the other way round than it goes")
 
 
 def check(draft: ProjectDraft) -> None:
@@ -32,7 +36,7 @@ def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, rou
         hint, cause = did_you_mean(route, draft.settings.routes, "lumen.yaml has"), f"name {route}"
         if not draft.settings.routes:
             hint, cause = "lumen.yaml has no `routes`", "no routes"
-        find(report, "unknown-route", path, f"there is no route `{route}`", hint, cause=cause)
+        report(UNKNOWN_ROUTE, path, f"there is no route `{route}`", hint, cause=cause)
     return False
 
 
@@ -59,9 +63,8 @@ def _published(draft: ProjectDraft, report: DocumentReport, path: NodePath, name
         message = f"`{name}` is a route on which messages come in"
         hint = "publish on one with `direction: out`"
         declared = Related(draft.main.document.place(route.where, key=True), "it is declared here")
-        severity = CODES["wrong-direction"].severity
         place = report.document.place(path)
-        report.diagnostics.append(Diagnostic("wrong-direction", message, place, hint, severity, (declared,)))
+        report.diagnostics.append(WRONG_DIRECTION.at(place, message, hint, (declared,)))
 
 
 def _model_file(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> None:
@@ -69,7 +72,7 @@ def _model_file(draft: ProjectDraft, report: DocumentReport, path: NodePath, nam
         file.removeprefix("models/") for file in draft.files if file.startswith("models/") and file.endswith(".xml")
     ]
     if name not in there:
-        find(report, "missing-file", path, f"there is no file models/{name}", did_you_mean(name, there, "models/ has"))
+        report(MISSING_FILE, path, f"there is no file models/{name}", did_you_mean(name, there, "models/ has"))
 
 
 def _action(draft: ProjectDraft, report: DocumentReport, references: References, site: ActionSite) -> None:
@@ -103,4 +106,4 @@ def _posture(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: 
     hint = did_you_mean(name, draft.body.postures, f"{draft.body.name} knows")
     lost = draft.report("models", draft.settings.model).lost if draft.settings else set()
     if name not in lost:
-        find(report, "unknown-posture", path, f"there is no posture `{name}`", hint, cause=f"posture {name}")
+        report(UNKNOWN_POSTURE, path, f"there is no posture `{name}`", hint, cause=f"posture {name}")

@@ -1,9 +1,11 @@
 """What `renamed` says of the past: nothing that is still there can have got another name."""
 
+from lumen.language.diagnostics import ERROR, Code
 from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import find
+
+STILL_THERE = Code("still-there", "statecharts", ERROR, "something is said to be renamed that still has its old name")
 
 
 def check(draft: ProjectDraft) -> None:
@@ -21,4 +23,4 @@ def _check(machine: MachineDefinition, report: DocumentReport) -> None:
         if there is not None and (there == now or there not in taken):
             message = f"`{was}` is said to be `{now}` now, and is still there"
             hint = "delete this line: at the next reload it would lead away from what is there"
-            find(report, "still-there", ("renamed", was), message, hint, key=True)
+            report(STILL_THERE, ("renamed", was), message, hint, key=True)

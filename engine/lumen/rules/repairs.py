@@ -6,13 +6,15 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, Severity, has_errors
-from lumen.rules.codes import CODES, FAMILIES
+from lumen.loading.yaml_errors import TAB, YAML_SYNTAX
+from lumen.loading.yaml_reader import DUPLICATE_KEY
+from lumen.rules.codes import CODES
 from lumen.rules.fixes import Edit, Fix, edited, fixes
 
 ProjectFiles = Mapping[str, bytes]
 FileLinter = Callable[[ProjectFiles], Sequence[Diagnostic]]
 
-_HIDING = frozenset(("tab", "yaml-syntax", "duplicate-key"))
+_HIDING = frozenset((TAB, YAML_SYNTAX, DUPLICATE_KEY))
 """What hides the rest of a file: repaired, it may show more."""
 
 MAX_REPAIR_ROUNDS = 100
@@ -86,7 +88,7 @@ def _hidden(code: str, file: str, before: Sequence[Diagnostic], step: Sequence[R
     if code in CODES and CODES[code].severity is not Severity.ERROR:
         return has_errors(before)
     near = any(file == r.diagnostic.place.file or r.diagnostic.code in _HIDING for r in step)
-    return near and code not in FAMILIES["text"] and code not in FAMILIES["shape"]
+    return near and CODES[code].family not in ("text", "shape")
 
 
 def _what(diagnostic: Diagnostic) -> tuple[str, str, str]:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from urllib.parse import urlsplit
 
 from lumen.language.commands import Track
-from lumen.language.diagnostics import did_you_mean, has_errors
+from lumen.language.diagnostics import ERROR, WARNING, Code, did_you_mean, has_errors
 from lumen.language.routes import (
     COMMAND,
     HEARD,
@@ -21,8 +21,24 @@ from lumen.language.routes import (
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
-from lumen.rules.finding import References, find
+from lumen.rules.finding import References
+from lumen.rules.references import WRONG_DIRECTION
 from lumen.rules.walk import action_sites
+
+DUPLICATE_ROUTE = Code("duplicate-route", "routes", ERROR, "two routes carry the same key to the same event")
+MISSING_ROUTE = Code("missing-route", "routes", WARNING, "a route is missing that something the behaviour does needs")
+NO_TTL = Code("no-ttl", "routes", WARNING, "a command may come late, and is done all the same")
+LONG_TTL = Code("long-ttl", "routes", WARNING, "a command may wait for so long that nobody counts on it any more")
+LOSSY_JOURNAL = Code(
+    "lossy-journal", "routes", ERROR, "a route of which nothing may be lost is told to throw messages away"
+)
+BEYOND_CAMERA = Code("beyond-camera", "routes", ERROR, "images are asked for that the robot's camera does not take")
+PASSWORD_IN_FILE = Code(
+    "password-in-file", "routes", ERROR, "a name and a password for the broker stand in the project"
+)
+ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has a form that no message could have")
+UNUSED_ROUTE = Code("unused-route", "routes", WARNING, "the messages of a route become an event that nothing waits for")
+
 
 KEY_PREFIXES = ("avatar", "lumen")
 MAX_ROUTING_KEY_BYTES = 255
@@ -54,7 +70,7 @@ def check(draft: ProjectDraft) -> None:
             if other != name:
                 message = f"`{other}` has the same key and becomes the same event"
                 related = [((*settings.routes[other].where, "key"), "the other one stands here")]
-                find(report, "duplicate-route", (*route.where, "key"), message, "delete one of them", related=related)
+                report(DUPLICATE_ROUTE, (*route.where, "key"), message, "delete one of them", related=related)
 
 
 def _password(bus: str, report: DocumentReport) -> None:
@@ -66,7 +82,7 @@ def _password(bus: str, report: DocumentReport) -> None:
     if secret:
         message = "a name and a password stand in a file that everybody reads"
         hint = "write them into the environment variable LUMEN_BUS, or into a file that LUMEN_BUS_CREDENTIALS names"
-        find(report, "password-in-file", ("bus",), message, hint)
+        report(PASSWORD_IN_FILE, ("bus",), message, hint)
 
 
 def _carried(report: DocumentReport, route: Route) -> None:
@@ -74,25 +90,23 @@ def _carried(report: DocumentReport, route: Route) -> None:
     where = route.where
     if route.carried in (Carried.COMMAND, Carried.STOP) and (route.ttl or 0.0) > LONGEST_COMMAND_TTL:
         message = f"a {route.carried} may be done {route.ttl:g} s late, when nobody counts on it any more"
-        find(report, "long-ttl", (*where, "ttl"), message, f"2s to {LONGEST_COMMAND_TTL:g}s outlast a broker's hiccup")
+        report(LONG_TTL, (*where, "ttl"), message, f"2s to {LONGEST_COMMAND_TTL:g}s outlast a broker's hiccup")
     if route.carried is Carried.JOURNAL:
         for key, value in (("ttl", route.ttl), ("keep", route.keep)):
             if value is not None:
                 message = f"nothing of a journal is lost, and `{key}` throws messages away"
-                find(
-                    report, "lossy-journal", (*where, key), message, f"delete `{key}`, or `carried: journal`", key=True
-                )
+                report(LOSSY_JOURNAL, (*where, key), message, f"delete `{key}`, or `carried: journal`", key=True)
 
 
 def _pictures(report: DocumentReport, route: Route) -> None:
     """Only a camera has a size, and it takes so many images a second."""
     if route.size and route.name != IMAGE:
         message = f"`{route.name}` has no size: only the images on the route `{IMAGE}` have"
-        find(report, "beyond-camera", (*route.where, "size"), message, "delete `size`", key=True)
+        report(BEYOND_CAMERA, (*route.where, "size"), message, "delete `size`", key=True)
     if route.name == IMAGE and route.every and route.every < SHORTEST_IMAGE_INTERVAL:
         message = f"an image every {1000 * route.every:g} ms is more than the camera takes, 30 a second"
         hint = f"{1000 * SHORTEST_IMAGE_INTERVAL:g}ms is the shortest"
-        find(report, "beyond-camera", (*route.where, "every"), message, hint)
+        report(BEYOND_CAMERA, (*route.where, "every"), message, hint)
 
 
 def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentReport) -> None:
@@ -106,14 +120,14 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
             if needed and name not in routes and name not in report.lost:
                 message = f"`{behavior}` {what}, and there is no route `{name}`: {MEANINGS[name]}"
                 hint, cause = f"write a row `{name}:`", f"name {name}"
-                find(report, "missing-route", ("routes",), message, hint, key=True, cause=cause)
+                report(MISSING_ROUTE, ("routes",), message, hint, key=True, cause=cause)
 
 
 def _key(report: DocumentReport, route: Route) -> bool:
     """Whether the routing key could be a message's."""
     message, hint = _fault(route.key)
     if message:
-        find(report, "route-key", (*route.where, "key"), message, hint)
+        report(ROUTE_KEY, (*route.where, "key"), message, hint)
     return not message
 
 
@@ -139,10 +153,10 @@ def _ways(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
     """A route goes one way; a command that comes late is worse than one that does not come."""
     if route.direction is Direction.OUT and route.event:
         message = f"nobody tells Lumen of `{route.event}`: messages on this route go out"
-        find(report, "wrong-direction", (*route.where, "event"), message, "write `direction: in`")
+        report(WRONG_DIRECTION, (*route.where, "event"), message, "write `direction: in`")
     if route.direction is Direction.IN and route.name == COMMAND and route.ttl is None and "ttl" not in report.lost:
         message = "a command that waited for long is done all the same"
-        find(report, "no-ttl", route.where, message, "say how long it is good for, such as `ttl: 2s`", key=True)
+        report(NO_TTL, route.where, message, "say how long it is good for, such as `ttl: 2s`", key=True)
 
 
 def _event(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
@@ -154,4 +168,4 @@ def _event(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
         hears(d, route.event) for m in draft.behaviors.values() for d in descriptors(m)
     ):
         message = f"no behaviour waits for `{route.event}`, which messages on this route become"
-        find(report, "unused-route", (*route.where, "event"), message, f"react to it with `on: {{{route.event}: …}}`")
+        report(UNUSED_ROUTE, (*route.where, "event"), message, f"react to it with `on: {{{route.event}: …}}`")

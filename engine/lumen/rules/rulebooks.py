@@ -14,8 +14,18 @@ from lumen.language.controllers import (
     Rule,
     RuleBlock,
 )
+from lumen.language.diagnostics import WARNING, Code
 from lumen.loading.document_report import DocumentReport
-from lumen.rules.finding import find
+
+CONTRADICTING_RULE = Code(
+    "contradicting-rule", "controllers", WARNING, "two rules ask the same and conclude different things"
+)
+DUPLICATE_RULE = Code("duplicate-rule", "controllers", WARNING, "a rule stands twice")
+IDLE_RULE = Code("idle-rule", "controllers", WARNING, "a rule has the weight 0")
+MISSING_RULE = Code("missing-rule", "controllers", WARNING, "a table of rules leaves out a case")
+SUBSUMED_RULE = Code("subsumed-rule", "controllers", WARNING, "a rule adds nothing to another one")
+UNUSED_TERM = Code("unused-term", "controllers", WARNING, "no rule asks for a term, or concludes it")
+
 
 MAX_SHOWN_CASES = 3
 MAX_COMPARISONS = 10_000
@@ -35,7 +45,7 @@ def _idle(block: RuleBlock, report: DocumentReport) -> None:
     for rule in block.rules:
         if rule.weight == 0:
             message, hint = "with the weight 0 this rule never counts", "write a weight up to 1, or delete the rule"
-            find(report, "idle-rule", rule.where, message, hint)
+            report(IDLE_RULE, rule.where, message, hint)
 
 
 def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentReport) -> None:
@@ -47,12 +57,12 @@ def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentR
             known[asked] = rule
         elif said == frozenset(first.consequents):
             message, hint = "this rule stands here twice", "delete one of them; a weight makes a rule count less"
-            find(report, "duplicate-rule", rule.where, message, hint, related=[(first.where, "the first one")])
+            report(DUPLICATE_RULE, rule.where, message, hint, related=[(first.where, "the first one")])
         elif clash := _clash(first, rule):
             one, other = clash
             message = f"where the same is so, `{one.variable}` is `{one.term}` and `{other.term}`"
             hint = "one of the two is meant otherwise: change what it asks, or delete it"
-            find(report, "contradicting-rule", rule.where, message, hint, related=[(first.where, "the other one")])
+            report(CONTRADICTING_RULE, rule.where, message, hint, related=[(first.where, "the other one")])
         parts = _conjunction(rule.antecedent)
         if parts and len(rule.consequents) == 1:
             conjunctions.setdefault(rule.consequents[0], []).append((parts, rule))
@@ -103,7 +113,7 @@ def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: Document
         if wider:
             hint = "delete it, or let it conclude something else"
             message = "this rule adds nothing: another one asks less and concludes the same"
-            find(report, "subsumed-rule", rule.where, message, hint, related=[(wider.where, "that one")])
+            report(SUBSUMED_RULE, rule.where, message, hint, related=[(wider.where, "that one")])
 
 
 def _missing(block: RuleBlock, controller: ControllerDefinition, report: DocumentReport) -> None:
@@ -150,7 +160,7 @@ def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Ru
     shown = [" and ".join(f"{n} is {t}" for n, t in zip(names, gap, strict=True)) for gap in gaps[:MAX_SHOWN_CASES]]
     more = f", and in {len(gaps) - MAX_SHOWN_CASES} more cases" if len(gaps) > MAX_SHOWN_CASES else ""
     message = f"no rule says what `{output}` is where {'; or '.join(shown)}{more}"
-    find(report, "missing-rule", last.where, message, f"write below it: if {shown[0]} then {output} is …")
+    report(MISSING_RULE, last.where, message, f"write below it: if {shown[0]} then {output} is …")
 
 
 def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
@@ -161,4 +171,4 @@ def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
             for term in variable.terms.values():
                 if (variable.name, term.name) not in asked:
                     message = f"no rule {side} `{variable.name} is {term.name}`"
-                    find(report, "unused-term", term.where, message, "write a rule with it, or delete it", key=True)
+                    report(UNUSED_TERM, term.where, message, "write a rule with it, or delete it", key=True)

@@ -8,9 +8,16 @@ from lumen.interpreters.inference.arithmetic import NUMBERS
 from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.survey import grid
 from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Term, Variable
+from lumen.language.diagnostics import WARNING, Code
 from lumen.language.scales import ranks
 from lumen.loading.document_report import DocumentReport
-from lumen.rules.finding import find
+
+COVERAGE_GAP = Code(
+    "coverage-gap", "controllers", WARNING, "a part of an input's range where none of its terms is true"
+)
+TERM_ORDER = Code("term-order", "controllers", WARNING, "terms lie in another order than their names say")
+UNREACHABLE_TERM = Code("unreachable-term", "controllers", WARNING, "a term lies outside its variable's range")
+
 
 MIN_MEMBERSHIP = 0.01
 """A membership below this counts as none."""
@@ -53,7 +60,7 @@ def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report:
                 f" at {places[before]:g}"
             )
             hint = f"swap the numbers of `{before}` and `{after}`, or their names"
-            find(report, "term-order", term.where, message, hint, key=True, related=[(other.where, "the other one")])
+            report(TERM_ORDER, term.where, message, hint, key=True, related=[(other.where, "the other one")])
 
 
 def _top(degrees: list[float], xs: list[float]) -> float:
@@ -70,7 +77,7 @@ def _reached(variable: Variable, row: SampledTerm, report: DocumentReport) -> bo
         return True
     low, high = variable.minimum, variable.maximum
     message = f"`{term.name}` is never true between {low:g} and {high:g}, the range of `{variable.name}`"
-    find(report, "unreachable-term", term.where, message, "move it into the range, or widen the range", key=True)
+    report(UNREACHABLE_TERM, term.where, message, "move it into the range, or widen the range", key=True)
     return False
 
 
@@ -83,7 +90,7 @@ def _gaps(variable: Variable, rows: list[SampledTerm], xs: list[float], report: 
             continue
         message = f"between {low:g} and {high:g} no term of `{variable.name}` is true: no rule fires"
         hint = "widen the terms beside the gap, or narrow the range"
-        find(report, "coverage-gap", (*variable.where, "range"), message, hint)
+        report(COVERAGE_GAP, (*variable.where, "range"), message, hint)
 
 
 def _narrow(rows: list[SampledTerm]) -> bool:

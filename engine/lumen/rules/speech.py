@@ -6,13 +6,19 @@ from typing import Any
 from lumen.interpreters.expressions.phrases import is_heard
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
-from lumen.language.diagnostics import Diagnostic, NodePath, Place, Related, did_you_mean, nearest
+from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, Place, Related, did_you_mean, nearest
 from lumen.language.machines import Answer, MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.codes import CODES
-from lumen.rules.finding import find, value_at
+from lumen.rules.finding import value_at
 from lumen.rules.walk import action_sites
+
+UNKNOWN_LANGUAGE = Code("unknown-language", "references", ERROR, "a language is named that the project does not speak")
+SHADOWED_ANSWER = Code(
+    "shadowed-answer", "speech", WARNING, "an answer is never given, because one before it always is"
+)
+MISSING_LANGUAGE = Code("missing-language", "speech", WARNING, "a text is missing in one of the project's languages")
+
 
 MIN_TEXTS_FOR_LANGUAGE = 4
 """With fewer texts it is the texts that lack a language; with more it is the language that has none."""
@@ -80,8 +86,7 @@ def _spoken(machine: MachineDefinition) -> Iterator[NodePath]:
 
 
 def _silence(report: DocumentReport, path: NodePath, message: str, hint: str, related: list[Related]) -> Diagnostic:
-    severity = CODES["missing-language"].severity
-    return Diagnostic("missing-language", message, report.document.place(path), hint, severity, tuple(related))
+    return MISSING_LANGUAGE.at(report.document.place(path), message, hint, tuple(related))
 
 
 class _Speech:
@@ -114,7 +119,7 @@ class _Speech:
         missing = [language for language in self.languages if language not in said | astray]
         if missing and said.isdisjoint(("", "any")):
             message = f"this is not said in {_listed(missing)}"
-            find(report, "missing-language", path, message, f"write `{missing[0]}:` and the text beside it", key=True)
+            report(MISSING_LANGUAGE, path, message, f"write `{missing[0]}:` and the text beside it", key=True)
 
     def each(self, report: DocumentReport, path: NodePath, languages: Iterable[str]) -> None:
         for language in languages:
@@ -125,7 +130,7 @@ class _Speech:
         if language not in self.languages and language not in self.lost:
             hint = did_you_mean(language, self.languages, "it speaks")
             message = f"the project does not speak `{language}`"
-            find(report, "unknown-language", path, message, hint, key=key, cause=f"language {language}")
+            report(UNKNOWN_LANGUAGE, path, message, hint, key=key, cause=f"language {language}")
 
 
 def _written(report: DocumentReport, path: NodePath) -> set[str]:
@@ -149,4 +154,4 @@ def _late(report: DocumentReport, table: str, rows: Sequence[Answer]) -> None:
             message = f"this is never answered: `{phrases[0]}` is taken for the answer in row {first + 1}"
             related = [(("answers", table, first), "the first row with a phrase in the question wins")]
             path = ("answers", table, i, "phrases")
-            find(report, "shadowed-answer", path, message, "put this row before it", key=True, related=related)
+            report(SHADOWED_ANSWER, path, message, "put this row before it", key=True, related=related)

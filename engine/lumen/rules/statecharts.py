@@ -3,13 +3,17 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from lumen.language.actions import Assign, PlacedAction
-from lumen.language.diagnostics import MAX_COMPARED_NAMES, nearest
+from lumen.language.diagnostics import MAX_COMPARED_NAMES, WARNING, Code, nearest
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import find
+from lumen.loading.transitions import ENDLESS_ALWAYS
 from lumen.rules.logic import never, tree
 from lumen.rules.walk import nested
+
+ALWAYS_LOOP = Code("always-loop", "statecharts", WARNING, "an `always` would run for ever while its guard is true")
+UNREACHABLE_STATE = Code("unreachable-state", "statecharts", WARNING, "no transition leads to a state")
+
 
 MAX_ALWAYS_LOOP = 3
 """Transitions of a round of guarded `always` that is looked for."""
@@ -72,7 +76,7 @@ def _unreachable(machine: MachineDefinition, report: DocumentReport) -> None:
         if path not in found:
             found |= reachable(machine, path)  # what only this one leads to is not said as well
             hint = "let a transition go there, or delete it"
-            find(report, "unreachable-state", state.where, f"no transition leads to `{path}`", hint, key=True)
+            report(UNREACHABLE_STATE, state.where, f"no transition leads to `{path}`", hint, key=True)
 
 
 def _endless(machine: MachineDefinition, report: DocumentReport) -> None:
@@ -87,7 +91,7 @@ def _endless(machine: MachineDefinition, report: DocumentReport) -> None:
             said.update(way)
             hint = "give one of them a `guard`, or let an event lead on"
             names = " → ".join(f"`{machine.states[p].name}`" for p in (*way, path))
-            find(report, "endless-always", onward[path][0].where, f"this never comes to rest: {names}", hint)
+            report(ENDLESS_ALWAYS, onward[path][0].where, f"this never comes to rest: {names}", hint)
 
 
 def _at_once(machine: MachineDefinition, path: str) -> tuple[Transition, str] | None:
@@ -120,7 +124,7 @@ def _loops(machine: MachineDefinition, report: DocumentReport) -> None:
             names = " → ".join(f"`{machine.states[p].name}`" for p in (*(t.source for t in way), path))
             message = f"this never comes to rest while {asked}: {names}"
             hint = "change on the way what the guard asks for, or let an event lead on"
-            find(report, "always-loop", way[0].where, message, hint, related=[(t.where, "then here") for t in way[1:]])
+            report(ALWAYS_LOOP, way[0].where, message, hint, related=[(t.where, "then here") for t in way[1:]])
 
 
 def _rounds(

@@ -4,17 +4,21 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.interpreters.statechart.nesting import ID_SEPARATOR, resolutions
 from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
-from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect, Happen, SendMessage, Story, TouchSensor
+from lumen.loading.complaints import WRONG_TYPE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.schema import faults
-from lumen.rules.events import declared, descriptors, hears, raised
-from lumen.rules.finding import References, find, first
+from lumen.rules.events import UNKNOWN_EVENT, declared, descriptors, hears, raised
+from lumen.rules.finding import References, first
 from lumen.rules.references import known_route
+
+UNKNOWN_SENSOR = Code("unknown-sensor", "references", ERROR, "the robot has no tactile sensor of that name")
 
 
 def check(draft: ProjectDraft) -> None:
@@ -82,9 +86,8 @@ class _Script:
             hint = f"it is called by its id: `{name.removesuffix(rest)}{state.name}`"
         message = f"`{self.behavior}` has no state that is called `{name}`"
         file = f"behaviors/{self.behavior}.yaml"
-        find(
-            self.report,
-            "unknown-state",
+        self.report(
+            UNKNOWN_STATE,
             path,
             message,
             hint,
@@ -100,16 +103,16 @@ class _Script:
             hint = did_you_mean(key, self.machine.context, "it has")
             message = f"the context of `{self.behavior}` has no `{key}`"
             cause = f"behaviors/{self.behavior}.yaml context {key}"
-            find(self.report, "unknown-context-key", path, message, hint, key=True, cause=cause)
+            self.report(UNKNOWN_CONTEXT_KEY, path, message, hint, key=True, cause=cause)
         elif self.sound and not fits(value, check := type_checks(self.machine)[key]):
             hint = f"it begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}"
-            find(self.report, "wrong-type", path, f"`{key}` {refusal(value, check)}", hint)
+            self.report(WRONG_TYPE, path, f"`{key}` {refusal(value, check)}", hint)
 
     def sensor(self, path: NodePath, sensor: str) -> None:
         body = self.draft.body
         if body and sensor not in body.tactile:
             hint = did_you_mean(sensor, body.tactile, f"{body.name} has")
-            find(self.report, "unknown-sensor", path, f"there is no tactile sensor `{sensor}`", hint)
+            self.report(UNKNOWN_SENSOR, path, f"there is no tactile sensor `{sensor}`", hint)
 
     def event(self, path: NodePath, event: str) -> None:
         machine: MachineDefinition | None = self.machine
@@ -121,7 +124,7 @@ class _Script:
             waited = {d for d in descriptors(machine) if "*" not in d}
             message = f"nothing in `{self.behavior}` knows the event `{event}`"
             hint = did_you_mean(event, known | waited)
-            find(self.report, "unknown-event", path, message, hint, cause=f"name {event}")
+            self.report(UNKNOWN_EVENT, path, message, hint, cause=f"name {event}")
 
     def message(self, where: NodePath, route: str, body: Any) -> None:
         known = known_route(self.draft, self.report, (*where, "route"), route)
@@ -133,7 +136,7 @@ class _Script:
         if isinstance(schema, Mapping):
             for complaint in faults(data, schema):
                 place = (*path, *complaint.path)
-                find(self.report, complaint.code, place, complaint.message, complaint.hint, key=complaint.key)
+                self.report(complaint.code, place, complaint.message, complaint.hint, key=complaint.key)
 
     def _lost(self, name: str) -> bool:
         """Whether the name stood in a part of the behaviour, or of one that it invokes, that is broken."""

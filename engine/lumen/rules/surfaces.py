@@ -7,8 +7,22 @@ from typing import NamedTuple
 
 from lumen.interpreters.inference.survey import Slice, SurfaceJump, Survey, asked, grid
 from lumen.language.controllers import INTEGRAL_DEFUZZIFIERS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Variable
+from lumen.language.diagnostics import WARNING, Code
 from lumen.loading.document_report import DocumentReport
-from lumen.rules.finding import find
+
+ATTAINABLE_RANGE = Code(
+    "attainable-range", "controllers", WARNING, "an output uses only a small part of its range, or goes beyond it"
+)
+COARSE_RESOLUTION = Code(
+    "coarse-resolution", "controllers", WARNING, "an output is sampled too coarsely for the accuracy that it states"
+)
+NO_DEFAULT = Code("no-default", "controllers", WARNING, "an output has no default, and somewhere no rule for it fires")
+NOT_AT_REST = Code(
+    "not-at-rest", "controllers", WARNING, "an output is not zero where the input is at its neutral point"
+)
+NOT_MONOTONE = Code("not-monotone", "controllers", WARNING, "an output turns back while its input goes on")
+SURFACE_STEP = Code("surface-step", "controllers", WARNING, "an output jumps while its input hardly moves")
+
 
 STEP_SHARE, TURN_SHARE, REST_SHARE = 0.1, 0.02, 0.02
 """Shares of an output's range: what is a step, what is a turning back, what is not zero."""
@@ -113,7 +127,7 @@ def check(controller: ControllerDefinition, report: DocumentReport, seen: Surfac
         message = (
             f"`{found.output}` jumps from {step.low:.3g} to {step.high:.3g} where `{found.input}` passes {step.x:.4g}"
         )
-        find(report, "surface-step", where, message, "let neighbouring terms overlap, without vertical edges", key=True)
+        report(SURFACE_STEP, where, message, "let neighbouring terms overlap, without vertical edges", key=True)
     for found in seen.slices:
         if controller.inputs[found.input].neutral is not None:
             _turns(controller, found, report)
@@ -128,7 +142,7 @@ def _silence(
         where = ", ".join(f"{name} = {x:.4g}" for name, x in point.items() if name in asked(controller, variable.name))
         lack = "it has nothing to keep at first" if variable.lock_previous else "it has no default"
         message = f"`{variable.name}` has no value at {where}: no rule fires, and {lack}"
-        find(report, "no-default", variable.where, message, "write `default: 0`, or cover it by rules", key=True)
+        report(NO_DEFAULT, variable.where, message, "write `default: 0`, or cover it by rules", key=True)
 
 
 def _reached(
@@ -141,10 +155,10 @@ def _reached(
     where = (*variable.where, "range")
     if over > 1e-6 * width and not variable.lock_range:
         message = f"`{variable.name}` goes from {low:.4g} to {high:.4g}, beyond its range"
-        find(report, "attainable-range", where, message, f"write [{low:.4g}, {high:.4g}], or `lock-range: true`")
+        report(ATTAINABLE_RANGE, where, message, f"write [{low:.4g}, {high:.4g}], or `lock-range: true`")
     elif 1e-9 * width < high - low < MIN_RANGE_SHARE * width and len(concluded) > 1:
         message = f"`{variable.name}` only goes from {low:.4g} to {high:.4g}, a small part of its range"
-        find(report, "attainable-range", where, message, "move its terms outwards, or narrow the range")
+        report(ATTAINABLE_RANGE, where, message, "move its terms outwards, or narrow the range")
 
 
 def _coarse(variable: Variable, report: DocumentReport, seen: SurfaceSamples) -> None:
@@ -155,7 +169,7 @@ def _coarse(variable: Variable, report: DocumentReport, seen: SurfaceSamples) ->
             " stated"
         )
         hint = f"raise `resolution` to {RESOLUTION_FACTOR * variable.resolution:,}, or state a greater `accuracy`"
-        find(report, "coarse-resolution", (*variable.where, "accuracy"), message, hint)
+        report(COARSE_RESOLUTION, (*variable.where, "accuracy"), message, hint)
 
 
 def _turns(controller: ControllerDefinition, found: Slice, report: DocumentReport) -> None:
@@ -168,7 +182,7 @@ def _turns(controller: ControllerDefinition, found: Slice, report: DocumentRepor
         way = "rises" if y > extremes[0][1] else "falls"
         message = f"`{output.name}` {way} until `{found.input}` is {x:.4g}, and then turns back"
         hint = "look at the order of the terms, and at which rule concludes which"
-        find(report, "not-monotone", output.where, message, hint, key=True)
+        report(NOT_MONOTONE, output.where, message, hint, key=True)
 
 
 def _extremes(found: Slice, least: float) -> Iterator[tuple[float, float]]:
@@ -203,4 +217,4 @@ def _rests(controller: ControllerDefinition, found: Slice, report: DocumentRepor
         message = f"at rest, with `{variable.name}` at {variable.neutral:g}, `{output.name}` is {value:.3g} and not 0"
         hint = "the term in the middle of the input should lead to the one around 0"
         others = [(variable.where, "its neutral point")]
-        find(report, "not-at-rest", output.where, message, hint, key=True, related=others)
+        report(NOT_AT_REST, output.where, message, hint, key=True, related=others)

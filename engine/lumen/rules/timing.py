@@ -6,11 +6,14 @@ from math import hypot
 from lumen.interpreters.expressions import split_template
 from lumen.language.actions import If, Parallel, PlacedAction, SayText, Wait
 from lumen.language.commands import Play, Posture, Walk
+from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, State
 from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import find
+
+CUT_SHORT = Code("cut-short", "statecharts", WARNING, "an `after` comes before the `do` beside it can be done")
+
 
 SECONDS_PER_TEXT, SECONDS_PER_CHARACTER, SECONDS_PER_POSTURE, WALKING_SPEED = 0.4, 0.06, 2.0, 0.1
 """What the recording robot takes: for a text [s], for each of its characters [s], for a posture [s], walking [m/s]."""
@@ -38,7 +41,7 @@ def _cut(
         hint = f"give it at least {length + 1:.0f} s" + (", or say less" if texts else "")
         key = transition.where if isinstance(transition.where[-1], str) else transition.where[:-1]
         first = texts[0].where if texts else (*state.where, "do")
-        find(report, "cut-short", key, message, hint, key=True, related=[(first, "this takes longer")])
+        report(CUT_SHORT, key, message, hint, key=True, related=[(first, "this takes longer")])
 
 
 def duration(block: Iterable[PlacedAction], motions: Mapping[str, MotionDefinition]) -> float:

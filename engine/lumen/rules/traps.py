@@ -4,12 +4,20 @@ import re
 from collections.abc import Iterator
 
 from lumen.language.actions import SayText
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import find, value_at
+from lumen.rules.finding import value_at
 from lumen.rules.walk import action_sites
+
+CURLY_QUOTES = Code("curly-quotes", "text", WARNING, "quotes of a printed text stand where YAML's should")
+LOOKS_LIKE_NUMBER = Code("looks-like-number", "text", WARNING, "a number or text is not the number that it looks like")
+LOOKS_LIKE_TRUTH = Code(
+    "looks-like-truth", "text", WARNING, "`yes`, `no`, `on` or `off` is a text, and looks like true or false"
+)
+NOT_FILLED_IN = Code("not-filled-in", "speech", WARNING, "the name of a value is said in place of the value")
+
 
 _TRUTHS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
 _TRUTH = re.compile(r"(?i)(?<=[:,\[-] )(yes|no|on|off|y|n)(?=\s|[,}\]]|$)", re.MULTILINE)
@@ -53,23 +61,23 @@ def _truth(report: DocumentReport, path: NodePath, source: str, value: object) -
     """Only where data stands: among phrases, `no` is a word."""
     if isinstance(value, str) and (meant := _TRUTHS.get(value.lower())) and any(key in _DATA for key in path[:-1]):
         hint = f'write `{meant}`, or put it in quotes where the text is meant: "{value}"'
-        find(report, "looks-like-truth", path, f"this is the text `{value}`, not `{meant}`", hint)
+        report(LOOKS_LIKE_TRUTH, path, f"this is the text `{value}`, not `{meant}`", hint)
 
 
 def _number(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
     if isinstance(value, int) and not isinstance(value, bool) and _ZEROS.fullmatch(source):
         hint = f'write `{value}`, `0o{source.lstrip("+-0")}` for the octal number, or quotes for a text: "{source}"'
-        find(report, "looks-like-number", path, f"`{source}` is the number {value}: its zeros do not count", hint)
+        report(LOOKS_LIKE_NUMBER, path, f"`{source}` is the number {value}: its zeros do not count", hint)
     elif isinstance(value, str) and _GROUPED.fullmatch(source) and any(key in _DATA for key in path[:-1]):
         hint = f"write `{source.replace('_', '')}`, or put it in quotes where the text is meant"
-        find(report, "looks-like-number", path, f"`{source}` is a text, not a number", hint)
+        report(LOOKS_LIKE_NUMBER, path, f"`{source}` is a text, not a number", hint)
 
 
 def _quotes(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
     closing = _PAIRS.get(source[:1], "")
     if isinstance(value, str) and len(source) > 1 and source[-1] in closing and not _CURLY.search(source[1:-1]):
         hint = f'write straight quotes: "{source[1:-1]}"'
-        find(report, "curly-quotes", path, "these quotes are part of the text: YAML knows only straight ones", hint)
+        report(CURLY_QUOTES, path, "these quotes are part of the text: YAML knows only straight ones", hint)
 
 
 def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
@@ -80,4 +88,4 @@ def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
                 if found := _HALF.search(template.text) or _BARE.fullmatch(template.text):
                     name = found[1] if found.re is _HALF else found[0]
                     message = f"`{found[0]}` is said as it stands here"
-                    find(report, "not-filled-in", template.where, message, f"write `{{{{ {name} }}}}`")
+                    report(NOT_FILLED_IN, template.where, message, f"write `{{{{ {name} }}}}`")

@@ -5,15 +5,18 @@ from math import pi
 from typing import Any
 
 from lumen.language.commands import Look, Move, Walk
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.units import ANGLES, LENGTHS
-from lumen.rules.finding import find, value_at
+from lumen.rules.finding import value_at
 from lumen.rules.walk import action_sites
+
+WRONG_UNIT = Code("wrong-unit", "robot", WARNING, "an angle or a length is given in another unit than the file's")
+
 
 MAX_WALK_DISTANCE = 20.0
 """No walk at an exhibition is longer [m]."""
@@ -44,11 +47,11 @@ def _radians(report: DocumentReport) -> None:
         return
     if all(abs(angle) <= pi + 0.01 for _, angle in angles) and len(angles) > 1:
         hint = "write `units: {angle: rad}`"
-        find(report, "wrong-unit", ("units", "angle"), "the angles of this file look like radians", hint)
+        report(WRONG_UNIT, ("units", "angle"), "the angles of this file look like radians", hint)
         return
     for path, angle in small:
         hint = f"write {round(angle * 180 / pi):g}"
-        find(report, "wrong-unit", path, f"{angle:g} deg is very little: it looks like radians", hint)
+        report(WRONG_UNIT, path, f"{angle:g} deg is very little: it looks like radians", hint)
 
 
 def _angles(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
@@ -94,13 +97,13 @@ def _look(report: DocumentReport, path: NodePath, joint: str, value: float, unit
     hint = f"it goes from {low:g} to {high:g} {unit}"
     if unit == "rad" and limits.minimum <= value * ANGLES["deg"] <= limits.maximum:
         hint = "write `units: {angle: deg}` at the top: this file counts in radians"
-    find(report, "wrong-unit", path, f"the head can't turn to {shown:g} {unit}", hint)
+    report(WRONG_UNIT, path, f"the head can't turn to {shown:g} {unit}", hint)
 
 
 def _turned(report: DocumentReport, path: NodePath, theta: float, unit: str) -> None:
     message = f"{theta / ANGLES[unit]:g} {unit} is {abs(theta) / (2 * pi):.1f} times around"
     hint = "write `units: {angle: deg}` at the top: this file counts in radians" if unit == "rad" else "turn once"
-    find(report, "wrong-unit", path, message, hint)
+    report(WRONG_UNIT, path, message, hint)
 
 
 def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length: str) -> None:
@@ -114,9 +117,8 @@ def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length
     ):
         if abs(value) > limit * SPEED_TOLERANCE:
             message = f"the robot does not walk at {value / size:g} {unit}/s: {limit / size:.2g} {unit}/s at most"
-            find(
-                report,
-                "wrong-unit",
+            report(
+                WRONG_UNIT,
                 (*path, key),
                 message,
                 "write a smaller speed: it would only walk as fast as it can",
@@ -131,4 +133,4 @@ def _walk(report: DocumentReport, path: NodePath, value: float, unit: str, room:
     message = f"{value / LENGTHS[unit]:g} {unit} is farther than {where} wide ({most:g} m)"
     smaller = next((u for u in ("cm", "mm") if u != unit and abs(value / LENGTHS[unit] * LENGTHS[u]) <= most), "")
     hint = f"write `units: {{length: {smaller}}}` at the top, or metres" if smaller and unit == "m" else "walk less far"
-    find(report, "wrong-unit", path, message, hint)
+    report(WRONG_UNIT, path, message, hint)

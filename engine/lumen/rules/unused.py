@@ -4,21 +4,28 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from lumen.language.diagnostics import NodePath, Severity, has_errors, nearest
+from lumen.interpreters.expressions import expression_findings
+from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
+from lumen.language.diagnostics import INFO, WARNING, Code, NodePath, has_errors, nearest
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect
 from lumen.language.verbs import names_in
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.codes import FAMILIES as CODES_OF
-from lumen.rules.events import descriptors, hears
-from lumen.rules.finding import find
+from lumen.rules.events import UNUSED_EVENT, descriptors, hears
 from lumen.rules.walk import action_sites
+
+SAME_BUT_CASE = Code("same-but-case", "references", WARNING, "two names differ in capital letters only")
+UNUSED_ANSWERS = Code("unused-answers", "references", WARNING, "answers are written that nothing looks up")
+UNUSED_CONTEXT_KEY = Code("unused-context-key", "references", WARNING, "a key of the context is never read")
+UNUSED_FILE = Code("unused-file", "references", INFO, "a motion, behaviour or controller is named nowhere")
+UNUSED_PHRASES = Code("unused-phrases", "references", WARNING, "phrases are written that nothing listens for")
+
 
 _DECLARED = ("context", "types", "phrases", "events", "answers", "description", "units", "renamed")
 _FIELD = re.compile(r"context\s*(?:\.\s*(\w+)|\[\s*['\"]([^'\"]+)['\"])")
 _WHOLE = re.compile(r"\bcontext\b(?!\s*\.)(?!\s*\[\s*['\"])")
-_EXPRESSIONS = {*CODES_OF["expressions"], "unknown-context-key", "unknown-field"}
+_EXPRESSION_CODES = {c for c in vars(expression_findings).values() if isinstance(c, Code)} - {UNKNOWN_STATE}
 _NAME = re.compile(r"['\"]([^'\"]+)['\"]")
 
 
@@ -27,7 +34,7 @@ def check(draft: ProjectDraft) -> None:
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         _alike_inside(machine, report)
-        if report.whole and not any(d.code in _EXPRESSIONS for d in report.diagnostics):
+        if report.whole and not any(d.code in _EXPRESSION_CODES for d in report.diagnostics):
             _inside(draft, name, machine, report)
     _alike_files(draft)
     if draft.settings and not has_errors(draft.diagnostics):
@@ -40,17 +47,17 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
     if not _WHOLE.search(everywhere):
         _context(machine, report, {a or b for a, b in _FIELD.findall(everywhere)} | _expected(draft, name))
     named = set(_NAME.findall(said))
-    for part, what in (("phrases", "heard"), ("answers", "lookup")):
+    for part, what, code in (("phrases", "heard", UNUSED_PHRASES), ("answers", "lookup", UNUSED_ANSWERS)):
         for key in getattr(machine, part).keys() - named:
             hint = f"ask `{what}(event.data.result, '{key}')` somewhere, or delete them"
             message = f"nothing asks for the {part} `{key}`"
-            find(report, f"unused-{part}", (part, key), message, hint, key=True, root=_states_of(report))
+            report(code, (part, key), message, hint, key=True, root=_states_of(report))
     waited = set(descriptors(machine))
     for event in machine.events:
         if not (any(hears(d, event) for d in waited) or nearest(event, report.missed)):
             message = f"nothing waits for the event `{event}`"
             hint = "react to it with `on:`, or delete it"
-            find(report, "unused-event", ("events", event), message, hint, key=True, root=_states_of(report))
+            report(UNUSED_EVENT, ("events", event), message, hint, key=True, root=_states_of(report))
 
 
 def _context(machine: MachineDefinition, report: DocumentReport, read: set[str]) -> None:
@@ -60,7 +67,7 @@ def _context(machine: MachineDefinition, report: DocumentReport, read: set[str])
             hint = "use it in an expression, or delete it"
             what = "is set and never read" if key in written else "is declared and never used"
             message, root = f"`{key}` {what}", _states_of(report)
-            find(report, "unused-context-key", ("context", key), message, hint, key=True, root=root)
+            report(UNUSED_CONTEXT_KEY, ("context", key), message, hint, key=True, root=root)
 
 
 def _states_of(report: DocumentReport) -> str:
@@ -103,7 +110,7 @@ def _files(draft: ProjectDraft) -> None:
         for name in names if wanted.intersection(names) else ():  # where none is used, they are about to be
             if name not in wanted and (folder != "fuzzy" or draft.controllers[name].output_bindings):
                 message = f"nothing uses the {what} `{name}`"
-                draft.say("unused-file", f"{folder}/{name}.yaml", message, hint, Severity.INFO)
+                draft.say(UNUSED_FILE, f"{folder}/{name}.yaml", message, hint)
 
 
 def _played(data: Any) -> set[str]:
@@ -123,7 +130,7 @@ def _played(data: Any) -> set[str]:
 def _alike_files(draft: ProjectDraft) -> None:
     for file, other in _alike(draft.files):
         message = f"{file} and {other} differ by case only, and some computers take them for one file"
-        draft.say("same-but-case", file, message, "rename one of them", Severity.WARNING)
+        draft.say(SAME_BUT_CASE, file, message, "rename one of them")
     if draft.settings and draft.main:
         _say_alike(draft.main, ("routes",), draft.settings.routes)
 
@@ -139,9 +146,7 @@ def _say_alike(report: DocumentReport, path: NodePath, names: Iterable[str]) -> 
     for name, other in _alike(names):
         message = f"`{name}` and `{other}` differ by case only"
         related = [((*path, other), "the other one stands here")]
-        find(
-            report, "same-but-case", (*path, name), message, "give one of them another name", key=True, related=related
-        )
+        report(SAME_BUT_CASE, (*path, name), message, "give one of them another name", key=True, related=related)
 
 
 def _alike(names: Iterable[str]) -> Iterator[tuple[str, str]]:

@@ -7,10 +7,10 @@ from lumen.interpreters.changes import live
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.statechart.type_checks import type_checks, type_name
-from lumen.language.diagnostics import Diagnostic, NodePath, Place
+from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.rules.codes import CODES
+from lumen.rules.on_request import RELOAD_FORGETS, RELOAD_MOVES, RELOAD_REFUSED
 
 BOUND = 10_000
 
@@ -29,7 +29,7 @@ def _refused(new: Project, everywhere: MigrationPreview) -> Iterator[Diagnostic]
         if isinstance(verdict, Refusal):
             place = _place(new, verdict.behavior, (*verdict.where, "states"))
             message = f"a reload would be refused: {verdict.reason}"
-            yield _finding("reload-refused", message, place, verdict.hint)
+            yield _finding(RELOAD_REFUSED, message, place, verdict.hint)
 
 
 def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator[Diagnostic]:
@@ -45,7 +45,7 @@ def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator
                 goals = ", ".join(f"`{state}`" for state in fate.after if state not in fate.states)
                 message = f"a reload would lead from `{name}`, which is gone, to {goals}"
                 hint = "where it has another name, say so under `renamed`"
-                yield _finding("reload-moves", message, place, hint)
+                yield _finding(RELOAD_MOVES, message, place, hint)
 
 
 def _says(old: MachineDefinition, new: MachineDefinition, identity: Identity, path: str) -> NodePath | None:
@@ -68,13 +68,13 @@ def _forgotten(old: Project, new: Project) -> Iterator[Diagnostic]:
     for key in before.context:
         if key not in was.values():
             message = f"a reload would forget what `{key}` holds"
-            yield _finding("reload-forgets", message, _place(new, new.behavior, ("context",)), hint)
+            yield _finding(RELOAD_FORGETS, message, _place(new, new.behavior, ("context",)), hint)
     for key, name in was.items():
         check = checks[key]
         if name in before.context and check and not check.accepts(before.context[name]):
             place = _place(new, new.behavior, ("context", key))
             message = f"a reload would forget what `{key}` holds: a {type_name(before.context[name])}, and {check} now"
-            yield _finding("reload-forgets", message, place, "let `types` allow both")
+            yield _finding(RELOAD_FORGETS, message, place, "let `types` allow both")
 
 
 def _place(project: Project, behavior: str, where: NodePath) -> Place:
@@ -83,5 +83,5 @@ def _place(project: Project, behavior: str, where: NodePath) -> Place:
     return document.place(where, key=True) if document else Place(file)
 
 
-def _finding(code: str, message: str, place: Place, hint: str) -> Diagnostic:
-    return Diagnostic(code, message, place, hint, CODES[code].severity)
+def _finding(code: Code, message: str, place: Place, hint: str) -> Diagnostic:
+    return code.at(place, message, hint)

@@ -10,7 +10,7 @@ from urllib.parse import quote
 import lumen
 from lumen.app.lint.findings import Findings
 from lumen.language.diagnostics import Diagnostic, Place, Severity
-from lumen.rules.codes import CODES, FAMILIES
+from lumen.rules.codes import CODES
 from lumen.rules.fixes import Edit, fixes
 from lumen.rules.pages import page
 
@@ -53,18 +53,17 @@ def _rule(code: str) -> dict[str, Any]:
     """What is to be known of a code; of one of another tool no more than its name."""
     if code not in CODES:
         return {"id": code}
-    severity, summary = CODES[code]
-    found = page(code)
+    known, found = CODES[code], page(code)
     plain = f"{found.what}\n\n{found.why}"
     example = "\n\n".join(f"Wrong:\n\n```{s.language}\n{s.text}```" for s in found.wrong[:1])
     right = "\n\n".join(f"Right:\n\n```{s.language}\n{s.text}```" for s in found.right[:1])
     return {
         "id": code,
-        "shortDescription": {"text": f"{summary[0].upper()}{summary[1:]}."},
+        "shortDescription": {"text": f"{known.summary[0].upper()}{known.summary[1:]}."},
         "fullDescription": {"text": found.what},
         "help": {"text": plain, "markdown": f"{plain}\n\n{example}\n\n{right}"},
-        "defaultConfiguration": {"level": _LEVELS[severity]},
-        "properties": {"tags": [family for family, codes in FAMILIES.items() if code in codes]},
+        "defaultConfiguration": {"level": _LEVELS[known.severity]},
+        "properties": {"tags": [known.family]},
     }
 
 

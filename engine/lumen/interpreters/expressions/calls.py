@@ -3,11 +3,20 @@
 from collections.abc import Collection
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.expression_findings import Declarations, ExpressionFindings
+from lumen.interpreters.expressions.expression_findings import (
+    UNKNOWN_ANSWERS,
+    UNKNOWN_FUNCTION,
+    UNKNOWN_PHRASE,
+    UNKNOWN_STATE,
+    UNSAFE_PATTERN,
+    WRONG_ARGUMENT_COUNT,
+    Declarations,
+    ExpressionFindings,
+)
 from lumen.interpreters.expressions.functions import FUNCTIONS, Function
 from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal
-from lumen.language.diagnostics import did_you_mean
+from lumen.language.diagnostics import Code, did_you_mean
 
 _INSTEAD = {
     "len": "size", "length": "size", "count": "size", "lowerAscii": "lower", "toLower": "lower", "strip": "trim",
@@ -26,14 +35,14 @@ def function_of(node: FunctionCall, findings: ExpressionFindings) -> Function | 
     if function is None:
         similar = _INSTEAD.get(node.function)
         hint = f"did you mean `{similar}`?" if similar else did_you_mean(node.function, FUNCTIONS, "there are")
-        findings.report("unknown-function", node, f"there is no function `{node.function}`", hint, node.named)
+        findings.report(UNKNOWN_FUNCTION, node, f"there is no function `{node.function}`", hint, node.named)
         return None
     wanted, given = len(function.parameters), len(node.arguments)
     if wanted != given:
         arguments = f"{wanted or 'no'} argument{'s' * (wanted != 1)}"
         message = f"`{node.function}` takes {arguments}, and {given or 'none'} {'is' if given == 1 else 'are'} given"
         usage = f"write `{node.function}({_ARGUMENTS.get(node.function, 'text')})`"
-        findings.report("wrong-argument-count", node, message, usage, node.named)
+        findings.report(WRONG_ARGUMENT_COUNT, node, message, usage, node.named)
     return function
 
 
@@ -46,12 +55,12 @@ def check_names(node: FunctionCall, around: Declarations, findings: ExpressionFi
     if node.function == "matches":
         _pattern(last, name, findings)
     elif name is not None:
-        names: dict[str, tuple[str, str, Collection[str] | None]] = {
-            "heard": ("unknown-phrase", "there are no phrases named", around.phrases),
-            "lookup": ("unknown-answers", "there are no answers named", around.answers),
-            "In": ("unknown-state", "there is no state", around.states),
+        names: dict[str, tuple[Code, str, Collection[str] | None]] = {
+            "heard": (UNKNOWN_PHRASE, "there are no phrases named", around.phrases),
+            "lookup": (UNKNOWN_ANSWERS, "there are no answers named", around.answers),
+            "In": (UNKNOWN_STATE, "there is no state", around.states),
         }
-        code, message, known = names.get(node.function, ("", "", None))
+        code, message, known = names.get(node.function, (UNKNOWN_STATE, "", None))
         if known is not None and name not in known:
             findings.report(code, last, f"{message} `{name}`", did_you_mean(name, known, "there are"))
 
@@ -59,9 +68,9 @@ def check_names(node: FunctionCall, around: Declarations, findings: ExpressionFi
 def _pattern(node: ExpressionNode, pattern: str | None, findings: ExpressionFindings) -> None:
     if pattern is None:
         hint = "a pattern can't be computed; use `contains` for that"
-        findings.report("unsafe-pattern", node, "`matches` needs its pattern written as a text", hint)
+        findings.report(UNSAFE_PATTERN, node, "`matches` needs its pattern written as a text", hint)
         return
     try:
         compile_pattern(pattern)
     except ExpressionError as error:
-        findings.report("unsafe-pattern", node, f"in the pattern, {error.message}", error.hint)
+        findings.report(UNSAFE_PATTERN, node, f"in the pattern, {error.message}", error.hint)

@@ -7,6 +7,13 @@ from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.calls import check_names, function_of
 from lumen.interpreters.expressions.expression_findings import (
     CODES_OF_COMPILE_ERRORS,
+    EXPRESSION_SYNTAX,
+    TYPE_MISMATCH,
+    UNGUARDED_FIELD,
+    UNKNOWN_CONTEXT_KEY,
+    UNKNOWN_FIELD,
+    UNKNOWN_NAME,
+    WRONG_ARGUMENT,
     Declarations,
     ExpressionFinding,
     ExpressionFindings,
@@ -85,7 +92,7 @@ def check_expression(
     try:
         tree = parse_expression(source)
     except ExpressionError as error:
-        return [ExpressionFinding("expression-syntax", error.offset, 1, error.message, error.hint)]
+        return [ExpressionFinding(EXPRESSION_SYNTAX, error.offset, 1, error.message, error.hint)]
     return check_tree(tree, Declarations(context, events, phrases, answers, states), expected)
 
 
@@ -146,7 +153,7 @@ class _Checker:
             hint = f"write `{node.name}(…)`"
         else:
             hint += f"; a text stands in quotes: '{node.name}'"
-        self.report("unknown-name", node, f"there is nothing named `{node.name}`", hint)
+        self.report(UNKNOWN_NAME, node, f"there is nothing named `{node.name}`", hint)
         return ANY
 
     def event(self, known: KnownFacts) -> ValueType:
@@ -189,7 +196,7 @@ class _Checker:
         owner = ".".join(path[:-1]) or "this"
         if path[:1] == ("context",) and len(path) == 2 and presence is FieldPresence.UNDECLARED:
             hint = did_you_mean(key, base.fields(), "`context` has")
-            self.report("unknown-context-key", node, f"the context has no `{key}`", hint, start)
+            self.report(UNKNOWN_CONTEXT_KEY, node, f"the context has no `{key}`", hint, start)
         elif guarded or presence is FieldPresence.SURE:
             return
         elif presence is FieldPresence.UNDECLARED:
@@ -197,10 +204,10 @@ class _Checker:
             several = base.fields() and key in base.fields()
             message = f"not every event here has `{owner}.{key}`" if several else f"`{owner}` has no `{key}`"
             hint = f"guard it with has({owner}.{key})" if several else hint
-            self.report("unknown-field", node, message, hint, start)
+            self.report(UNKNOWN_FIELD, node, message, hint, start)
         else:
             hint = f"guard it with has({owner}.{key})"
-            self.report("unguarded-field", node, f"`{owner}.{key}` may be missing", hint, start)
+            self.report(UNGUARDED_FIELD, node, f"`{owner}.{key}` may be missing", hint, start)
 
     def binary(self, node: Binary, left: ValueType, right: ValueType) -> ValueType:
         match node.sign:
@@ -229,7 +236,7 @@ class _Checker:
 
     def mismatch(self, node: Binary, left: ValueType, right: ValueType, hint: str) -> None:
         message = f"{in_words(left.kinds)} and {in_words(right.kinds)} don't go together in `{node.sign}`"
-        self.report("type-mismatch", node, message, hint)
+        self.report(TYPE_MISMATCH, node, message, hint)
 
     def call(self, node: FunctionCall, known: KnownFacts) -> ValueType:
         function = function_of(node, self.findings)
@@ -249,5 +256,5 @@ class _Checker:
         if isinstance(target, FieldAccess | IndexAccess):
             self.member(target, known & KnownFacts(prefixes(target)), must_exist=False)
         else:
-            self.report("wrong-argument", target, "`has` asks whether a field is there", "write `has(event.data.x)`")
+            self.report(WRONG_ARGUMENT, target, "`has` asks whether a field is there", "write `has(event.data.x)`")
         return of(BOOLEAN)

@@ -6,12 +6,33 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions.kinds import KIND_DESCRIPTIONS
 from lumen.interpreters.expressions.tree import ExpressionNode
+from lumen.language.diagnostics import ERROR, Code
+
+UNKNOWN_CONTEXT_KEY = Code("unknown-context-key", "references", ERROR, "a key is used that `context` does not declare")
+UNKNOWN_FIELD = Code(
+    "unknown-field", "references", ERROR, "a field is named that the messages of the route do not have"
+)
+UNKNOWN_STATE = Code("unknown-state", "references", ERROR, "a state is named that does not exist")
+EXPRESSION_SYNTAX = Code("expression-syntax", "expressions", ERROR, "an expression can't be read")
+TYPE_MISMATCH = Code(
+    "type-mismatch", "expressions", ERROR, "values stand together in an expression that can't go together"
+)
+UNGUARDED_FIELD = Code("unguarded-field", "expressions", ERROR, "a field is read that not every event has")
+UNKNOWN_ANSWERS = Code("unknown-answers", "expressions", ERROR, "an answers table is named that the file does not have")
+UNKNOWN_FUNCTION = Code("unknown-function", "expressions", ERROR, "an expression calls a function that does not exist")
+UNKNOWN_NAME = Code("unknown-name", "expressions", ERROR, "an expression uses a name that does not exist")
+UNKNOWN_PHRASE = Code("unknown-phrase", "expressions", ERROR, "phrases are named that the file does not have")
+UNSAFE_PATTERN = Code("unsafe-pattern", "expressions", ERROR, "a pattern of `matches` could take for ever")
+WRONG_ARGUMENT = Code("wrong-argument", "expressions", ERROR, "a function is given something it can't use")
+WRONG_ARGUMENT_COUNT = Code(
+    "wrong-argument-count", "expressions", ERROR, "a function is given too few or too many arguments"
+)
 
 
 class ExpressionFinding(NamedTuple):
     """A fault of an expression: `offset` and `length` [characters] are its place in the source."""
 
-    code: str
+    code: Code
     offset: int
     length: int
     message: str
@@ -19,7 +40,7 @@ class ExpressionFinding(NamedTuple):
 
 
 CODES_OF_COMPILE_ERRORS = frozenset(
-    ("unknown-name", "unknown-function", "wrong-argument-count", "unsafe-pattern", "wrong-argument")
+    (UNKNOWN_NAME, UNKNOWN_FUNCTION, WRONG_ARGUMENT_COUNT, UNSAFE_PATTERN, WRONG_ARGUMENT)
 )
 """The codes of what can't even be compiled."""
 
@@ -44,7 +65,7 @@ class ExpressionFindings:
     def __init__(self) -> None:
         self.found: dict[ExpressionFinding, None] = {}
 
-    def report(self, code: str, node: ExpressionNode, message: str, hint: str = "", offset: int | None = None) -> None:
+    def report(self, code: Code, node: ExpressionNode, message: str, hint: str = "", offset: int | None = None) -> None:
         """Something is wrong with the node, or with its part from `offset` on."""
         start = node.offset if offset is None else offset
         self.found[ExpressionFinding(code, start, max(1, node.end - start), message, hint)] = None
@@ -53,7 +74,7 @@ class ExpressionFindings:
         """Whether a value of these kinds can be of one that is wanted, saying so where it can't."""
         if kinds & wanted:
             return True
-        self.report("type-mismatch", node, f"this is {in_words(kinds)}, and {in_words(wanted)} is needed {whose}")
+        self.report(TYPE_MISMATCH, node, f"this is {in_words(kinds)}, and {in_words(wanted)} is needed {whose}")
         return False
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.checker import check_expression
 from lumen.interpreters.expressions.compiler import compile_expression
-from lumen.interpreters.expressions.expression_findings import ExpressionFinding
+from lumen.interpreters.expressions.expression_findings import EXPRESSION_SYNTAX, ExpressionFinding
 from lumen.interpreters.expressions.kinds import FaultError
 from lumen.interpreters.expressions.operators import bounded
 from lumen.interpreters.expressions.scope import MAX_TEXT_LENGTH, Scope
@@ -116,6 +116,6 @@ def check_template(text: str, *, context: Mapping[str, Any] | None, **around: An
     try:
         holes = [part for part in split_template(text) if isinstance(part, Placeholder)]
     except ExpressionError as error:
-        return [ExpressionFinding("expression-syntax", error.offset, 1, error.message, error.hint)]
+        return [ExpressionFinding(EXPRESSION_SYNTAX, error.offset, 1, error.message, error.hint)]
     found = [(hole, check_expression(hole.source, context=context, **around)) for hole in holes]
     return [finding._replace(offset=finding.offset + hole.offset) for hole, findings in found for finding in findings]

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from math import degrees
 
-from lumen.language.diagnostics import Diagnostic, NodePath, Places
+from lumen.language.diagnostics import Code, Diagnostic, NodePath, Places
 from lumen.language.motions import Keyframe
-from lumen.rules.codes import CODES
+from lumen.rules.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVERLOADED, SELF_COLLISION, UNSTEADY
 from lumen.rules.physics import FELL, CaseResult, Outcome
 from lumen.rules.physics.trial import FALLING_TILT, MAX_FOOT_SLIDE, TimedAmount
 
@@ -22,7 +22,7 @@ MAX_FAILED_SHARE = 0.1
 """Of a passage, which the robot tries again, so many attempts may fail."""
 
 _FEET = {"L": "the left foot", "R": "the right foot"}
-_JOINTS = ("comes-late", "overloaded")
+_JOINTS = (COMES_LATE, OVERLOADED)
 _LEGS = ("Hip", "Knee", "Ankle")
 
 
@@ -51,17 +51,17 @@ class _Judge:
                 f"the torso leans {leans:.0f} deg when the robot plays this {self._case.way}: at 45 it counts as fallen"
             )
             most = max(tried, key=lambda outcome: outcome.tilt)
-            yield self._found("unsteady", message, "bow less deep", self._keys(most.leaned, _LEGS))
+            yield self._found(UNSTEADY, message, "bow less deep", self._keys(most.leaned, _LEGS))
             return  # the rest comes of it
-        worst = [*self._worst("self-collision", lambda o: o.collisions, MAX_CONTACT_TIME)]
+        worst = [*self._worst(SELF_COLLISION, lambda o: o.collisions, MAX_CONTACT_TIME)]
         if worst or (failed and failed[0] is self._rehearsal.outcomes[0]):
             yield from worst
             return  # the rest comes of it
-        slides = [*self._worst("feet-slide", lambda o: o.slid, MAX_FOOT_SLIDE)]
+        slides = [*self._worst(FEET_SLIDE, lambda o: o.slid, MAX_FOOT_SLIDE)]
         yield from slides
         spared = _LEGS if slides else ()
-        late = [*self._worst("comes-late", lambda o: o.behind, MAX_JOINT_LAG, spared)]
-        yield from late or self._worst("overloaded", lambda o: o.exhausted, MAX_FULL_TORQUE_TIME, spared)
+        late = [*self._worst(COMES_LATE, lambda o: o.behind, MAX_JOINT_LAG, spared)]
+        yield from late or self._worst(OVERLOADED, lambda o: o.exhausted, MAX_FULL_TORQUE_TIME, spared)
 
     def _failure(self, failed: list[Outcome], itself: bool) -> Iterator[Diagnostic]:
         """It falls, or does not come to its end: with the robot itself, or with some others."""
@@ -71,12 +71,12 @@ class _Judge:
             what = "needs another attempt"
         elif worst.answer != FELL and itself:
             message = f"the robot does not play this {self._case.way}: {worst.answer}"
-            yield self._found("not-played", message, "", ())
+            yield self._found(NOT_PLAYED, message, "", ())
             return
         if itself and worst.answer == FELL:
             message = f"the robot falls here, at {worst.at:.1f} s, when it plays this {self._case.way}"
             hint = "slower, smaller, or with the weight over the foot that stands"
-            yield self._found("falls", message, hint, self._keys(worst.at, _LEGS))
+            yield self._found(FALLS, message, hint, self._keys(worst.at, _LEGS))
             return
         tried = len(self._rehearsal.tried)
         if len(failed) <= (MAX_FAILED_SHARE * tried if self._case.passage else 0):
@@ -85,11 +85,11 @@ class _Judge:
         if not self._case.passage:
             message += f" when they play this {self._case.way}"
         hint = "it holds on the robot of the model alone: slower, or smaller, leaves a margin"
-        yield self._found("unsteady", message, hint, self._keys(worst.at, _LEGS))
+        yield self._found(UNSTEADY, message, hint, self._keys(worst.at, _LEGS))
 
     def _worst(
         self,
-        code: str,
+        code: Code,
         of: Callable[[Outcome], Mapping[str, TimedAmount]],
         limit: float,
         spared: Iterable[str] = (),
@@ -112,7 +112,7 @@ class _Judge:
         message, hint = _words(code, what, at, value)
         message += f", also {', '.join(map(_name, others))}" if others else ""
         message += f" (with {robots} of {len(tried)} robots)" if robots < len(tried) else ""
-        joints = (what,) if code in _JOINTS else _LEGS if code == "feet-slide" else ()
+        joints = (what,) if code in _JOINTS else _LEGS if code == FEET_SLIDE else ()
         yield self._found(code, message, hint, self._keys(at, joints))
 
     def _keys(self, at: float, joints: Iterable[str]) -> NodePath:
@@ -125,26 +125,23 @@ class _Judge:
         keys = sorted(coming or [keys[-1] for keys in chosen], key=lambda key: key.time)
         return _keyframe(keys[0]) if keys else ()
 
-    def _found(self, code: str, message: str, hint: str, path: NodePath) -> Diagnostic:
-        severity = CODES[code].severity
-        return Diagnostic(code, message, self._document.place(path), hint, severity)
+    def _found(self, code: Code, message: str, hint: str, path: NodePath) -> Diagnostic:
+        return code.at(self._document.place(path), message, hint)
 
 
-def _words(code: str, what: str, at: float, value: float) -> tuple[str, str]:
+def _words(code: Code, what: str, at: float, value: float) -> tuple[str, str]:
     """What is wrong, and what to do."""
-    match code:
-        case "self-collision":
-            message = f"{what} run into each other here, at {at:.1f} s, for {value:.1f} s"
-            return message, "lead one of them around the other: a keyframe between, or a wider pose"
-        case "feet-slide":
-            message = f"{_name(what)} slides {100 * value:.1f} cm while it bears load, from {at:.1f} s"
-            return message, "keep the soles flat and the hips between the feet, or lift the foot"
-        case "comes-late":
-            message = f"{_name(what)} is {degrees(value):.0f} deg behind here, at {at:.1f} s: its motor can't follow"
-            return message, "give it more time, or less weight to move"
-        case _:
-            message = f"{_name(what)} gives all it can here, from {at:.1f} s, for {value:.1f} s"
-            return message, "its motor gets hot and comes late: slower, or with less weight on it"
+    if code == SELF_COLLISION:
+        message = f"{what} run into each other here, at {at:.1f} s, for {value:.1f} s"
+        return message, "lead one of them around the other: a keyframe between, or a wider pose"
+    if code == FEET_SLIDE:
+        message = f"{_name(what)} slides {100 * value:.1f} cm while it bears load, from {at:.1f} s"
+        return message, "keep the soles flat and the hips between the feet, or lift the foot"
+    if code == COMES_LATE:
+        message = f"{_name(what)} is {degrees(value):.0f} deg behind here, at {at:.1f} s: its motor can't follow"
+        return message, "give it more time, or less weight to move"
+    message = f"{_name(what)} gives all it can here, from {at:.1f} s, for {value:.1f} s"
+    return message, "its motor gets hot and comes late: slower, or with less weight on it"
 
 
 def _name(what: str) -> str:

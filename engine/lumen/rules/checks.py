@@ -1,0 +1,51 @@
+"""The rules, in the order in which they look at a project."""
+
+from types import ModuleType
+
+from lumen.rules import (
+    controllers,
+    dead_ends,
+    effects,
+    events,
+    expressions,
+    guards,
+    models,
+    motions,
+    references,
+    renaming,
+    routes,
+    schemas,
+    speech,
+    statecharts,
+    stories,
+    timing,
+    traps,
+    units,
+    unused,
+)
+
+CHECKS: tuple[ModuleType, ...] = (
+    traps,
+    schemas,
+    references,
+    models,
+    expressions,
+    events,
+    routes,
+    speech,
+    controllers,
+    motions,
+    units,
+    guards,
+    statecharts,
+    dead_ends,
+    timing,
+    stories,
+    renaming,
+    effects,
+    unused,
+)
+"""Each has a `check(draft)` that reports what it finds.
+
+What is unused or never reached is looked for where nothing else is wrong.
+"""

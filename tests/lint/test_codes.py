@@ -1,0 +1,74 @@
+"""Each code of lint: declared once, beside its check, where a search for it finds all of it, and raised somewhere."""
+
+import ast
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.language.diagnostics import Severity
+from lumen.rules.codes import CODES, FAMILIES
+from lumen.rules.pages import page
+
+ENGINE = Path(lumen.__file__).parent
+RAISING = ("loading", "rules", "interpreters/expressions", "app/reload")
+
+
+@cache
+def trees() -> dict[str, ast.Module]:
+    return {str(f.relative_to(ENGINE)): ast.parse(f.read_text(encoding="utf-8")) for f in ENGINE.rglob("*.py")}
+
+
+def declarations() -> Iterator[tuple[str, str, str]]:
+    """File, constant and code of each declaration."""
+    for file, tree in trees().items():
+        for node in tree.body:
+            match node:
+                case ast.Assign(
+                    targets=[ast.Name(constant)], value=ast.Call(ast.Name("Code"), [ast.Constant(code), *_])
+                ):
+                    yield file, constant, code
+
+
+def texts(tree: ast.AST) -> Iterator[str]:
+    yield from (n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str))
+
+
+def test_every_code_is_declared_once_under_its_own_name() -> None:
+    found = [(constant, code) for _, constant, code in declarations()]
+    assert sorted(code for _, code in found) == sorted(CODES)
+    assert all(constant == code.upper().replace("-", "_") for constant, code in found)
+
+
+def test_no_code_is_made_in_any_other_way() -> None:
+    made = [n for tree in trees().values() for n in ast.walk(tree) if isinstance(n, ast.Call)]
+    assert sum(isinstance(n.func, ast.Name) and n.func.id == "Code" for n in made) == len(CODES)
+
+
+def test_a_search_for_a_code_finds_its_declaration_only() -> None:
+    """Whoever raises it uses the value; `tab` and `falls` are words as well."""
+    counted = Counter(t for f, tree in trees().items() if f.startswith(RAISING) for t in texts(tree) if t in CODES)
+    assert {code: n for code, n in counted.items() if n > 1 and "-" in code} == {}
+
+
+def test_every_code_is_raised_somewhere() -> None:
+    names = {
+        n.id
+        for file, tree in trees().items()
+        if file.startswith(RAISING)
+        for n in ast.walk(tree)
+        if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)
+    }
+    assert [code for _, constant, code in declarations() if constant not in names] == []
+
+
+@pytest.mark.parametrize("code", CODES.values())
+def test_every_code_says_how_bad_it_is_and_what_it_means(code) -> None:
+    assert isinstance(code.severity, Severity)
+    assert code in FAMILIES[code.family]
+    assert code.summary
+    assert not code.summary.endswith(".")
+    assert page(code).what
