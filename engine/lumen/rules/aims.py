@@ -6,7 +6,7 @@ from lumen.language.robots import Body
 from lumen.language.scales import ranks
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import first
+from lumen.rules.lookups import first
 
 HIGH_GAIN = Code("high-gain", "controllers", WARNING, "a binding's gain makes the loop overshoot")
 RANGE_BEYOND_JOINT = Code(

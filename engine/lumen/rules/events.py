@@ -10,7 +10,7 @@ from lumen.language.machines import MachineDefinition, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.endings import ending_fault
-from lumen.rules.finding import first
+from lumen.rules.lookups import first
 from lumen.rules.walk import action_sites
 
 UNKNOWN_EVENT = Code("unknown-event", "references", ERROR, "a behaviour waits for an event that nothing raises")

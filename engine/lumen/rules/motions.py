@@ -15,7 +15,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import memoize
 from lumen.loading.poses import ANGLE_OUT_OF_RANGE
 from lumen.loading.units import ANGLES
-from lumen.rules.finding import value_at
+from lumen.rules.lookups import value_at
 
 TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
 

@@ -9,7 +9,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.poses import UNKNOWN_POSTURE
 from lumen.loading.project import MISSING_FILE
-from lumen.rules.finding import References, first
+from lumen.rules.lookups import References, first
 from lumen.rules.walk import ActionSite, action_sites
 
 UNKNOWN_ROUTE = Code("unknown-route", "references", ERROR, "a route is named that is not in lumen.yaml")

@@ -21,7 +21,7 @@ from lumen.language.routes import (
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
-from lumen.rules.finding import References
+from lumen.rules.lookups import References
 from lumen.rules.references import WRONG_DIRECTION
 from lumen.rules.walk import action_sites
 

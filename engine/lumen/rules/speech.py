@@ -10,7 +10,7 @@ from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePat
 from lumen.language.machines import Answer, MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import value_at
+from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 
 UNKNOWN_LANGUAGE = Code("unknown-language", "references", ERROR, "a language is named that the project does not speak")

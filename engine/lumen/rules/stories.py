@@ -15,7 +15,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.schema import faults
 from lumen.rules.events import UNKNOWN_EVENT, declared, descriptors, hears, raised
-from lumen.rules.finding import References, first
+from lumen.rules.lookups import References, first
 from lumen.rules.references import known_route
 
 UNKNOWN_SENSOR = Code("unknown-sensor", "references", ERROR, "the robot has no tactile sensor of that name")

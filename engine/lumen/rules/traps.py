@@ -8,7 +8,7 @@ from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.finding import value_at
+from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 
 CURLY_QUOTES = Code("curly-quotes", "text", WARNING, "quotes of a printed text stand where YAML's should")

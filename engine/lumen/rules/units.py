@@ -12,7 +12,7 @@ from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.units import ANGLES, LENGTHS
-from lumen.rules.finding import value_at
+from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 
 WRONG_UNIT = Code("wrong-unit", "robot", WARNING, "an angle or a length is given in another unit than the file's")
