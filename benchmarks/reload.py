@@ -40,7 +40,7 @@ from lumen.clocks.simulated import SimulatedClock
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.home import Home
-from lumen.runtime.loop import TICK
+from lumen.runtime.loop import TICK_PERIOD
 
 RATE = 200
 PATIENCE = 60.0
@@ -105,9 +105,9 @@ import sys, threading, time
 ended, missed, before = threading.Event(), 0, time.monotonic()
 threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
 while not ended.is_set():
-    time.sleep({TICK})
+    time.sleep({TICK_PERIOD})
     now = time.monotonic()
-    missed, before = missed + (now - before > {2 * TICK}), now
+    missed, before = missed + (now - before > {2 * TICK_PERIOD}), now
 print(missed)
 """
 
@@ -176,7 +176,7 @@ class Soak:
         if not self._done.is_set():
             outcome.ticks += 1
             outcome.gap = max(outcome.gap, gap)
-            outcome.missed += gap > 2 * TICK
+            outcome.missed += gap > 2 * TICK_PERIOD
         if self.reloading.last is not self._last and self.reloading.last:
             self._last = self.reloading.last
             self._told.append(told_of(self._last, now))
@@ -318,7 +318,7 @@ def main() -> None:
     print(f"saved to verdict                {_spread(found.verdicts)}")
     print(f"  of which the quiet period     {1000 * options.quiet:.0f} ms")
     print(f"  and our own work              {_spread(found.own)}")
-    print(f"swap                            {_spread(found.swaps)} (a tick is {1000 * TICK:.0f} ms)")
+    print(f"swap                            {_spread(found.swaps)} (a tick is {1000 * TICK_PERIOD:.0f} ms)")
     before, after = (size / 2**20 for size in found.memory)
     print(f"memory                          {before:.1f} -> {after:.1f} MiB ({found.growth:+.1f} %)")
     print(f"threads, files open             {found.threads[0]} -> {found.threads[1]}", end="")

@@ -13,7 +13,7 @@ from lumen.app.whole_node import WholeNode
 from lumen.cli.main import main
 from lumen.errors import BusError
 from lumen.loading.files import read_files
-from lumen.runtime.crash_counter import DEATHS, MAX_KNOWN_BUNDLES, CrashCounter
+from lumen.runtime.crash_counter import MAX_CRASHES, MAX_KNOWN_BUNDLES, CrashCounter
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.journal import Journal
 from tests.live.shows import Live
@@ -59,11 +59,11 @@ def test_files_that_end_every_start_give_way_to_the_last_good_ones(
     save(copy, SORRY, PARDON)
     bad = lumen.load(copy).hash
     fail_with(monkeypatch, bad, ZeroDivisionError("a fault of ours"))
-    for _ in range(DEATHS):
+    for _ in range(MAX_CRASHES):
         with pytest.raises(ZeroDivisionError):
             main(run)
     capsys.readouterr()
-    for _ in range(DEATHS + 1):
+    for _ in range(MAX_CRASHES + 1):
         assert main(run) == 0
         told = capsys.readouterr()
         assert "THESE FILES ENDED THE EXHIBITION 2 TIMES" in told.err
@@ -92,7 +92,7 @@ def test_a_fault_of_the_world_is_no_fault_of_the_files(
 ) -> None:
     hash = lumen.load(copy).hash
     fail_with(monkeypatch, hash, BusError("the broker is gone"))
-    for _ in range(DEATHS):
+    for _ in range(MAX_CRASHES):
         assert main(run) == 2
     assert CrashCounter(Home(home_of(copy))).count(hash) == 0
 
@@ -147,7 +147,7 @@ def test_how_often_files_did_not_last_is_remembered_of_the_latest(tmp_path: Path
 def test_where_nothing_else_is_known_to_be_good_the_files_are_tried_again(copy: Path) -> None:
     run_directory = RunDirectory(copy)
     first = startup_project(copy, run_directory, last_good=False)
-    for _ in range(DEATHS):
+    for _ in range(MAX_CRASHES):
         run_directory.records.begin(first.hash)
     assert startup_project(copy, run_directory, last_good=False).hash == first.hash
     assert run_directory.news == []

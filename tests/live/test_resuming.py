@@ -18,10 +18,10 @@ from lumen.cli.main import main
 from lumen.interpreters.statechart import serialize
 from lumen.language.commands import Track
 from lumen.loading.files import read_files
-from lumen.runtime.home import DOOR, Home, home_of
-from lumen.runtime.journal import BYTES, Journal
-from lumen.runtime.resuming import REASON, Resumption, resume
-from lumen.runtime.snapshot_store import SNAPSHOT, SnapshotStore
+from lumen.runtime.home import ADDRESS_FILE, Home, home_of
+from lumen.runtime.journal import MAX_JOURNAL_BYTES, Journal
+from lumen.runtime.resuming import LOST_COMMAND_REASON, Resumption, resume
+from lumen.runtime.snapshot_store import SNAPSHOT_FILE, SnapshotStore
 from tests.guarded import PIPE, Guarded
 from tests.live.shows import Live
 from tests.waiting import until
@@ -57,7 +57,7 @@ def test_it_goes_on_where_it_was_and_what_was_under_way_has_failed(copy: Path) -
     assert "dance" in found.snapshot.configuration
     assert found.snapshot.context["visitor"] == "Ada"
     assert found.tracking == ("head",)
-    assert {event.data["reason"] for event in found.answers(0.0)} == {REASON}
+    assert {event.data["reason"] for event in found.answers(0.0)} == {LOST_COMMAND_REASON}
     again = Live(copy)
     again.show.loop.resume(found)
     again.until_told("(failed: the engine was restarted while it ran)")
@@ -91,15 +91,15 @@ def test_what_is_too_old_or_damaged_is_begun_anew(copy: Path) -> None:
     one = Live(copy)
     crashed(one)
     home = Home(home_of(copy))
-    data = json.loads(home.read(SNAPSHOT) or b"")
-    home.write(SNAPSHOT, json.dumps({**data, "time": time.time() - LATELY - 60.0}).encode())
+    data = json.loads(home.read(SNAPSHOT_FILE) or b"")
+    home.write(SNAPSHOT_FILE, json.dumps({**data, "time": time.time() - LATELY - 60.0}).encode())
     assert "begins anew" in str(resumed(copy))
-    home.write(SNAPSHOT, json.dumps({**data, "bundle": "0" * 64}).encode())
+    home.write(SNAPSHOT_FILE, json.dumps({**data, "bundle": "0" * 64}).encode())
     assert "its files were not kept" in str(resumed(copy))
-    home.write(SNAPSHOT, json.dumps({**data, "snapshot": {"version": 1}}).encode())
+    home.write(SNAPSHOT_FILE, json.dumps({**data, "snapshot": {"version": 1}}).encode())
     assert "can't be gone on with" in str(resumed(copy))
     for damaged in (b"", b"{", b"[]", b'{"version": 1}', b"\xff"):
-        home.write(SNAPSHOT, damaged)
+        home.write(SNAPSHOT_FILE, damaged)
         assert resumed(copy) == ""
 
 
@@ -134,7 +134,7 @@ def test_only_what_is_new_is_written(copy: Path) -> None:
 
 def test_a_disk_that_refuses_ends_nothing(copy: Path, caplog: pytest.LogCaptureFixture) -> None:
     one = Live(copy)
-    (one.home.folder / f"{SNAPSHOT}.new").mkdir()
+    (one.home.folder / f"{SNAPSHOT_FILE}.new").mkdir()
     one.greet()
     one.records.keep(one.show.loop)
     one.show.close()
@@ -147,7 +147,7 @@ def test_the_journal_is_bounded_and_whole(tmp_path: Path) -> None:
         journal.write({"number": number, "text": "x" * 1_000})
     sizes = [file.stat().st_size for file in tmp_path.iterdir()]
     assert len(sizes) == 2
-    assert sum(sizes) < 2.2 * BYTES
+    assert sum(sizes) < 2.2 * MAX_JOURNAL_BYTES
     numbers = [entry["number"] for entry in journal.entries()]
     assert numbers == list(range(numbers[0], 3_000))
     with (tmp_path / "journal.jsonl").open("a") as file:
@@ -161,7 +161,7 @@ def running(folder: Path, *words: str) -> Iterator[Guarded[str]]:
     run = [sys.executable, "-m", "lumen", "run", str(folder), "--robot", "recording", "--speed", "4", *words]
     with Guarded(run, stdin=PIPE, stdout=PIPE, text=True) as process:
         try:
-            until(lambda: (home_of(folder) / DOOR).exists() and Home(home_of(folder)).held())
+            until(lambda: (home_of(folder) / ADDRESS_FILE).exists() and Home(home_of(folder)).held())
             yield process
         finally:
             process.kill()
@@ -176,7 +176,7 @@ def silent(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("silent")
 def test_a_run_that_is_killed_is_gone_on_with(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with running(copy) as process:
-        until(lambda: (home_of(copy) / SNAPSHOT).exists())
+        until(lambda: (home_of(copy) / SNAPSHOT_FILE).exists())
         assert main(["say", "Hello", str(copy)]) == 0
         assert main(["reload", str(copy), "--status"]) == 0
         assert main(["reload", str(copy)]) == 0

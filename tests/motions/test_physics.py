@@ -9,7 +9,7 @@ import pytest
 
 from lumen.motion import Motion
 from lumen.ports import Perform
-from lumen.robots.simulation.model import ROBOT, Variation
+from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
 from lumen.robots.simulation.robot import SimulatedRobot
 from tests.motions.making import ROOT, SHIPPED, nao
 
@@ -45,14 +45,14 @@ def look(robot: SimulatedRobot, time: float) -> Moment:
     data, model = robot.world.data, robot.world.model
 
     def point(body: str, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Point:
-        frame = data.body(f"{ROBOT}/{body}")
+        frame = data.body(f"{ROBOT_PREFIX}/{body}")
         return np.array(frame.xpos + frame.xmat.reshape(3, 3) @ np.array(at))
 
     wanted = robot.motors.wanted(nao().joints)
     error = max(abs(wanted[n] - a) for n, a in zip(nao().joints, robot.world.angles, strict=True) if n[1:] != "Hand")
     touching = [c for c in data.contact[: data.ncon] if c.dist < -1e-3]
     names = {(model.geom(c.geom1).name, model.geom(c.geom2).name) for c in touching}
-    own = frozenset(pair for pair in names if all(name.startswith(f"{ROBOT}/") for name in pair))
+    own = frozenset(pair for pair in names if all(name.startswith(f"{ROBOT_PREFIX}/") for name in pair))
     return Moment(
         time,
         point("RWristYaw", HAND),

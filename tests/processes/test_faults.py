@@ -15,7 +15,7 @@ from lumen.bus import connect
 from lumen.cli.main import main
 from lumen.language.commands import Rest
 from lumen.ports import Perform
-from lumen.runtime.snapshot_store import SNAPSHOT
+from lumen.runtime.snapshot_store import SNAPSHOT_FILE
 from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded
 from tests.processes.troupe import SPEED, Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ
@@ -67,7 +67,7 @@ def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_betwe
     robot, visitor = troupe.join("robot"), troupe.join("visitor", story="dancing")
     brain = start("brain", "--story", "dancing")
     troupe.until(lambda: "dance" in motions(robot))
-    assert (troupe.folder / ".lumen" / SNAPSHOT).exists()
+    assert (troupe.folder / ".lumen" / SNAPSHOT_FILE).exists()
     os.kill(brain.pid, signal.SIGKILL)
     brain.wait()
     tour = troupe.folder / "behaviors" / "tour.yaml"

@@ -17,7 +17,7 @@ from lumen.buses.validated import validated
 from lumen.clocks.real import RealClock
 from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
-from lumen.runtime.presence import BRAIN, ROBOT
+from lumen.runtime.presence import BRAIN, ROBOT_PART
 from tests.nodes import Printed, whole
 from tests.waiting import Collector
 
@@ -67,7 +67,7 @@ class Member:
     def __init__(self, folder: Path, url: str, names: tuple[str, ...], story: str, name: str, speed: str) -> None:
         project = replace(lumen.load(folder), robot=name)
         self.run_directory = RunDirectory(folder, guest=BRAIN not in names)
-        self.cast: Setup | None = set_up("recording", project, speed) if ROBOT in names else None
+        self.cast: Setup | None = set_up("recording", project, speed) if ROBOT_PART in names else None
         clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(speed))
         played = project.stories[story] if story else None
         bus = validated(connect(url), project)

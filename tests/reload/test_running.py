@@ -18,7 +18,7 @@ from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
 from lumen.rules import load
-from lumen.runtime.loop import TICK, BehaviorLoop, Observer
+from lumen.runtime.loop import TICK_PERIOD, BehaviorLoop, Observer
 from lumen.statechart import Machine
 from tests import exhibits
 from tests.nodes import whole
@@ -83,7 +83,7 @@ def test_the_head_goes_on_smoothly_under_another_controller() -> None:
         show.tick()
         for name, i in head.items():
             goal = float(robot.motors.goal[i])
-            assert abs(goal - before[name]) <= project.body.joints[name].speed * TICK + 1e-9
+            assert abs(goal - before[name]) <= project.body.joints[name].speed * TICK_PERIOD + 1e-9
             moved[name] += abs(goal - before[name])
             before[name] = goal
     assert moved["HeadYaw"] > 0.1  # so it does under the other one
@@ -103,8 +103,8 @@ def test_a_motion_that_plays_ends_as_it_began_and_is_the_new_one_the_next_time()
         exhibition.tick()
     (first, at), (second, later) = seen.answers
     assert (first, second) == ("done.command.d1", "done.command.d2")
-    assert abs(at - 1.0) < 2 * TICK
-    assert abs(later - at - 3.0) < 2 * TICK
+    assert abs(at - 1.0) < 2 * TICK_PERIOD
+    assert abs(later - at - 3.0) < 2 * TICK_PERIOD
 
 
 def test_a_motion_that_plays_may_be_deleted_when_it_has_ended() -> None:

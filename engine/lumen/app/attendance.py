@@ -6,9 +6,9 @@ from contextlib import suppress
 from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
-from lumen.runtime.presence import HERE, KEY, PERIOD, ROBOT, ROUTE
+from lumen.runtime.presence import HERE, PRESENCE_KEY, PRESENCE_PERIOD, PRESENCE_ROUTE, ROBOT_PART
 
-PRESENCE_TIMEOUT = 4 * PERIOD
+PRESENCE_TIMEOUT = 4 * PRESENCE_PERIOD
 
 
 class RobotAttendance:
@@ -16,9 +16,9 @@ class RobotAttendance:
 
     def __init__(self, bus: Bus, project: Project) -> None:
         self._robot, self._here = project.robot, threading.Event()
-        row = project.routes.get(ROUTE)
+        row = project.routes.get(PRESENCE_ROUTE)
         with suppress(BusError):  # who may not read it is told so elsewhere
-            bus.subscribe(row.key_for(project.robot) if row else KEY, self._hear)
+            bus.subscribe(row.key_for(project.robot) if row else PRESENCE_KEY, self._hear)
 
     def robot(self) -> bool:
         """Whether it is there; waits for as long as it may take to say so."""
@@ -26,5 +26,7 @@ class RobotAttendance:
 
     def _hear(self, message: Message) -> None:
         match message.body:
-            case {"robot": self._robot, "parts": list(parts), "state": str(state)} if ROBOT in parts and state == HERE:
+            case {"robot": self._robot, "parts": list(parts), "state": str(state)} if (
+                ROBOT_PART in parts and state == HERE
+            ):
                 self._here.set()

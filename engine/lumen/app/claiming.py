@@ -7,11 +7,11 @@ from lumen.errors import UsageError
 from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.ports import Bus
-from lumen.runtime.presence import BRAIN, KEY, MOTION, ROBOT, ROUTE, Presence, told
+from lumen.runtime.presence import BRAIN, MOTION, PRESENCE_KEY, PRESENCE_ROUTE, ROBOT_PART, Presence, where_it_runs
 
 CLAIM_DURATION = 0.8
 """How long a process asks whether somebody is already what it wants to be [s]."""
-ALONE = (ROBOT, BRAIN, MOTION, *MODULES)
+ALONE = (ROBOT_PART, BRAIN, MOTION, *MODULES)
 """Of these there is one for each robot; visitors may be many."""
 CLAIM_INTERVAL = 0.02
 """How often it looks for answers [s]."""
@@ -19,8 +19,8 @@ CLAIM_INTERVAL = 0.02
 
 def presence_of(project: Project, bus: Bus, parts: tuple[str, ...], more: Callable[[], Mapping[str, Any]]) -> Presence:
     """The presence of a process that is these parts, on the project's route."""
-    row = project.routes.get(ROUTE)
-    return Presence(bus, project.robot, parts, key=row.key_for(project.robot) if row else KEY, more=more)
+    row = project.routes.get(PRESENCE_ROUTE)
+    return Presence(bus, project.robot, parts, key=row.key_for(project.robot) if row else PRESENCE_KEY, more=more)
 
 
 def refuse_rivals(presence: Presence) -> None:
@@ -28,6 +28,6 @@ def refuse_rivals(presence: Presence) -> None:
     for part in ALONE:
         if part in presence.parts and (rival := presence.rival(part)):
             raise UsageError(
-                f"{told(rival)} is the {part} of {presence.robot} on this bus already:"
+                f"{where_it_runs(rival)} is the {part} of {presence.robot} on this bus already:"
                 " end it first, or give this project's robot another name"
             )

@@ -15,7 +15,7 @@ from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.runtime.coverage import Gap, described
-from lumen.runtime.visitor import SPEECH
+from lumen.runtime.visitor import SPEECH_ROUTE
 
 HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
 ROBOT_TIMEOUT = "2min"
@@ -107,7 +107,7 @@ def _steps(project: Project, path: tuple[PathStep, ...]) -> Iterator[str]:
 def _happens(project: Project, name: str, data: Any) -> str:
     """The step that lets an event happen: as words, as a message, or from nowhere."""
     route = next((r.name for r in project.routes.values() if r.event == name), None)
-    if route == SPEECH and isinstance(data, Mapping) and isinstance(data.get("result"), str) and data["result"]:
+    if route == SPEECH_ROUTE and isinstance(data, Mapping) and isinstance(data.get("result"), str) and data["result"]:
         return f"says: {_flow(data['result'])}"
     if route is not None:
         return f"message: {_flow({'route': route, 'body': data})}"

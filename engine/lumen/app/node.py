@@ -13,10 +13,10 @@ from lumen.errors import UsageError
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Clock
-from lumen.robots.robot_routes import COMMAND, key_of
-from lumen.runtime.loop import TICK
-from lumen.runtime.presence import HERE, ROBOT, Presence, told
-from lumen.runtime.trace_publisher import KEY
+from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
+from lumen.runtime.loop import TICK_PERIOD
+from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
+from lumen.runtime.trace_publisher import TRACE_KEY
 
 ROUNDING = 1e-6
 """How far the sum of many ticks may be off [s]."""
@@ -105,7 +105,7 @@ class Node:
 
     def tick(self) -> float:
         """Wait for the next tick and live through it; its time [s]."""
-        self._clock.wait(self.now + TICK)
+        self._clock.wait(self.now + TICK_PERIOD)
         self.now = self._clock.now()
         changes: list[Event] = self.presence.tick() if self.presence else []
         if self.presence and not self.presence.settled:
@@ -157,7 +157,7 @@ class Node:
         """Whether those are there that it needs; where not, that is said once."""
         for need in part.needs:
             if self.presence and need not in self.presence.parts and not self._here(self.presence, need):
-                key = key_of(self._project, COMMAND) if need == ROBOT else KEY
+                key = key_of(self._project, COMMAND_ROUTE) if need == ROBOT_PART else TRACE_KEY
                 line = f"waiting for the {need} on {key}"
                 if line != self._waiting:
                     self._waiting = line
@@ -174,7 +174,9 @@ class Node:
         for peer in self.presence.peers() if self.presence and self._speed else ():
             theirs = peer.said.get("speed")
             if isinstance(theirs, int | float) and theirs != self._speed:
-                raise UsageError(f"{told(peer)} runs at {theirs:g} × real time: say --speed {theirs:g} here, too")
+                raise UsageError(
+                    f"{where_it_runs(peer)} runs at {theirs:g} × real time: say --speed {theirs:g} here, too"
+                )
 
     def _heed(self) -> None:
         """What the first interrupt asks for; where nobody has anything to do for it, it ends."""

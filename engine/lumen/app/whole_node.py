@@ -20,7 +20,7 @@ from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.runtime.loop import BehaviorLoop
-from lumen.runtime.presence import BRAIN, MOTION, ROBOT
+from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART
 from lumen.runtime.story import StoryPlayer
 
 
@@ -47,7 +47,7 @@ class WholeNode(Node):
         self.behavior = LiveBehavior(project, setup, bus, story, published=not silent)
         self.narrator = narrator or Narrator(setup.clock.now, lambda: self.project.machine)
         here = tuple(name for name, said in project.modules.items() if said.here)
-        roles = (ROBOT, BRAIN, MOTION, *here)
+        roles = (ROBOT_PART, BRAIN, MOTION, *here)
         presence = presence_of(project, bus, roles, lambda: {"bundle": self.project.hash}) if shared else None
         super().__init__(self.behavior.project, bus, setup.clock, self.narrator, presence=presence)
         self.setup, self.story = setup, story
@@ -99,5 +99,5 @@ class WholeNode(Node):
         if self.robot.faces and EYES in names:
             self.robot.faces.quiet = True
         if self.presence:
-            self.presence.parts = (ROBOT, BRAIN, MOTION, *names)
+            self.presence.parts = (ROBOT_PART, BRAIN, MOTION, *names)
         self.add(*begun, ModuleTroublesPart(self.project, self.bus, tell, names))

@@ -22,9 +22,9 @@ from lumen.language.routes import Direction
 from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.ports import Bus
-from lumen.robots.robot_routes import COMMAND, key_of
+from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
 from lumen.rules import check_files
-from lumen.runtime.delegated_tracking import ROUTE as MOTION
+from lumen.runtime.delegated_tracking import MOTION_ROUTE as MOTION
 
 LISTENING = 2.0
 SKEW = 1.0
@@ -137,15 +137,14 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
 
 def _obeying(probe: BrokerProbe, attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
     """Whether who takes the robot's commands is alive."""
-    route = project.routes.get(COMMAND)
-    if route is None or not probe.served(key_of(project, COMMAND), route).readers:
+    route = project.routes.get(COMMAND_ROUTE)
+    if route is None or not probe.served(key_of(project, COMMAND_ROUTE), route).readers:
         return
     if attendance.robot():
         yield Finding("robot", "ok", f"{project.robot} is there")
     else:
-        text = (
-            f"somebody takes `{COMMAND}`, but {project.robot} does not say that it is there: end a process that hangs"
-        )
+        taken = f"somebody takes `{COMMAND_ROUTE}`"
+        text = f"{taken}, but {project.robot} does not say that it is there: end a process that hangs"
         yield Finding("robot", "warning", text)
 
 

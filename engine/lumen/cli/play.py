@@ -23,7 +23,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.motions import build_motion
 from lumen.loading.schema import check_schema
 from lumen.ports import Perform, RobotCommand
-from lumen.runtime.loop import TICK
+from lumen.runtime.loop import TICK_PERIOD
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -69,7 +69,7 @@ class _Player:
         """Raises UsageError where the robot can't, with its reason."""
         self.robot.start("play", command)
         while True:
-            self._clock.wait(self._clock.now() + TICK)
+            self._clock.wait(self._clock.now() + TICK_PERIOD)
             if self._film:
                 self._film.tick(self._clock.now())
             for event in self.robot.poll():

@@ -14,7 +14,7 @@ from lumen.loading.packaged import find_project
 from lumen.loading.project import draft
 from lumen.ports import Bus
 from lumen.robots.command_receiver import KEY, ROUTE
-from lumen.runtime.home import DOOR, Home, home_of, homes
+from lumen.runtime.home import ADDRESS_FILE, Home, home_of, homes
 
 
 class Reached(NamedTuple):
@@ -63,7 +63,7 @@ def _running(root: Path) -> dict[str, Any] | None:
 
 def _said(home: Home) -> dict[str, Any] | None:
     try:
-        found = json.loads(home.read(DOOR) or b"")
+        found = json.loads(home.read(ADDRESS_FILE) or b"")
     except ValueError:
         return None
     return found if isinstance(found, dict) else None

@@ -32,7 +32,7 @@ from lumen.loading.packaged import find_project
 from lumen.loading.units import seconds
 from lumen.ports import Clock
 from lumen.runtime.home import home_of as home_of_run
-from lumen.runtime.presence import BRAIN, ROBOT
+from lumen.runtime.presence import BRAIN, ROBOT_PART
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -137,7 +137,7 @@ def _processes(
 ) -> int:
     """Run these parts of an exhibition. Raises UsageError for options that do not go with that."""
     _check_processes(options, story, parts, url)
-    setup = set_up(options.robot, project, options.speed, story, options.robot_url) if ROBOT in parts else None
+    setup = set_up(options.robot, project, options.speed, story, options.robot_url) if ROBOT_PART in parts else None
     speed = float(options.speed)
     clock: Clock = setup.clock if setup else RealClock(speed=speed)
     transcript = Transcript(clock.now, lambda: node.project.machine)
@@ -178,9 +178,9 @@ def _check_processes(options: argparse.Namespace, story: Story | None, parts: Se
         raise UsageError("processes live in one time, which is real: --speed max needs everything in one of them")
     if options.video:
         raise UsageError("--video films an exhibition in one process: leave out --only")
-    if options.robot == "none" and ROBOT in parts:
+    if options.robot == "none" and ROBOT_PART in parts:
         raise UsageError("`--only robot` needs a robot: leave out --robot none")
-    if story and story.robot and ROBOT not in parts:
+    if story and story.robot and ROBOT_PART not in parts:
         raise UsageError(f"`{story.name}` says with `robot:` what fails: give it to the robot's process, too")
 
 

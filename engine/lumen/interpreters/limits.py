@@ -9,7 +9,7 @@ from lumen.interpreters.trajectory import JointTrack, Trajectory
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.robots import Body, CoupledLimit
 
-TOLERANCE = 1e-6
+LIMIT_SLACK = 1e-6
 """[rad] that an angle may lie beyond its limit, and the part by which a speed may: files round."""
 
 COUPLED_TOLERANCE = 1e-3
@@ -45,7 +45,7 @@ def overspeed(motion: MotionDefinition, body: Body, trajectory: Trajectory | Non
     for track in (trajectory or Trajectory(motion)).tracks:
         limit = body.joints[track.joint].speed if track.joint in body.joints else inf
         for key, segment in zip(motion.tracks[track.joint], track.segments, strict=True):
-            if (speed := segment.peak_speed()) > limit * (1 + TOLERANCE):
+            if (speed := segment.peak_speed()) > limit * (1 + LIMIT_SLACK):
                 found.append(Excess(track.joint, key, speed, limit))
     return found
 
@@ -67,9 +67,9 @@ def _beyond(motion: MotionDefinition, body: Body, tracks: Mapping[str, JointTrac
         if joint := body.joints.get(track.joint):
             for key, segment in zip(motion.tracks[track.joint], track.segments, strict=True):
                 low, high = segment.extremes()
-                if min(low, key.angle) < joint.minimum - TOLERANCE:
+                if min(low, key.angle) < joint.minimum - LIMIT_SLACK:
                     yield Excess(track.joint, key, min(low, key.angle), joint.minimum)
-                elif max(high, key.angle) > joint.maximum + TOLERANCE:
+                elif max(high, key.angle) > joint.maximum + LIMIT_SLACK:
                     yield Excess(track.joint, key, max(high, key.angle), joint.maximum)
 
 

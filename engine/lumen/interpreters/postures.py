@@ -11,7 +11,7 @@ UPRIGHT = ("Stand", "StandInit", "StandZero", "Crouch")
 RESTFUL = ("Crouch", "Sit", "SitRelax", "LyingBack", "LyingBelly")
 """Those that a robot keeps with its motors off."""
 
-STRAIGHT = 1.0
+STRAIGHT_COST = 1.0
 """What a straight way counts [s], beside the duration of a passage."""
 
 
@@ -43,5 +43,5 @@ def route(body: Body, start: str, *goals: str) -> list[str] | None:
 
 def _neighbours(body: Body, posture: str) -> Iterator[tuple[str, float]]:
     if posture in UPRIGHT:
-        yield from ((name, STRAIGHT) for name in UPRIGHT if name in body.postures and name != posture)
+        yield from ((name, STRAIGHT_COST) for name in UPRIGHT if name in body.postures and name != posture)
     yield from ((p.end, p.duration) for p in body.passages if p.start == posture)

@@ -19,19 +19,19 @@ from lumen.interpreters.visual_servo import VisualServo
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 
-SWING = 0.5235987755982988
+SEARCH_SWING = 0.5235987755982988
 """How far the first joint swings to either side in search where the file does not say: 30 deg, in [rad]."""
 
-EARLY = 0.1
+MAX_CLOCK_LEAD = 0.1
 """How far in the future [s] a message may say it was made, as clocks go; farther, it goes by another clock."""
 
-STILL, LITTLE = 0.12, 0.006
-"""A joint stands still that for `STILL` [s] has not moved, and not been commanded to, by more than `LITTLE` [rad]."""
+STILL_TIME, STILL_ANGLE = 0.12, 0.006
+"""For how long [s] a joint that stands still has not moved, and not been commanded to, by more than this [rad]."""
 
-SAG = 0.035
+MAX_SAG = 0.035
 """How far [rad] weight and friction hold a joint off its commanded angle; farther off, something else does."""
 
-LEARNING = 0.4
+SAG_LEARNING_RATE = 0.4
 """Which part of a new measurement of that is believed: the head may still be on its way."""
 
 
@@ -70,11 +70,11 @@ class Tracker:
         """Remember where the joints stand [rad], measured at `time`, as a message says that comes in at `now`.
 
         It is no pose where one of `joints` is missing, where something is no number, or where it lies in the future:
-        more than `EARLY` after `now`.
+        more than `MAX_CLOCK_LEAD` after `now`.
         """
         measured = _number(time)
         turned = {joint: angle for joint in self.joints if (angle := _number(angles.get(joint))) is not None}
-        if measured is None or measured > now + EARLY or len(turned) < len(self.joints):
+        if measured is None or measured > now + MAX_CLOCK_LEAD or len(turned) < len(self.joints):
             return
         self._poses.add(measured, turned)
 
@@ -84,11 +84,11 @@ class Tracker:
         """Where the joints should go [rad], from the body of a message and when its image was taken.
 
         `route` is the message's, for a controller whose inputs come from several; `now` is when it came in. None where
-        the sight is stale, older than the one before, from the future (`EARLY`), lacks a field, comes before the first
-        pose, or fires no rule of an output without default.
+        the sight is stale, older than the one before, from the future (`MAX_CLOCK_LEAD`), lacks a field, comes before
+        the first pose, or fires no rule of an output without default.
         """
         captured = _number(captured_at)
-        if captured is None or captured > now + EARLY or captured < self._seen or not self._poses:
+        if captured is None or captured > now + MAX_CLOCK_LEAD or captured < self._seen or not self._poses:
             return None
         if self._poses.last - captured > self.controller.tracking.stale or not self._take(fields, route):
             return None
@@ -119,11 +119,13 @@ class Tracker:
 
     def _stood(self, joint: str, time: float) -> float:
         """Where the turn counts from [rad]: the joint's pose at that time, and how far it sags, as last learned."""
-        pose, start = self._poses.at(time)[joint], time - STILL
+        pose, start = self._poses.at(time)[joint], time - STILL_TIME
         sag = self._sag.get(joint, 0.0)
-        if self._poses.steady(joint, start, time, LITTLE) and self._commanded.steady(joint, start, time, LITTLE):
+        if self._poses.steady(joint, start, time, STILL_ANGLE) and self._commanded.steady(
+            joint, start, time, STILL_ANGLE
+        ):
             found = self._commanded.at(time)[joint] - pose
-            sag += LEARNING * (found - sag) if abs(found) <= SAG else -sag
+            sag += SAG_LEARNING_RATE * (found - sag) if abs(found) <= MAX_SAG else -sag
             self._sag[joint] = sag
         return pose + sag
 
@@ -154,7 +156,7 @@ class Tracker:
     def _sweep(self, joint: str) -> float:
         """How far the joint swings, to the side first on which the face was seen last."""
         sweep = self.controller.tracking.sweep
-        far = sweep.get(joint, 0.0) if sweep else SWING * (joint == self.joints[0])
+        far = sweep.get(joint, 0.0) if sweep else SEARCH_SWING * (joint == self.joints[0])
         return -far if self._turn.get(joint, 0.0) < 0.0 else far
 
     def _take(self, fields: Mapping[str, Any], route: str | None) -> bool:

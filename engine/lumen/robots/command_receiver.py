@@ -16,11 +16,19 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Joints, Message, Perform, Robot, RobotCommand, Sense
 from lumen.robots.command_codec import decode_command, method_of, own_id, stops, stops_all
-from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, UNKNOWN, CommandRecord, CommandReports
+from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, UNKNOWN_COMMAND, CommandRecord, CommandReports
 from lumen.robots.deduplication_log import DeduplicationLog
-from lumen.robots.robot_routes import AIM, COMMAND, KEYS, REPORT, STOP, key_of, tell
+from lumen.robots.robot_routes import (
+    AIM_ROUTE,
+    COMMAND_ROUTE,
+    DEFAULT_KEYS,
+    REPORT_ROUTE,
+    STOP_ROUTE,
+    key_of,
+    publish_on,
+)
 
-KEY, ROUTE = KEYS[COMMAND], COMMAND
+KEY, ROUTE = DEFAULT_KEYS[COMMAND_ROUTE], COMMAND_ROUTE
 MAX_WAITING_COMMANDS = 1_000
 MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
@@ -68,7 +76,7 @@ class CommandReceiver:
         self._language = ""
         self._log_of_begun = DeduplicationLog()
         self._undo: dict[str, tuple[str, Callable[[], None]]] = {}
-        for route in (COMMAND, STOP, AIM):
+        for route in (COMMAND_ROUTE, STOP_ROUTE, AIM_ROUTE):
             self._undo[route] = self._listen(route)
 
     def recall(self, begun_before: DeduplicationLog) -> None:
@@ -137,7 +145,7 @@ class CommandReceiver:
 
     def _listen(self, route: str) -> tuple[str, Callable[[], None]]:
         key = key_of(self._project, route)
-        receive = self._receive_aim if route == AIM else self._receive
+        receive = self._receive_aim if route == AIM_ROUTE else self._receive
         return key, self._bus.subscribe(key, receive)
 
     def _receive(self, message: Message) -> None:
@@ -159,7 +167,7 @@ class CommandReceiver:
 
     def _full(self, message: Message) -> str:
         """Why there is no room for this one; empty where there is."""
-        route = self._project.routes.get(COMMAND)
+        route = self._project.routes.get(COMMAND_ROUTE)
         keep = route.keep if route and route.keep else MAX_WAITING_COMMANDS
         waiting = len(self._came)
         if waiting >= MAX_WAITING_COMMANDS or (waiting >= keep and not stops(message.body)):
@@ -206,7 +214,7 @@ class CommandReceiver:
         record = self._reports.find(id)
         cancelled = method_of(message.body) == "cancel"
         if record is None:
-            record = CommandRecord(message, id, state=CANCELLED if cancelled else UNKNOWN)
+            record = CommandRecord(message, id, state=CANCELLED if cancelled else UNKNOWN_COMMAND)
             if cancelled:
                 self._reports.remember(record)
         elif cancelled and not record.over:
@@ -214,7 +222,7 @@ class CommandReceiver:
         self._reports.repeat(record, message)
 
     def _check_age(self, arrival: _Arrival) -> None:
-        route = self._project.routes.get(COMMAND)
+        route = self._project.routes.get(COMMAND_ROUTE)
         if route and route.ttl and self._clock() - arrival.at > route.ttl and not stops(arrival.message.body):
             raise RobotRefusedError("it came too late")
 
@@ -268,7 +276,7 @@ class CommandReceiver:
         return dict(zip(reading.names, reading.angles, strict=True)) if isinstance(reading, Joints) else {}
 
     def _tell(self, report: dict[str, Any]) -> None:
-        self._safely(partial(tell, self._bus, self._project, REPORT, report))
+        self._safely(partial(publish_on, self._bus, self._project, REPORT_ROUTE, report))
 
     def _reply(self, message: Message, body: Any) -> None:
         self._safely(partial(self._bus.reply, message, body))
@@ -282,4 +290,4 @@ class CommandReceiver:
 
 def command_key(project: Project) -> str:
     """Under which key a project's robot takes commands."""
-    return key_of(project, COMMAND)
+    return key_of(project, COMMAND_ROUTE)

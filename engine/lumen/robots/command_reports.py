@@ -8,7 +8,7 @@ from typing import Any
 from lumen.ports import Message
 
 ACCEPTED, STARTED, FINISHED, FAILED, CANCELLED = "accepted", "started", "finished", "failed", "cancelled"
-UNKNOWN = "unknown"
+UNKNOWN_COMMAND = "unknown"
 FINAL = (FINISHED, FAILED, CANCELLED)
 MAX_REMEMBERED_COMMANDS = 1_000
 """How many commands with an id of their own are remembered: for whoever sends one again."""

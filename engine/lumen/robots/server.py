@@ -16,12 +16,12 @@ from lumen.language.routes import Route
 from lumen.ports import Bus, Image, Robot, RobotCommand, Sense
 from lumen.robots.command_receiver import CommandReceiver
 from lumen.robots.deduplication_log import DeduplicationLog
-from lumen.robots.robot_routes import NOTICED, RECORDING, TEXT, tell
+from lumen.robots.robot_routes import NOTICED_ROUTE, RECORDING_ROUTE, TEXT_ROUTE, publish_on
 from lumen.robots.sense_codec import encode_reading, image_body
 from lumen.robots.sense_publisher import PendingReading, PublishCounts, SensePublisher
 
 DEFAULT_SENSE_PERIOD = 0.1
-CLOSE_TIMEOUT = 5.0
+SENSES_CLOSE_TIMEOUT = 5.0
 TIME_EPSILON = 1e-9
 SETTLE_TIMEOUT = 0.02
 THREAD_START_TIMEOUT = 1.0
@@ -115,16 +115,16 @@ class RobotServer:
         if ".command." in event.name:
             return self._orders.answer(event)
         if event.name == RECORDED:
-            self._tell(RECORDING, event.data)
+            self._tell(RECORDING_ROUTE, event.data)
             return False
-        self._tell(NOTICED, {"name": event.name, "data": event.data, "time": event.at})
+        self._tell(NOTICED_ROUTE, {"name": event.name, "data": event.data, "time": event.at})
         return False
 
     def begins(self, command: RobotCommand) -> None:
         """The robot starts this: what it says is on the bus as a text, too, for a voice of its own."""
-        if isinstance(command, Say) and TEXT in self._project.routes:
+        if isinstance(command, Say) and TEXT_ROUTE in self._project.routes:
             body = {"name": self._project.robot, "text": command.text, "date": self._date()}
-            self._tell(TEXT, {**body, "language": command.language})
+            self._tell(TEXT_ROUTE, {**body, "language": command.language})
 
     def close(self) -> None:
         """Publish what was taken and end the threads; harmless when repeated."""
@@ -132,10 +132,10 @@ class RobotServer:
             return
         self._closed = True
         self._orders.close()
-        deadline = time.monotonic() + CLOSE_TIMEOUT
+        deadline = time.monotonic() + SENSES_CLOSE_TIMEOUT
         ended = [b.close(deadline - time.monotonic()) for b in self._broadcasts.values()]
         if not all(ended):
-            _log.warning("a sense still works %g s after it was closed", CLOSE_TIMEOUT)
+            _log.warning("a sense still works %g s after it was closed", SENSES_CLOSE_TIMEOUT)
 
     def _given(self, command: RobotCommand) -> None:
         self._started(command)
@@ -143,7 +143,7 @@ class RobotServer:
 
     def _tell(self, route: str, body: dict[str, Any]) -> None:
         try:
-            tell(self._bus, self._project, route, body)
+            publish_on(self._bus, self._project, route, body)
         except BusError as error:
             _log.warning("what the robot publishes on `%s` was not sent: %s", route, error)
 

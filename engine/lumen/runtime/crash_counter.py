@@ -4,9 +4,9 @@ import json
 
 from lumen.runtime.home import Home
 
-TRIALS = "trials.json"
-VERSION = 1
-DEATHS = 2
+CRASH_COUNTS_FILE = "trials.json"
+CRASH_COUNTS_VERSION = 1
+MAX_CRASHES = 2
 """How often a bundle may end the exhibition within its probation before a start does something else."""
 MAX_KNOWN_BUNDLES = 20
 """How many bundles are remembered, the latest."""
@@ -45,11 +45,11 @@ class CrashCounter:
 
     def _counts(self) -> dict[str, int]:
         try:
-            data = json.loads(self._home.read(TRIALS) or b"")
+            data = json.loads(self._home.read(CRASH_COUNTS_FILE) or b"")
             return {str(hash): int(count) for hash, count in data["bundles"].items()}
         except (ValueError, TypeError, KeyError, AttributeError):
             return {}
 
     def _write(self, counts: dict[str, int]) -> None:
         latest = dict(list(counts.items())[-MAX_KNOWN_BUNDLES:])
-        self._home.write(TRIALS, json.dumps({"version": VERSION, "bundles": latest}).encode())
+        self._home.write(CRASH_COUNTS_FILE, json.dumps({"version": CRASH_COUNTS_VERSION, "bundles": latest}).encode())

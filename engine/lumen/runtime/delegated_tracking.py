@@ -10,16 +10,16 @@ from lumen.language.projects import Project
 from lumen.ports import Bus, Perform
 from lumen.runtime.tracking import LocalTracking
 
-KEY, ROUTE = "lumen.motion.{robot}.command", "motion"
-LASTING = 2.0
+MOTION_KEY, MOTION_ROUTE = "lumen.motion.{robot}.command", "motion"
+MOTION_TTL = 2.0
 
 _log = logging.getLogger(__name__)
 
 
 def motion_key(project: Project) -> str:
     """Under which key the motion module of a project's robot takes requests."""
-    row = project.routes.get(ROUTE)
-    return row.key_for(project.robot) if row else KEY.replace("{robot}", project.robot)
+    row = project.routes.get(MOTION_ROUTE)
+    return row.key_for(project.robot) if row else MOTION_KEY.replace("{robot}", project.robot)
 
 
 class DelegatedTracking:
@@ -86,7 +86,7 @@ class DelegatedTracking:
 
     def _ask(self, body: dict[str, Any]) -> bool:
         try:
-            self._bus.publish(motion_key(self._project), body, ttl=LASTING)
+            self._bus.publish(motion_key(self._project), body, ttl=MOTION_TTL)
         except BusError as error:
             _log.warning("the motion module got no request: %s", error)
             return False

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from lumen.errors import UsageError
 
-NAME = ".lumen"
-DOOR = "door.json"
+STATE_FOLDER = ".lumen"
+ADDRESS_FILE = "door.json"
 
 
 class Home:
@@ -86,7 +86,7 @@ def home_of(root: Path) -> Path:
     It is inside the project, unless that can't be written or is a link that may lead elsewhere tomorrow: then it is
     among the user's own files, under a name made from the project's path.
     """
-    inside = root / NAME
+    inside = root / STATE_FOLDER
     if not root.is_symlink() and (os.access(inside, os.W_OK) if inside.is_dir() else os.access(root, os.W_OK)):
         return inside
     digest = hashlib.sha256(os.fsencode(root.absolute())).hexdigest()[:12]

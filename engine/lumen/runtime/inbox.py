@@ -7,7 +7,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
 
-CAPACITY = 10_000
+MAX_WAITING_EVENTS = 10_000
 
 
 class Inbox:
@@ -15,7 +15,7 @@ class Inbox:
 
     def __init__(self, bus: Bus) -> None:
         self._bus = bus
-        self._waiting: deque[tuple[str, object]] = deque(maxlen=CAPACITY)
+        self._waiting: deque[tuple[str, object]] = deque(maxlen=MAX_WAITING_EVENTS)
         self._undo: dict[tuple[str, str], Callable[[], None]] = {}
 
     def listen(self, project: Project) -> None:

@@ -8,8 +8,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-NAME = "journal.jsonl"
-BYTES = 1_000_000
+JOURNAL_FILE = "journal.jsonl"
+MAX_JOURNAL_BYTES = 1_000_000
 """After which a new file is begun; the one before is kept, and none older."""
 
 
@@ -20,7 +20,7 @@ class Journal:
     """
 
     def __init__(self, folder: Path | None) -> None:
-        self._file = folder and folder / NAME
+        self._file = folder and folder / JOURNAL_FILE
 
     def write(self, entry: Mapping[str, Any]) -> None:
         """Append an entry, with the date and time (UTC) before it."""
@@ -28,7 +28,7 @@ class Journal:
             return
         line = json.dumps({"time": datetime.now(UTC).isoformat(timespec="milliseconds"), **entry}, ensure_ascii=False)
         with suppress(OSError):
-            if self._file.exists() and self._file.stat().st_size > BYTES:
+            if self._file.exists() and self._file.stat().st_size > MAX_JOURNAL_BYTES:
                 os.replace(self._file, self._file.with_suffix(".jsonl.1"))
             with self._file.open("ab") as file:
                 file.write(line.encode("utf-8", "replace") + b"\n")

@@ -16,8 +16,8 @@ from lumen.runtime.resuming import Resumption
 from lumen.runtime.runtime import Rescue, Runtime
 from lumen.runtime.tracking import LocalTracking, TrackingService
 
-TICK = 0.02
-BRAIN_LOST = 5.0
+TICK_PERIOD = 0.02
+BRAIN_LOST_AFTER = 5.0
 
 
 class Observer:
@@ -55,7 +55,7 @@ class BehaviorLoop:
         self._cues = MotionCues()
         self._events: list[Event] = []
         self._last = clock.now()
-        self.patience = BRAIN_LOST
+        self.patience = BRAIN_LOST_AFTER
 
     @property
     def project(self) -> Project:
@@ -77,7 +77,7 @@ class BehaviorLoop:
             self.tracking.switch(Track(name))
         self._perform(resumption.commands, self._last)
         self._events += resumption.answers(self._last)
-        if resumption.away > BRAIN_LOST:
+        if resumption.away > BRAIN_LOST_AFTER:
             self.happen(Event("brain.lost", {"seconds": resumption.away}, self._last))
 
     def happen(self, event: Event) -> None:
@@ -87,7 +87,7 @@ class BehaviorLoop:
     def tick(self, now: float | None = None) -> float:
         """Live through one tick at `now` [s], where nobody says so a period after the last; its time [s]."""
         if now is None:
-            self.clock.wait(self._last + TICK)
+            self.clock.wait(self._last + TICK_PERIOD)
             now = self.clock.now()
         if now - self._last > self.patience:
             self._events.append(Event("brain.lost", {"seconds": now - self._last}, now))

@@ -9,9 +9,9 @@ from lumen.runtime.sending import send
 
 _log = logging.getLogger(__name__)
 
-PERIOD = 0.1
-LATENCY = 0.1
-ROUTE = "face"
+FACE_PERIOD = 0.1
+FACE_LATENCY = 0.1
+FACE_ROUTE = "face"
 
 
 class FaceDetector:
@@ -22,7 +22,7 @@ class FaceDetector:
     """
 
     def __init__(
-        self, project: Project, hall: Hall, bus: Bus, *, period: float = PERIOD, latency: float = LATENCY
+        self, project: Project, hall: Hall, bus: Bus, *, period: float = FACE_PERIOD, latency: float = FACE_LATENCY
     ) -> None:
         self._hall, self._bus = hall, bus
         self._period, self._latency = period, latency
@@ -38,7 +38,7 @@ class FaceDetector:
 
     def tick(self, now: float) -> None:
         """Look, where it is time to, and publish what has been recognised by now."""
-        if ROUTE not in self._project.routes:
+        if FACE_ROUTE not in self._project.routes:
             return
         if now >= self._next:
             self._next = max(self._next + self._period, now)
@@ -46,7 +46,7 @@ class FaceDetector:
         if self.quiet:
             self._developing.clear()
         while self._developing and self._developing[0][0] <= now:
-            if reason := send(self._bus, self._project, ROUTE, self._developing.popleft()[1]):
+            if reason := send(self._bus, self._project, FACE_ROUTE, self._developing.popleft()[1]):
                 _log.warning("a face could not be published: %s", reason)
 
     def _look(self, now: float) -> None:

@@ -15,13 +15,13 @@ from lumen.language.events import Event
 from lumen.language.modules import MODULES
 from lumen.ports import Bus, Message
 
-KEY, ROUTE = "lumen.presence", "presence"
-ROBOT, BRAIN, MOTION, VISITOR = PARTS = ("robot", "brain", "motion", "visitor")
-PERIOD = 0.5
+PRESENCE_KEY, PRESENCE_ROUTE = "lumen.presence", "presence"
+ROBOT_PART, BRAIN, MOTION, VISITOR = PROCESS_PARTS = ("robot", "brain", "motion", "visitor")
+PRESENCE_PERIOD = 0.5
 """How often a process says that it is there [s]."""
-LOST = 2.5
+LOST_AFTER = 2.5
 """How long one has to be silent to be lost [s]."""
-LASTING = 2.0
+PRESENCE_TTL = 2.0
 MAX_PEERS = 100
 """How many processes are known at most: nobody fills the memory."""
 
@@ -56,7 +56,7 @@ class Presence:
         robot: str,
         parts: Iterable[str],
         *,
-        key: str = KEY,
+        key: str = PRESENCE_KEY,
         session: str = "",
         clock: Callable[[], float] = time.monotonic,
         more: Callable[[], Mapping[str, Any]] = dict,
@@ -93,7 +93,7 @@ class Presence:
 
     def alive(self, peer: Peer) -> bool:
         """Whether it was heard of lately."""
-        return self._clock() - peer.heard <= LOST and peer.state != LEAVES
+        return self._clock() - peer.heard <= LOST_AFTER and peer.state != LEAVES
 
     def peers(self) -> list[Peer]:
         """All others that were heard of lately."""
@@ -116,14 +116,14 @@ class Presence:
         while self._messages:
             self._hear(self._messages.popleft().body, now)
         if now >= self._next:
-            self._next = now + PERIOD
+            self._next = now + PRESENCE_PERIOD
             self._say(self._state)
         return self._changes(now)
 
     def _excuse(self, now: float) -> None:
         """Time in which we did not listen is nobody's silence."""
         stood, self._ticked = now - self._ticked, now
-        if stood > PERIOD:
+        if stood > PRESENCE_PERIOD:
             for peer in self._peers.values():
                 peer.heard += stood
 
@@ -145,7 +145,7 @@ class Presence:
             **self._more(),
         }
         try:
-            self._bus.publish(self._key, body, ttl=LASTING)
+            self._bus.publish(self._key, body, ttl=PRESENCE_TTL)
         except BusError as error:
             _log.debug("our presence was not published: %s", error)
 
@@ -160,7 +160,7 @@ class Presence:
         known = self._peers.get(session)
         if known is None:
             if len(self._peers) >= MAX_PEERS:
-                self._peers = {s: p for s, p in self._peers.items() if now - p.heard <= LOST}
+                self._peers = {s: p for s, p in self._peers.items() if now - p.heard <= LOST_AFTER}
             known = self._peers[session] = Peer(session, tuple(map(str, parts)), now, now, state, body)
             self.came.append(known)
         if state == ASKS:
@@ -170,7 +170,7 @@ class Presence:
     def _changes(self, now: float) -> list[Event]:
         """What of the robot, the motion module and the others has gone or come back since the last look."""
         events = []
-        for part in (ROBOT, MOTION, *MODULES):
+        for part in (ROBOT_PART, MOTION, *MODULES):
             if part in self.parts:
                 continue
             here = self.find(part) is not None
@@ -185,6 +185,6 @@ class Presence:
         return events
 
 
-def told(peer: Peer) -> str:
+def where_it_runs(peer: Peer) -> str:
     """`process 4711 on stand`, for a line to somebody who looks for it."""
     return f"process {str(peer.said.get('process', '?'))[:20]} on {str(peer.said.get('host', '?'))[:60]}"

@@ -12,7 +12,7 @@ from lumen.language.commands import Cancel, Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
 
-REASON = "the engine was restarted while it ran"
+LOST_COMMAND_REASON = "the engine was restarted while it ran"
 
 
 class Resumption(NamedTuple):
@@ -31,7 +31,7 @@ class Resumption(NamedTuple):
 
     def answers(self, now: float) -> list[Event]:
         """An answer for each command that was under way: it failed, for the robot has forgotten it."""
-        return [Event(f"error.command.{id}", {"reason": REASON}, now) for id in self.lost]
+        return [Event(f"error.command.{id}", {"reason": LOST_COMMAND_REASON}, now) for id in self.lost]
 
 
 def resume(

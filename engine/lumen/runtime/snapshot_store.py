@@ -13,10 +13,10 @@ from lumen.language.projects import Project
 from lumen.loading.files import fingerprint
 from lumen.runtime.home import Home
 
-SNAPSHOT = "snapshot.json"
-GOOD = "good.json"
-VERSION = 1
-SPACING = 0.02
+SNAPSHOT_FILE = "snapshot.json"
+LAST_GOOD_FILE = "good.json"
+SNAPSHOT_VERSION = 1
+SNAPSHOT_SPACING = 0.02
 """How long after a snapshot the next is written at the earliest [s]: a simulation may take a hundred steps in that."""
 
 
@@ -51,7 +51,7 @@ class SnapshotStore:
         last = self._last
         if last is snapshot or (last is not None and _same(last, snapshot)):
             return False
-        return time.perf_counter() - self._written >= SPACING
+        return time.perf_counter() - self._written >= SNAPSHOT_SPACING
 
     def keep(self, project: Project, snapshot: Snapshot, tracking: Sequence[str]) -> None:
         """Write where the project's behaviour stands, if that is due."""
@@ -64,22 +64,22 @@ class SnapshotStore:
             self._wrote(str(error))
             return
         data = {
-            "version": VERSION,
+            "version": SNAPSHOT_VERSION,
             "bundle": project.hash,
             "behavior": project.behavior,
             "time": time.time(),
             "tracking": list(tracking),
             "snapshot": frozen,
         }
-        self._wrote(self._home.write(SNAPSHOT, json.dumps(data).encode()))
+        self._wrote(self._home.write(SNAPSHOT_FILE, json.dumps(data).encode()))
         self._last = snapshot
         self.count += 1
 
     def kept(self) -> StoredSnapshot | None:
         """The snapshot of a run that did not end by itself, None where there is none that can be read."""
         try:
-            data = json.loads(self._home.read(SNAPSHOT) or b"")
-            if data["version"] != VERSION:
+            data = json.loads(self._home.read(SNAPSHOT_FILE) or b"")
+            if data["version"] != SNAPSHOT_VERSION:
                 return None
             tracking = tuple(map(str, data["tracking"]))
             return StoredSnapshot(
@@ -90,7 +90,7 @@ class SnapshotStore:
 
     def forget(self) -> None:
         """The run has ended as it should: there is nothing to go on with."""
-        self._home.remove(SNAPSHOT)
+        self._home.remove(SNAPSHOT_FILE)
         self._last = None
 
     def store(self, files: Mapping[str, bytes]) -> str:
@@ -115,12 +115,14 @@ class SnapshotStore:
 
     def approve(self, hash: str) -> None:
         """This bundle has proved itself: it is the last good one."""
-        self._wrote(self._home.write(GOOD, json.dumps({"version": VERSION, "bundle": hash}).encode()))
+        self._wrote(
+            self._home.write(LAST_GOOD_FILE, json.dumps({"version": SNAPSHOT_VERSION, "bundle": hash}).encode())
+        )
 
     def good(self) -> str:
         """The hash of the last good bundle, empty where there is none."""
         try:
-            return str(json.loads(self._home.read(GOOD) or b"")["bundle"])
+            return str(json.loads(self._home.read(LAST_GOOD_FILE) or b"")["bundle"])
         except (ValueError, TypeError, KeyError):
             return ""
 

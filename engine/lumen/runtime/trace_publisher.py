@@ -14,8 +14,8 @@ from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.runtime.loop import Observer
 
-KEY, ROUTE = "lumen.state", "state"
-LASTING = 10.0
+TRACE_KEY, TRACE_ROUTE = "lumen.state", "state"
+TRACE_TTL = 10.0
 
 _log = logging.getLogger(__name__)
 
@@ -62,8 +62,8 @@ class TracePublisher(Observer):
 
     def _tell(self, what: dict[str, Any]) -> None:
         project = self._project()
-        row = project.routes.get(ROUTE)
-        key, ttl = (row.key_for(project.robot), row.ttl) if row else (KEY, LASTING)
+        row = project.routes.get(TRACE_ROUTE)
+        key, ttl = (row.key_for(project.robot), row.ttl) if row else (TRACE_KEY, TRACE_TTL)
         try:
             self._bus.publish(key, {"robot": project.robot, "time": round(self._now(), 3), **what}, ttl=ttl)
         except BusError as error:

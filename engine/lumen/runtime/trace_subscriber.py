@@ -8,7 +8,7 @@ from lumen.language.commands import BodyCommand, Command, Publish, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
-from lumen.runtime.trace_publisher import KEY, ROUTE
+from lumen.runtime.trace_publisher import TRACE_KEY, TRACE_ROUTE
 
 MAX_PENDING_TRACES = 10_000
 
@@ -36,8 +36,8 @@ class TraceSubscriber:
         self.project, self.bus, self.happen = project, bus, happen
         self.watchers: list[TraceListener] = []
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_TRACES)
-        row = project.routes.get(ROUTE)
-        self._undo = bus.subscribe(row.key_for(project.robot) if row else KEY, self._came.append)
+        row = project.routes.get(TRACE_ROUTE)
+        self._undo = bus.subscribe(row.key_for(project.robot) if row else TRACE_KEY, self._came.append)
 
     def tick(self, now: float) -> None:
         """Tell of all that has come."""

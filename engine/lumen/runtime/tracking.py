@@ -9,8 +9,8 @@ from lumen.language.commands import Track
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Message, Robot
 
-POSES = "joint"
-BACKLOG = 1000
+POSE_ROUTE = "joint"
+MAX_WAITING_MESSAGES = 1000
 
 
 class TrackingService(Protocol):
@@ -35,7 +35,7 @@ class LocalTracking:
 
     def __init__(self, project: Project, robot: Robot, bus: Bus) -> None:
         self._robot, self._bus = robot, bus
-        self._waiting: deque[tuple[str, Message]] = deque(maxlen=BACKLOG)
+        self._waiting: deque[tuple[str, Message]] = deque(maxlen=MAX_WAITING_MESSAGES)
         self._trackers: dict[str, Tracker] = {}
         self._undo: dict[tuple[str, str], Callable[[], None]] = {}
         self._project = project
@@ -72,7 +72,7 @@ class LocalTracking:
         while self._waiting:
             route, message = self._waiting.popleft()
             for name, tracker in self._trackers.items():
-                if route == POSES and (angles := _angles(message.body, tracker.joints)):
+                if route == POSE_ROUTE and (angles := _angles(message.body, tracker.joints)):
                     tracker.pose(_time(message.body, now), angles, now=now)
                 elif route in tracker.routes and isinstance(message.body, Mapping):
                     captured = _time(message.body, now - self._project.routes[route].latency)
@@ -85,7 +85,7 @@ class LocalTracking:
 
     def _listen(self) -> None:
         """Subscribe to the poses and to the routes of all controllers."""
-        names = {POSES} | {b.route for c in self._project.controllers.values() for b in c.input_bindings}
+        names = {POSE_ROUTE} | {b.route for c in self._project.controllers.values() for b in c.input_bindings}
         routes = {name: route for name in sorted(names) if (route := self._project.routes.get(name))}
         wanted = {(route.key_for(self._project.robot), name) for name, route in routes.items()}
         for key, name in sorted(wanted - self._undo.keys()):

@@ -10,9 +10,9 @@ from lumen.runtime.sending import send
 
 _log = logging.getLogger(__name__)
 
-PACE = 1.0
-APPROACH = 1.5
-SPEECH = "heard"
+VISITOR_SPEED = 1.0
+APPROACH_DISTANCE = 1.5
+SPEECH_ROUTE = "heard"
 
 
 class VisitorActor:
@@ -35,26 +35,26 @@ class VisitorActor:
     def arrive(self, visitor: Visitor) -> None:
         """Come from further off to where `visitor` stands; who is there already walks over."""
         if self._visitor is None:
-            self._visitor = replace(visitor, x=visitor.x + APPROACH)
+            self._visitor = replace(visitor, x=visitor.x + APPROACH_DISTANCE)
         self._visitor = replace(self._visitor, height=visitor.height)
         self._goal, self._leaving = visitor, False
 
     def leave(self) -> None:
         """Walk away, and be gone."""
         if self._visitor:
-            self._goal, self._leaving = replace(self._visitor, x=self._visitor.x + APPROACH), True
+            self._goal, self._leaving = replace(self._visitor, x=self._visitor.x + APPROACH_DISTANCE), True
 
     def speak(self, text: str, language: str = "") -> None:
         """Say something the speech module understands at once."""
         body = {"name": "visitor", "result": text, "date": "", "language": language}
-        if reason := send(self._bus, self._project, SPEECH, body):
+        if reason := send(self._bus, self._project, SPEECH_ROUTE, body):
             _log.warning("nobody hears the visitor: %s", reason)
 
     def tick(self, now: float) -> None:
         dt, self._last = now - self._last, now
         if self._visitor is None or self._goal is None:
             return
-        self._visitor = _towards(self._visitor, self._goal, PACE * dt)
+        self._visitor = _towards(self._visitor, self._goal, VISITOR_SPEED * dt)
         arrived = self._visitor == self._goal
         if arrived:
             self._goal = None

@@ -12,17 +12,17 @@ from typing import Generic, NamedTuple, TypeVar
 
 from lumen.loading.files import PROJECT_FOLDERS, Unreadable, fingerprint, read_files
 
-QUIET = 0.3
-LOOK = 1.0
-HINTING = 20
+QUIET_PERIOD = 0.3
+MAX_READ_PERIOD = 1.0
+HINT_DEBOUNCE = 20
 """How long the operating system's notices are gathered [ms]."""
-SLICE = 0.001
+SWITCH_INTERVAL = 0.001
 """How long other threads may keep the running exhibition from its work while files are judged [s]."""
 
-INSIDE = ("behaviors/stories", "schemas/messages")
+NESTED_FOLDERS = ("behaviors/stories", "schemas/messages")
 
 _log = logging.getLogger(__name__)
-FileContents = Mapping[str, bytes]
+WatchedFiles = Mapping[str, bytes]
 T = TypeVar("T")
 
 
@@ -33,7 +33,7 @@ class SavedFiles(NamedTuple):
     `asked` is what was handed to `ask`, None where nobody asked.
     """
 
-    files: FileContents
+    files: WatchedFiles
     changed: tuple[str, ...]
     seen: float
     quiet: float
@@ -53,11 +53,11 @@ class FileWatcher(Generic[T]):
     def __init__(
         self,
         root: Path,
-        files: FileContents,
+        files: WatchedFiles,
         judge: Callable[[SavedFiles], T],
         *,
         hash: str = "",
-        quiet: float = QUIET,
+        quiet: float = QUIET_PERIOD,
         hints: bool = True,
         leisure: Callable[[T, Callable[[], bool]], None] = lambda judged, urgent: None,
         noticed: Callable[[], None] = lambda: None,
@@ -89,7 +89,7 @@ class FileWatcher(Generic[T]):
 
     def _load(self) -> None:
         while not self._stop.is_set():
-            self._hint.wait(LOOK if self._watching else None)
+            self._hint.wait(MAX_READ_PERIOD if self._watching else None)
             self._hint.clear()
             while not self._asked.empty():
                 self._look(self._asked.get())
@@ -110,7 +110,7 @@ class FileWatcher(Generic[T]):
         if not asked or self._watching:
             self._files, self._hash = files, fingerprint(files)
         usual = sys.getswitchinterval()
-        sys.setswitchinterval(SLICE)
+        sys.setswitchinterval(SWITCH_INTERVAL)
         try:
             judged = self._judge(SavedFiles(files, changed, seen, time.monotonic(), asked))
             self.results.put(judged)
@@ -136,7 +136,7 @@ class FileWatcher(Generic[T]):
                 files, since = again, time.monotonic()
         return files
 
-    def _needed(self, files: FileContents) -> float:
+    def _needed(self, files: WatchedFiles) -> float:
         half = any(not files.get(path) or isinstance(files[path], Unreadable) for path in self._files)
         return 2 * self._quiet if half else self._quiet
 
@@ -150,9 +150,9 @@ class FileWatcher(Generic[T]):
                 watch_filter=None,
                 recursive=False,
                 stop_event=self._stop,
-                step=HINTING,
-                debounce=HINTING,
-                rust_timeout=int(LOOK * 1000),
+                step=HINT_DEBOUNCE,
+                debounce=HINT_DEBOUNCE,
+                rust_timeout=int(MAX_READ_PERIOD * 1000),
                 yield_on_timeout=True,
                 raise_interrupt=False,
             )
@@ -172,7 +172,7 @@ def _folders(root: Path) -> dict[Path, tuple[int, int]]:
 
     Where the project's folder is a link, the one that the link is in counts too.
     """
-    wanted = [root, *(root / name for name in (*PROJECT_FOLDERS, *INSIDE))]
+    wanted = [root, *(root / name for name in (*PROJECT_FOLDERS, *NESTED_FOLDERS))]
     if root.is_symlink():
         wanted.append(root.absolute().parent)
     found = {}

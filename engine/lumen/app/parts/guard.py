@@ -6,7 +6,7 @@ from lumen.errors import BusRefusedError
 from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.ports import Robot
-from lumen.runtime.presence import BRAIN, HERE, LEAVES, LOST, ROBOT, Peer, Presence, told
+from lumen.runtime.presence import BRAIN, HERE, LEAVES, LOST_AFTER, ROBOT_PART, Peer, Presence, where_it_runs
 
 BRAIN_TIMEOUT = 5.0
 """How long a brain may be silent before its robot rests [s]."""
@@ -39,15 +39,15 @@ class BrainGuard:
         Raises BusError where the robot stood still, and another process has taken its place.
         """
         at = self._clock()
-        if at - self._ticked > LOST:
+        if at - self._ticked > LOST_AFTER:
             self._wake(at)
         self._ticked = at
-        if self._woke and (other := self._presence.find(ROBOT)):
-            raise BusRefusedError(f"this robot stood still, and by now {told(other)} is it: this one ends")
+        if self._woke and (other := self._presence.find(ROBOT_PART)):
+            raise BusRefusedError(f"this robot stood still, and by now {where_it_runs(other)} is it: this one ends")
         followed = self._presence.get(self.follows) if self.follows else None
         if followed:
             self._last = followed.heard
-        gone = followed is None or followed.state == LEAVES or at - followed.heard > LOST
+        gone = followed is None or followed.state == LEAVES or at - followed.heard > LOST_AFTER
         if gone and (brain := self._presence.find(BRAIN)) and brain.state == HERE:
             self._follow(brain, now)
         elif gone and self._last is not None and not self._resting and at - self._last > BRAIN_TIMEOUT:
@@ -64,7 +64,7 @@ class BrainGuard:
 
     def _follow(self, brain: Peer, now: float) -> None:
         if self.follows != brain.session or self._resting:
-            self._tell(f"follows the brain in {told(brain)}")
+            self._tell(f"follows the brain in {where_it_runs(brain)}")
         if self._resting and self._last is not None:
             self._notice(Event("brain.lost", {"seconds": round(self._clock() - self._last, 3)}, now))
         self.follows, self._resting = brain.session, False

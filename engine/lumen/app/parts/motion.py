@@ -12,7 +12,7 @@ from lumen.language.projects import Project
 from lumen.ports import Clock, Message, Perform
 from lumen.robots.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import motion_key
-from lumen.runtime.presence import BRAIN, MOTION, ROBOT, Presence
+from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
 from lumen.runtime.tracking import LocalTracking
 
 WAITING = 1_000
@@ -25,7 +25,7 @@ class MotionPart(Part):
     """
 
     name = MOTION
-    needs = (ROBOT,)
+    needs = (ROBOT_PART,)
 
     def __init__(
         self, project: Project, bus: ValidatedBus, clock: Clock, presence: Presence, narrator: Narrator
@@ -64,7 +64,7 @@ class MotionPart(Part):
         self._robot.close()
 
     def _look(self) -> None:
-        robot, brain = self._presence.find(ROBOT), self._presence.find(BRAIN)
+        robot, brain = self._presence.find(ROBOT_PART), self._presence.find(BRAIN)
         if robot and robot.session != self._session:
             on = self._tracking.on if self._session else ()
             self._session = robot.session

@@ -17,7 +17,7 @@ from lumen.ports import Clock
 from lumen.robots.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import DelegatedTracking
 from lumen.runtime.home import Home
-from lumen.runtime.presence import BRAIN, HERE, MOTION, ROBOT, Presence, told
+from lumen.runtime.presence import BRAIN, HERE, MOTION, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.resuming import Resumption
 from lumen.runtime.tracking import LocalTracking
 
@@ -55,7 +55,7 @@ class RemoteBody:
 class RemoteBrainPart(BrainPart):
     """Runs the behaviour on a robot that is somewhere else; it ends where that one follows another brain."""
 
-    needs = (ROBOT,)
+    needs = (ROBOT_PART,)
 
     def __init__(
         self,
@@ -106,7 +106,7 @@ class RemoteBrainPart(BrainPart):
 
     def _follow(self) -> None:
         """See which robot there is, and whom it follows."""
-        robot = self._others.find(ROBOT)
+        robot = self._others.find(ROBOT_PART)
         if robot is None:
             return
         if self._session and robot.session != self._session:
@@ -115,4 +115,4 @@ class RemoteBrainPart(BrainPart):
         self._session = robot.session
         other = self._others.get(str(robot.said.get("follows", "")))
         if other and self._others.alive(other) and BRAIN in other.parts and other.state == HERE:
-            raise BusRefusedError(f"the robot follows another brain by now, {told(other)}: this one ends")
+            raise BusRefusedError(f"the robot follows another brain by now, {where_it_runs(other)}: this one ends")

@@ -14,7 +14,7 @@ from lumen.robots.sense_publisher import PublishCounts
 from lumen.robots.server import RobotServer
 from lumen.runtime.loop import Observer
 from lumen.runtime.perception import FaceDetector
-from lumen.runtime.presence import ROBOT, Presence
+from lumen.runtime.presence import ROBOT_PART, Presence
 
 
 class RobotPart(Part, Observer):
@@ -24,7 +24,7 @@ class RobotPart(Part, Observer):
     senses that the behaviour hears of as events.
     """
 
-    name = ROBOT
+    name = ROBOT_PART
 
     def __init__(
         self,

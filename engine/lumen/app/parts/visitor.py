@@ -13,7 +13,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story, VisitorAction
 from lumen.ports import Bus, Hall
 from lumen.robots.remote import RemoteHall
-from lumen.runtime.presence import BRAIN, ROBOT, VISITOR
+from lumen.runtime.presence import BRAIN, ROBOT_PART, VISITOR
 from lumen.runtime.story import StoryEnvironment, StoryPlayer
 from lumen.runtime.trace_subscriber import TraceSubscriber
 from lumen.runtime.visitor import VisitorActor
@@ -62,7 +62,7 @@ class RemoteVisitorPart(VisitorPart):
     `telling` is whether what they see is told here, where no brain in this process does.
     """
 
-    needs = (ROBOT, BRAIN)
+    needs = (ROBOT_PART, BRAIN)
 
     def __init__(
         self, project: Project, bus: ValidatedBus, narrator: Narrator, story: Story | None, *, telling: bool

@@ -11,7 +11,7 @@ from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.ports import Bus, Message
 from lumen.rules import check_files
-from lumen.runtime.watcher import SLICE
+from lumen.runtime.watcher import SWITCH_INTERVAL
 
 MOVED = ("applied", "rolled back")
 
@@ -53,7 +53,7 @@ class BundleFollower:
         missed = ""
         while (wanted := self._latest()) is not None:
             usual = sys.getswitchinterval()
-            sys.setswitchinterval(SLICE)
+            sys.setswitchinterval(SWITCH_INTERVAL)
             try:
                 project, _ = check_files(self._root, read_files(self._root))
             finally:

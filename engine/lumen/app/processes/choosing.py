@@ -3,21 +3,21 @@
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.modules import MODULES
-from lumen.runtime.presence import PARTS, ROBOT
+from lumen.runtime.presence import PROCESS_PARTS, ROBOT_PART
 
-ALL = (*PARTS, *MODULES)
+ALL = (*PROCESS_PARTS, *MODULES)
 
 
 def parts_of(only: str | None, robot: str) -> tuple[str, ...]:
     """The parts that this process is to be; none where it is to be a whole exhibition. Raises UsageError."""
     if only is None:
-        return tuple(part for part in PARTS if part != ROBOT) if robot == "remote" else ()
+        return tuple(part for part in PROCESS_PARTS if part != ROBOT_PART) if robot == "remote" else ()
     parts = tuple(dict.fromkeys(word.strip() for word in only.split(",") if word.strip()))
     for part in parts:
         if part not in ALL:
             raise UsageError(f"there is no part `{part}`: {did_you_mean(part, ALL, 'there are')}")
     if not parts:
         raise UsageError(f"--only takes one or more of {', '.join(ALL)}")
-    if robot == "remote" and ROBOT in parts:
+    if robot == "remote" and ROBOT_PART in parts:
         raise UsageError("the robot can't be here and remote: leave out --robot remote, or `robot` of --only")
     return parts

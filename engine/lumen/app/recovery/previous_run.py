@@ -13,7 +13,7 @@ from lumen.interpreters.migration import Refusal
 from lumen.interpreters.statechart import deserialize
 from lumen.language.projects import Project
 from lumen.rules import check_files
-from lumen.runtime.crash_counter import DEATHS
+from lumen.runtime.crash_counter import MAX_CRASHES
 from lumen.runtime.resuming import Resumption, resume
 from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
 
@@ -39,7 +39,7 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
     away, began = time.time() - kept.time, time.perf_counter()
     if not 0.0 <= away <= LATELY:
         return Recovery(f"The last run ended without notice, but {_ago(away)}: this one begins anew.")
-    if records.died(project.hash) >= DEATHS:
+    if records.died(project.hash) >= MAX_CRASHES:
         return Recovery("The last runs ended without notice soon after their start: this one begins anew.")
     try:
         old = _before(root, keeper, kept, project)

@@ -18,7 +18,7 @@ from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.robots.command_receiver import command_key
 from lumen.rules import check_files
-from lumen.runtime.home import DOOR, Home, home_of
+from lumen.runtime.home import ADDRESS_FILE, Home, home_of
 from lumen.runtime.resuming import Resumption
 
 _log = logging.getLogger(__name__)
@@ -110,7 +110,7 @@ class RunDirectory:
             "port": address.port if address else 0,
             "key": address.key if address else "",
         }
-        self.home.write(DOOR, json.dumps(data).encode())
+        self.home.write(ADDRESS_FILE, json.dumps(data).encode())
 
     def close(self, *, forget: bool) -> None:
         """Give it back; `forget` where the run has ended as it should, and there is nothing to go on with."""
@@ -120,7 +120,7 @@ class RunDirectory:
         home, self.home = self.home, None
         if self._door:
             self._door.close()
-        home.remove(DOOR)
+        home.remove(ADDRESS_FILE)
         if forget and self.records.keeper:
             self.records.keeper.forget()
         home.release()

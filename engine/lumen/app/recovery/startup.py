@@ -12,7 +12,7 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.rules import check_files
-from lumen.runtime.crash_counter import DEATHS
+from lumen.runtime.crash_counter import MAX_CRASHES
 from lumen.runtime.watcher import SavedFiles
 
 
@@ -33,7 +33,7 @@ def startup_project(
         if good:
             warn("`lumen run --last-good` starts with the last files that had no errors.")
         raise ProjectError(diagnostics)
-    if (died := run_directory.records.died(project.hash)) >= DEATHS:
+    if (died := run_directory.records.died(project.hash)) >= MAX_CRASHES:
         good = run_directory.last_good()
         if good and good.hash != project.hash:
             why = f"these files ended the exhibition {died} times within {PERIOD:.0f} s of their start"

@@ -24,7 +24,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.ports import Message
-from lumen.runtime.watcher import QUIET, FileWatcher, SavedFiles
+from lumen.runtime.watcher import QUIET_PERIOD, FileWatcher, SavedFiles
 
 _log = logging.getLogger(__name__)
 
@@ -50,7 +50,7 @@ class Reloader:
         applied: Callable[[Project], None] = lambda _: None,
         seen: str = "",
         apart: bool = False,
-        quiet: float = QUIET,
+        quiet: float = QUIET_PERIOD,
         budget: float = BUDGET,
     ) -> None:
         self._behavior, self._mode = behavior, mode

@@ -18,10 +18,10 @@ from lumen.interpreters.gait.velocity import Velocity, strides
 CentreOfMass = Callable[[Mapping[str, float]], NDArray[np.float64]]
 """The centre of mass (3,) [m] in the torso's frame, of the robot with its legs bent like this [rad]."""
 
-NEAR, STRAIGHT = 0.008, 0.02
+GOAL_TOLERANCE, GOAL_HEADING_TOLERANCE = 0.008, 0.02
 """How far from its goal the robot may stop [m], [rad]."""
 
-SLIP = 0.015
+SLIP_ANGLE = 0.015
 """A foot has slipped where encoders and gyrometer disagree by more than this [rad] in a step: both err by less."""
 
 _SIDE_BY_SIDE = Pose(0.015, 0.015, 0.06)
@@ -130,7 +130,7 @@ class Gait:
         """Believe the joints where the foot has landed, and keep all plans as seen from it."""
         side, bearing = self._side, other(self._side)
         slipped = wrap(heading - (self._north or 0.0) - self._heading(measured))
-        stood = self.feet[bearing].then(Pose(0.0, 0.0, slipped if abs(slipped) > SLIP else 0.0))
+        stood = self.feet[bearing].then(Pose(0.0, 0.0, slipped if abs(slipped) > SLIP_ANGLE else 0.0))
         landed = stood.then(foot_from(bearing, measured))
         self.feet = {bearing: stood, side: landed}
 
@@ -155,7 +155,7 @@ class Gait:
         if isinstance(self.goal, Velocity):
             return side_by_side and not any(self.goal)
         way = self.goal.seen_from(middle(feet))
-        return hypot(way.x, way.y) < NEAR and abs(way.theta) < STRAIGHT and side_by_side
+        return hypot(way.x, way.y) < GOAL_TOLERANCE and abs(way.theta) < GOAL_HEADING_TOLERANCE and side_by_side
 
     def _step(self, *, standing: bool) -> GaitPhase:
         return self._planner.step(self.feet, self._next(), self._dcm, self._zmp, standing=standing)

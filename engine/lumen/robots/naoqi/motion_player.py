@@ -6,7 +6,7 @@ from math import isfinite
 
 from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.choreography import joined
-from lumen.interpreters.limits import TOLERANCE
+from lumen.interpreters.limits import LIMIT_SLACK
 from lumen.interpreters.postures import UPRIGHT
 from lumen.interpreters.trajectory import JointTrack, Trajectory
 from lumen.language.diagnostics import did_you_mean
@@ -51,12 +51,12 @@ def _late(track: JointTrack, motion: MotionDefinition, body: Body) -> float:
     limit, late = body.joints[track.joint], 0.0
     for i, segment in enumerate(track.segments):
         low, high = segment.extremes()
-        if low < limit.minimum - TOLERANCE or high > limit.maximum + TOLERANCE:
+        if low < limit.minimum - LIMIT_SLACK or high > limit.maximum + LIMIT_SLACK:
             raise BadCommandError(
                 f"`{motion.name}` takes {track.joint} to {low if low < limit.minimum else high:.3f} rad,"
                 f" which reaches from {limit.minimum:.3f} to {limit.maximum:.3f} rad"
             )
-        if (speed := segment.peak_speed()) > limit.speed * (1 + TOLERANCE):
+        if (speed := segment.peak_speed()) > limit.speed * (1 + LIMIT_SLACK):
             if i:
                 raise BadCommandError(
                     f"`{motion.name}` turns {track.joint} at {speed:.1f} rad/s, {limit.speed:.1f} at most"

@@ -12,7 +12,7 @@ from lumen.language.events import ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, Hall, Message, Robot, RobotCommand
-from lumen.robots.robot_routes import HALL, SEEN, key_of, tell
+from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, key_of, publish_on
 from lumen.robots.server import RobotServer
 
 FACE_REPORT_PERIOD = 0.1
@@ -43,14 +43,14 @@ class RobotHost:
         self._seen: object = ()
         self._looked = -FACE_REPORT_PERIOD
         self._happened: list[Event] = []
-        self._key = key_of(project, HALL)
+        self._key = key_of(project, HALL_ROUTE)
         self._undo: Callable[[], None] = lambda: None
         if hall:
             self._undo = bus.subscribe(self._key, self._visitor_messages.append)
 
     def use(self, project: Project) -> None:
         """Go by another bundle from now on."""
-        self._project, key = project, key_of(project, HALL)
+        self._project, key = project, key_of(project, HALL_ROUTE)
         if self._hall and key != self._key:
             undo, self._key = self._undo, key
             self._undo = self._bus.subscribe(key, self._visitor_messages.append)
@@ -102,7 +102,9 @@ class RobotHost:
             return
         self._seen, self._looked = face, now
         try:
-            tell(self._bus, self._project, SEEN, {"face": list(face) if face else None, "time": now}, ttl=1.0)
+            publish_on(
+                self._bus, self._project, SEEN_ROUTE, {"face": list(face) if face else None, "time": now}, ttl=1.0
+            )
         except BusError as error:
             _log.warning("how the robot sees the visitor was not sent: %s", error)
 

@@ -15,13 +15,21 @@ from lumen.language.events import CUE, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Message, Perform, Reading, RobotCommand, Sense
 from lumen.robots.command_codec import encode_command
-from lumen.robots.command_reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN
-from lumen.robots.robot_routes import AIM, COMMAND, NOTICED, REPORT, STOP, key_of, tell
+from lumen.robots.command_reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN_COMMAND
+from lumen.robots.robot_routes import (
+    AIM_ROUTE,
+    COMMAND_ROUTE,
+    NOTICED_ROUTE,
+    REPORT_ROUTE,
+    STOP_ROUTE,
+    key_of,
+    publish_on,
+)
 from lumen.robots.sense_codec import decode_reading
 
 RESEND_PERIOD = 1.0
 """How long a command may stay unanswered before it is sent again [s]: the robot performs it once all the same."""
-ANSWER_TIMEOUT = 5.0
+COMMAND_ANSWER_TIMEOUT = 5.0
 """How long one may stay without any answer [s]: it failed then, and is not wanted any more."""
 OUTCOME_QUERY_PERIOD = 5.0
 """How long after its last report the robot is queried for the outcome of a command [s]."""
@@ -29,7 +37,7 @@ AIM_TTL = 0.2
 COMMAND_TTL = 2.0
 MAX_PENDING_REPORTS = 10_000
 
-_ENDS = {FINISHED: "done", FAILED: "error", CANCELLED: "cancelled", UNKNOWN: "error"}
+_ENDS = {FINISHED: "done", FAILED: "error", CANCELLED: "cancelled", UNKNOWN_COMMAND: "error"}
 _FORGOTTEN = "the robot has forgotten it: it was restarted"
 
 _log = logging.getLogger(__name__)
@@ -86,7 +94,7 @@ class RemoteRobot:
     def use(self, project: Project) -> None:
         """Go by the routes of this project from now on; what is new is listened to before what is gone is not."""
         self._project = project
-        wanted = {key_of(project, REPORT): self._came.append, key_of(project, NOTICED): self._came.append}
+        wanted = {key_of(project, REPORT_ROUTE): self._came.append, key_of(project, NOTICED_ROUTE): self._came.append}
         for sense in Sense:
             if sense in project.routes and sense is not Sense.IMAGE:
                 wanted[project.routes[sense].key_for(project.robot)] = partial(self._sense, sense)
@@ -97,7 +105,7 @@ class RemoteRobot:
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Aim):
-            self._send(AIM, encode_command(command), AIM_TTL)
+            self._send(AIM_ROUTE, encode_command(command), AIM_TTL)
             return
         now = self._patience()
         whole = f"{self.session}.{id}"
@@ -164,7 +172,7 @@ class RemoteRobot:
     def _order(self, whole: str, command: RobotCommand, *, delegable: bool = True) -> None:
         if delegable and isinstance(command, Perform) and self._delegate(whole, command):
             return
-        way = STOP if isinstance(command, Rest | Stop) else COMMAND
+        way = STOP_ROUTE if isinstance(command, Rest | Stop) else COMMAND_ROUTE
         self._send(way, {**encode_command(command), "id": whole}, COMMAND_TTL)
 
     def _stopping(self) -> bool:
@@ -191,11 +199,11 @@ class RemoteRobot:
                 self._order(whole, pending.command)
 
     def _ask(self, method: str, whole: str) -> None:
-        self._send(COMMAND, {"type": "motion", "method": method, "parameter": {"id": whole}}, COMMAND_TTL)
+        self._send(COMMAND_ROUTE, {"type": "motion", "method": method, "parameter": {"id": whole}}, COMMAND_TTL)
 
     def _send(self, way: str, body: dict[str, Any], ttl: float) -> None:
         try:
-            tell(self._bus, self._project, way, body, ttl=ttl)
+            publish_on(self._bus, self._project, way, body, ttl=ttl)
         except BusError as error:
             _log.warning("a command was not sent to the robot: %s", error)
 
@@ -208,7 +216,9 @@ class RemoteRobot:
         match message.body:
             case {"id": str(whole), "state": str(state)}:
                 self._report(whole, state, str(message.body.get("reason", "")))
-            case {"name": str(name)} if name in (*ROBOT_EVENTS, CUE) and message.key == key_of(self._project, NOTICED):
+            case {"name": str(name)} if name in (*ROBOT_EVENTS, CUE) and message.key == key_of(
+                self._project, NOTICED_ROUTE
+            ):
                 self._events.append(Event(name, message.body.get("data"), self._clock()))
 
     def _report(self, whole: str, state: str, reason: str) -> None:
@@ -222,7 +232,7 @@ class RemoteRobot:
             self._begun.append(pending.id)
         pending.heard = True
         if state in _ENDS:
-            self._end(whole, _ENDS[state], reason or (_FORGOTTEN if state == UNKNOWN else ""))
+            self._end(whole, _ENDS[state], reason or (_FORGOTTEN if state == UNKNOWN_COMMAND else ""))
 
     def _end(self, whole: str, kind: str, reason: str = "") -> None:
         pending = self._pending.pop(whole)
@@ -236,7 +246,7 @@ class RemoteRobot:
             quiet = now - pending.queried
             if pending.held:
                 continue
-            if not pending.heard and now - pending.since > ANSWER_TIMEOUT:
+            if not pending.heard and now - pending.since > COMMAND_ANSWER_TIMEOUT:
                 self._forsaken.append(whole)
                 self._end(whole, "error", "the robot does not answer")
             elif quiet > (OUTCOME_QUERY_PERIOD if pending.heard and not pending.cancelled else RESEND_PERIOD):

@@ -4,11 +4,11 @@ from lumen.interpreters.projection import project
 from lumen.language.robots import Camera
 from lumen.language.routes import Size
 from lumen.ports import Image
-from lumen.robots.simulation.model import ROBOT
+from lumen.robots.simulation.model import ROBOT_PREFIX
 from lumen.robots.simulation.rendering import CAMERA_QUALITY, PixelArray, RenderState, SceneRenderer, available
 from lumen.robots.simulation.world import World
 
-TOP_CAMERA = f"{ROBOT}/CameraTop"
+TOP_CAMERA = f"{ROBOT_PREFIX}/CameraTop"
 
 
 class TopCamera:

@@ -5,7 +5,7 @@ from pathlib import Path
 from dm_control import composer, mjcf
 
 from lumen.language.robots import Body
-from lumen.robots.simulation.model import ROBOT, alone
+from lumen.robots.simulation.model import ROBOT_PREFIX, alone
 
 
 class Nao(composer.Entity):  # type: ignore[misc]  # dm_control has no types
@@ -16,7 +16,7 @@ class Nao(composer.Entity):  # type: ignore[misc]  # dm_control has no types
     the model can't be used.
     """
 
-    def _build(self, body: Body, models: str | Path, name: str = ROBOT) -> None:
+    def _build(self, body: Body, models: str | Path, name: str = ROBOT_PREFIX) -> None:
         self.body = body
         self._root = alone(body, Path(models))
         self._root.model = name

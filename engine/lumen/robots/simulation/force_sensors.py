@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import mujoco
 
-from lumen.robots.simulation.model import ROBOT
+from lumen.robots.simulation.model import ROBOT_PREFIX
 
 NEWTONS_PER_KILOGRAM = 9.81
 """ALMemory counts these forces in kilograms: newtons divided by this."""
@@ -18,7 +18,8 @@ class ForceSensors:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         sensors = {
-            name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, f"{ROBOT}/{sensor}") for name, sensor in _names()
+            name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, f"{ROBOT_PREFIX}/{sensor}")
+            for name, sensor in _names()
         }
         self._places = {name: int(model.sensor_adr[id]) for name, id in sensors.items() if id >= 0}
         self._data = data

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumen.language.lights import LIGHT_GROUPS, lights_of, rgb
-from lumen.robots.simulation.model import ROBOT
+from lumen.robots.simulation.model import ROBOT_PREFIX
 
 RENDERED_COLOURS: Mapping[object, int] = {
     "off": 0x202428, "black": 0x202428, "white": 0xF4F6FF, "red": 0xFF3020, "green": 0x30E040, "blue": 0x2060FF,
@@ -27,7 +27,7 @@ class Lights:
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._colours = model.mat_rgba
-        prefix = f"{ROBOT}/"
+        prefix = f"{ROBOT_PREFIX}/"
         names = {model.material(i).name: i for i in range(model.nmat)}
         self._ids = {name.removeprefix(prefix): i for name, i in names.items() if name.startswith(prefix)}
         self._first = self._colours.copy()

@@ -15,10 +15,10 @@ from lumen.language.robots import Body
 from lumen.loading.memoization import memoize
 from lumen.robots.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 
-ROBOT = "nao"
+ROBOT_PREFIX = "nao"
 """What the names of the robot's elements begin with in the hall: `nao/HeadYaw`."""
 
-STAGE = "stage"
+STAGE_SITE = "stage"
 """The site of the hall where the robot stands."""
 
 
@@ -41,7 +41,7 @@ def load(body: Body, models: Path, hall: str, variation: Variation | None = None
     """
     robot, world = alone(body, models), _read(models / hall)
     _complain(hall, lacks_of_hall(world))
-    stage = world.find("site", STAGE)
+    stage = world.find("site", STAGE_SITE)
     stage.attach(robot).add("freejoint")
     if variation:
         _vary(world, variation)
@@ -53,7 +53,7 @@ def alone(body: Body, models: Path) -> mjcf.RootElement:
     _complain("the description of the robot's body", lacks_of_body(body))
     robot = _read(models / body.mjcf)
     _complain(body.mjcf, lacks_of_robot(robot, body))
-    robot.model = ROBOT
+    robot.model = ROBOT_PREFIX
     _differ(robot, body)
     return robot
 

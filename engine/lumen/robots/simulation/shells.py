@@ -119,68 +119,68 @@ def _quads(rows: int, columns: int, wrap: bool) -> NDArray[np.int64]:
     return np.concatenate([np.stack([a, b, e], axis=1), np.stack([a, e, d], axis=1)])
 
 
-HEAD = Loft((
+HEAD_SHELL = Loft((
     (-9, 0, 0, 26, 27, 2.2), (-4, 2, 0, 38, 37, 2.3), (8, 4, 0, 49, 47, 2.4), (24, 3, 0, 56, 55, 2.5),
     (44, 1, 0, 59.5, 60, 2.5), (62, 0, 0, 60, 60.5, 2.4), (80, -2, 0, 56.5, 55, 2.3), (95, -4, 0, 46, 43, 2.2),
     (105, -5, 0, 30, 28, 2.1), (110, -5, 0, 12, 11, 2.0), (110.8, -5, 0, 2, 2, 2.0),
 ))  # fmt: skip
-TORSO = Loft((
+TORSO_SHELL = Loft((
     (-92, -14, 0, 20, 26, 2.3), (-84, -13, 0, 32, 37, 2.4), (-62, -11, 0, 41, 45, 2.5), (-30, -8, 0, 45, 49, 2.5),
     (5, -5, 0, 50, 56, 2.6), (40, -4, 0, 55, 65, 2.7), (72, -5, 0, 56, 70, 2.8), (96, -7, 0, 49, 66, 2.6),
     (110, -8, 0, 38, 50, 2.4), (120, -8, 0, 24, 30, 2.2), (123, -8, 0, 12, 15, 2.0),
 ))  # fmt: skip
-UPPER_ARM = Loft((
+UPPER_ARM_SHELL = Loft((
     (-24, 0, 4, 12, 12, 2.0), (-18, 0, 4, 23, 22, 2.1), (-4, 0, 5, 30, 28, 2.3), (20, 0, 7, 31, 28, 2.4),
     (46, 0, 10, 28, 25.5, 2.4), (70, 0, 12, 25, 23, 2.3), (84, 0, 13, 20, 19, 2.2), (90, 0, 13, 12, 12, 2.0),
 ), axis="x")  # fmt: skip
-FOREARM = Loft((
+FOREARM_SHELL = Loft((
     (-22, 0, 0, 8, 8, 2.0), (-16, 0, 0, 19, 18, 2.2), (-2, 0, 0, 24.5, 24, 2.4), (18, 0, 1, 26.5, 26, 2.5),
     (38, 0, 1, 26, 25.5, 2.5), (54, 0, 0, 23.5, 23, 2.5), (60, 0, 0, 18, 18, 2.2),
 ), axis="x")  # fmt: skip
-HAND = Loft((
+HAND_SHELL = Loft((
     (14, 0, 0, 14, 16, 2.2), (22, 1, 0, 19, 21, 2.4), (40, 1, 0, 19.5, 24, 2.6), (58, -1, 0, 16, 24, 2.7),
     (70, -2, 0, 12, 22, 2.6), (75, -2, 0, 7, 16, 2.4),
 ), axis="x")  # fmt: skip
-FINGER = Loft((
+FINGER_SHELL = Loft((
     (-3, 0, 0, 4, 4.5, 2.0), (2, 0, 0, 7.5, 7.5, 2.2), (18, 0.5, 0, 7.2, 7.2, 2.3), (30, 1.5, 0, 6.4, 6.6, 2.3),
     (36, 2.4, 0, 4.6, 5, 2.1), (38.5, 3, 0, 2, 2, 2.0),
 ), axis="x")  # fmt: skip
-THIGH = Loft((
+THIGH_SHELL = Loft((
     (-124, 3, 1, 14, 16, 2.2), (-118, 4, 1, 26, 25, 2.3), (-102, 5, 1, 34, 31, 2.4), (-80, 5, 2, 36, 34, 2.5),
     (-52, 4, 4, 39, 38, 2.6), (-24, 2, 6, 38, 37, 2.6), (-4, 0, 7, 33, 33, 2.5), (10, -1, 7, 24, 25, 2.3),
     (17, -1, 7, 10, 11, 2.0),
 ))  # fmt: skip
-TIBIA = Loft((
+TIBIA_SHELL = Loft((
     (-99, 4, 1, 22, 24, 2.3), (-94, 4, 1, 28, 29, 2.4), (-78, 3, 2, 34, 34, 2.6), (-52, 0, 2, 39, 37, 2.6),
     (-28, -2, 2, 39, 36, 2.6), (-8, -2, 1, 33, 32, 2.4), (8, -1, 1, 22, 24, 2.2), (14, -1, 1, 9, 11, 2.0),
 ))  # fmt: skip
-FOOT = Loft((
+FOOT_SHELL = Loft((
     (-45.1, 24.5, 5.5, 71, 40, 2.9), (-43, 24.5, 5.5, 74.5, 43.5, 2.9), (-34, 24.5, 5.5, 75, 44, 2.8),
     (-24, 22, 5, 71, 41.5, 2.7), (-13, 15, 4, 60, 38, 2.5), (-2, 7, 3, 46, 34, 2.4), (8, 1, 2, 34, 29, 2.3),
     (14, -1, 2, 22, 20, 2.1), (16, -1, 2, 10, 9, 2.0),
 ))  # fmt: skip
 
 SHELLS: dict[str, Loft | ShellPanel | Ring] = {
-    "head": HEAD,
-    "crown_left": ShellPanel(HEAD, (0.30, 0.86), (48, 132)),
-    "nape": ShellPanel(HEAD, (0.18, 0.80), (132, 228)),
-    "brow": ShellPanel(HEAD, (0.60, 0.97), (-22, 22)),
-    "torso": TORSO,
-    "flank_left": ShellPanel(TORSO, (0.30, 0.86), (38, 150)),
-    "pelvis": ShellPanel(TORSO, (0.06, 0.26), (-180, 180)),
-    "upper_arm": UPPER_ARM,
-    "shoulder_cap": ShellPanel(UPPER_ARM, (0.06, 0.56), (40, 160)),
-    "forearm": FOREARM,
-    "cuff": ShellPanel(FOREARM, (0.42, 0.86), (-180, 180)),
-    "hand": HAND,
-    "finger": FINGER,
-    "thigh": THIGH,
-    "thigh_side": ShellPanel(THIGH, (0.28, 0.84), (25, 130)),
-    "tibia": TIBIA,
-    "shin": ShellPanel(TIBIA, (0.16, 0.80), (-48, 48)),
-    "foot": FOOT,
+    "head": HEAD_SHELL,
+    "crown_left": ShellPanel(HEAD_SHELL, (0.30, 0.86), (48, 132)),
+    "nape": ShellPanel(HEAD_SHELL, (0.18, 0.80), (132, 228)),
+    "brow": ShellPanel(HEAD_SHELL, (0.60, 0.97), (-22, 22)),
+    "torso": TORSO_SHELL,
+    "flank_left": ShellPanel(TORSO_SHELL, (0.30, 0.86), (38, 150)),
+    "pelvis": ShellPanel(TORSO_SHELL, (0.06, 0.26), (-180, 180)),
+    "upper_arm": UPPER_ARM_SHELL,
+    "shoulder_cap": ShellPanel(UPPER_ARM_SHELL, (0.06, 0.56), (40, 160)),
+    "forearm": FOREARM_SHELL,
+    "cuff": ShellPanel(FOREARM_SHELL, (0.42, 0.86), (-180, 180)),
+    "hand": HAND_SHELL,
+    "finger": FINGER_SHELL,
+    "thigh": THIGH_SHELL,
+    "thigh_side": ShellPanel(THIGH_SHELL, (0.28, 0.84), (25, 130)),
+    "tibia": TIBIA_SHELL,
+    "shin": ShellPanel(TIBIA_SHELL, (0.16, 0.80), (-48, 48)),
+    "foot": FOOT_SHELL,
     "ring": Ring(210, 130),
-    "toe": ShellPanel(FOOT, (0.22, 0.62), (-62, 62)),
+    "toe": ShellPanel(FOOT_SHELL, (0.22, 0.62), (-62, 62)),
 }
 
 

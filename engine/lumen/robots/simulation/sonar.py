@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.language.robots import Ultrasound
-from lumen.robots.simulation.model import ROBOT
+from lumen.robots.simulation.model import ROBOT_PREFIX
 
 _ECHOING = np.array([0, 1, 0, 0, 0, 0], dtype=np.uint8)
 """Geom group 1, what stands in the hall; the ground throws sound away from the robot, and it does not hear itself."""
@@ -31,7 +31,7 @@ class Sonars:
         return self._side("LSonar"), self._side("RSonar")
 
     def _side(self, name: str) -> float:
-        site = self._data.site(f"{ROBOT}/{name}")
+        site = self._data.site(f"{ROBOT_PREFIX}/{name}")
         rays = (self._rays @ site.xmat.reshape(3, 3).T).ravel()
         farthest, found = self._sensor.maximum, self._distances
         mujoco.mj_multiRay(

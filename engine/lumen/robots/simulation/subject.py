@@ -8,7 +8,7 @@ import numpy as np
 
 from lumen.language.robots import Body
 from lumen.ports import Sole, Strain
-from lumen.robots.simulation.model import ROBOT, Variation
+from lumen.robots.simulation.model import ROBOT_PREFIX, Variation
 from lumen.robots.simulation.robot import SimulatedRobot
 
 CONTACT_FORCE = 1.0
@@ -55,7 +55,7 @@ class ExaminedRobot(SimulatedRobot):
     def _link(self, geom: int) -> str:
         """The name of a part of the robot, empty for what is none."""
         name = str(self.world.model.geom(geom).name)
-        return name.removeprefix(f"{ROBOT}/") if name.startswith(f"{ROBOT}/") else ""
+        return name.removeprefix(f"{ROBOT_PREFIX}/") if name.startswith(f"{ROBOT_PREFIX}/") else ""
 
     def _stands(self) -> dict[str, Sole]:
         load = dict.fromkeys("LR", 0.0)
@@ -63,7 +63,7 @@ class ExaminedRobot(SimulatedRobot):
             for side in load:
                 if f"{side}Sole" in links and "" in links:
                     load[side] += force
-        places = {side: self.world.data.site(f"{ROBOT}/{side}Sole").xpos for side in load}
+        places = {side: self.world.data.site(f"{ROBOT_PREFIX}/{side}Sole").xpos for side in load}
         return {side: Sole(float(at[0]), float(at[1]), load[side]) for side, at in places.items()}
 
 
@@ -76,7 +76,7 @@ def subject(body: Body, models: Path, hall: str, brother: int) -> ExaminedRobot:
     robot = ExaminedRobot(body, models, hall, seed=brother, variation=variation)
     model = robot.world.model
     for i in range(model.nbody):
-        if model.body(i).name.startswith(f"{ROBOT}/"):
+        if model.body(i).name.startswith(f"{ROBOT_PREFIX}/"):
             factor = draw.uniform(*MASS_RANGE)
             model.body_mass[i] *= factor
             model.body_inertia[i] *= factor

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import mujoco
 import numpy as np
 
-from lumen.robots.simulation.model import ROBOT
+from lumen.robots.simulation.model import ROBOT_PREFIX
 
 _SOLID = 2
 """The collision type of what stands in a hall and is not its ground."""
@@ -20,7 +20,7 @@ class TactileSensors:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, sensors: Iterable[str]) -> None:
         self._model, self._data = model, data
         self._solid = set(np.flatnonzero(model.geom_contype == _SOLID).tolist())
-        sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{ROBOT}/{name}") for name in sensors}
+        sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{ROBOT_PREFIX}/{name}") for name in sensors}
         self._sites = {name: site for name, site in sites.items() if site >= 0}
 
     def pressed(self) -> set[str]:

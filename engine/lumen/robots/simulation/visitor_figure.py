@@ -5,7 +5,7 @@ from math import atan2, cos, sin
 import mujoco
 
 from lumen.language.stories import Visitor
-from lumen.robots.simulation.model import STAGE
+from lumen.robots.simulation.model import STAGE_SITE
 
 VISITOR_BODY = "visitor"
 FIGURE_HEIGHT = 1.65
@@ -28,7 +28,7 @@ class VisitorFigure:
         self._boxes = model.geom_aabb[self._geoms].copy()
         self._site = model.site("visitor_face").id
         self._face = model.site_pos[self._site].copy()
-        self._stage = model.site(STAGE).pos.copy()
+        self._stage = model.site(STAGE_SITE).pos.copy()
         self._visitor: Visitor | None = None
         self.place(None)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.robots.simulation.joint_envelope import JointVector
-from lumen.robots.simulation.model import ROBOT, Variation, physics
+from lumen.robots.simulation.model import ROBOT_PREFIX, Variation, physics
 
 CONTROL_PERIOD = 0.01
 """Time between two commands to the joints [s]."""
@@ -20,7 +20,7 @@ _UNSTABLE = [
     int(w)
     for w in (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
 ]
-_FEET = (f"{ROBOT}/LSole", f"{ROBOT}/RSole")
+_FEET = (f"{ROBOT_PREFIX}/LSole", f"{ROBOT_PREFIX}/RSole")
 
 
 class World:
@@ -34,17 +34,17 @@ class World:
         self.physics = physics(body, models, hall, variation)
         self.model: mujoco.MjModel = self.physics.model.ptr
         self.data: mujoco.MjData = self.physics.data.ptr
-        joints = [self.model.joint(f"{ROBOT}/{name}") for name in body.joints]
+        joints = [self.model.joint(f"{ROBOT_PREFIX}/{name}") for name in body.joints]
         self._angles = np.array([j.qposadr[0] for j in joints])
         self._speeds = np.array([j.dofadr[0] for j in joints])
         driven = [i for i, name in enumerate(body.joints) if name not in body.shared]
         names = list(body.joints)
         self.driven = np.array(driven)
-        self.actuators = np.array([self.model.actuator(f"{ROBOT}/{names[i]}").id for i in driven])
-        self.torso = self.model.body(f"{ROBOT}/Torso").id
-        self._root = self.model.joint(f"{ROBOT}/").qposadr[0]
-        self._gyro = self.model.sensor(f"{ROBOT}/gyro").adr[0]
-        self._accelerometer = self.model.sensor(f"{ROBOT}/accelerometer").adr[0]
+        self.actuators = np.array([self.model.actuator(f"{ROBOT_PREFIX}/{names[i]}").id for i in driven])
+        self.torso = self.model.body(f"{ROBOT_PREFIX}/Torso").id
+        self._root = self.model.joint(f"{ROBOT_PREFIX}/").qposadr[0]
+        self._gyro = self.model.sensor(f"{ROBOT_PREFIX}/gyro").adr[0]
+        self._accelerometer = self.model.sensor(f"{ROBOT_PREFIX}/accelerometer").adr[0]
         self._torso_axes = self.data.xmat[self.torso]
         self._substeps = round(CONTROL_PERIOD / self.model.opt.timestep)
         self._warnings = self.data.warning.number
