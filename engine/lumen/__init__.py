@@ -36,7 +36,8 @@ if TYPE_CHECKING:
     from lumen.language.diagnostics import Diagnostic
     from lumen.language.events import Event
     from lumen.language.projects import Project
-    from lumen.rules import check, load
+    from lumen.project import load
+    from lumen.rules import check
 
 __version__ = "0.1.0"
 
@@ -103,7 +104,8 @@ _HOMES = {
     "lumen.language.diagnostics": ("Diagnostic",),
     "lumen.language.events": ("Event",),
     "lumen.language.projects": ("Project",),
-    "lumen.rules": ("check", "load"),
+    "lumen.project": ("load",),
+    "lumen.rules": ("check",),
 }
 
 

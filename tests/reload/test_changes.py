@@ -14,7 +14,8 @@ from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
-from lumen.rules import check_files, load
+from lumen.project import load
+from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 from tests.guarded import run_guarded

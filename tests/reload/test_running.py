@@ -15,9 +15,9 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.routes import Direction, Route
 from lumen.language.stories import Visitor
+from lumen.project import load
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
-from lumen.rules import load
 from lumen.runtime.loop import TICK_PERIOD, BehaviorLoop, Observer
 from lumen.statechart import Machine
 from tests import exhibits

@@ -9,7 +9,7 @@ from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, Clock, Robot
-from lumen.rules import load
+from lumen.project import load
 
 
 def open(

@@ -1,9 +1,8 @@
-"""From a project's files to everything that is wrong with them; `load` and `check` for the whole."""
+"""From a project's files to everything that is wrong with them."""
 
 from collections.abc import Mapping
 from pathlib import Path
 
-from lumen.errors import ProjectError
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
@@ -12,18 +11,6 @@ from lumen.loading.project import assemble, draft
 from lumen.rules.checks import CHECKS
 from lumen.rules.codes import CODES
 from lumen.rules.ignores import obey
-
-
-def load(path: str | Path | None = None) -> Project:
-    """The project in that folder; without a path the one here or above, else the shipped one.
-
-    Raises ProjectError, carrying the diagnostics, where its files have errors, and UsageError where there is no folder.
-    """
-    root = find_project(path)
-    project, diagnostics = check_files(root, read_files(root))
-    if project is None:
-        raise ProjectError(diagnostics)
-    return project
 
 
 def check(path: str | Path | None = None) -> list[Diagnostic]:

@@ -1,0 +1,23 @@
+"""A whole project from its folder, loaded and checked."""
+
+from pathlib import Path
+
+from lumen.errors import ProjectError
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.loading.packaged import find_project
+from lumen.rules import check_files
+
+__all__ = ["Project", "load"]
+
+
+def load(path: str | Path | None = None) -> Project:
+    """The project in that folder; without a path the one here or above, else the shipped one.
+
+    Raises ProjectError, carrying the diagnostics, where its files have errors, and UsageError where there is no folder.
+    """
+    root = find_project(path)
+    project, diagnostics = check_files(root, read_files(root))
+    if project is None:
+        raise ProjectError(diagnostics)
+    return project
