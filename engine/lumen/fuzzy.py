@@ -10,6 +10,7 @@ from lumen.interpreters.inference import Evaluator, Explanation, explain
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import has_errors
 from lumen.loading.controllers import build_controller
+from lumen.loading.derived import derived
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import check_schema
@@ -45,10 +46,10 @@ class Controller(ControllerDefinition):
     @classmethod
     def _build(cls, document: Document, name: str) -> Self:
         report = DocumentReport(document)
-        controller = build_controller(check_schema(document, "controller", report), report, name=name, into=cls)
+        controller = build_controller(check_schema(document, "controller", report), report, name=name)
         if controller is None or has_errors(report.diagnostics):
             raise ProjectError(report.diagnostics)
-        return controller
+        return derived(cls, controller)
 
     @cached_property
     def _evaluator(self) -> Evaluator:

@@ -11,6 +11,7 @@ from lumen.interpreters.trajectory import Trajectory
 from lumen.language import motions
 from lumen.language.diagnostics import has_errors
 from lumen.language.robots import Body
+from lumen.loading.derived import derived
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
@@ -57,10 +58,10 @@ class Motion(motions.MotionDefinition):
         data = check_schema(document, "motion", report)
         others = {other: motion for other, motion in around.motions.items() if other != name}
         broken = around.names["motions"]
-        motion = build_motion(data, report, name=name, body=body, motions=others, broken=broken, into=cls)
+        motion = build_motion(data, report, name=name, body=body, motions=others, broken=broken)
         if motion is None or has_errors(report.diagnostics):
             raise ProjectError(report.diagnostics)
-        return motion
+        return derived(cls, motion)
 
     @cached_property
     def _trajectory(self) -> Trajectory:

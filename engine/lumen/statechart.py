@@ -21,6 +21,7 @@ from lumen.interpreters.statechart import (
 from lumen.interpreters.statechart.json_cursor import plain
 from lumen.language import machines
 from lumen.language.events import Event
+from lumen.loading.derived import derived
 from lumen.loading.standalone import machine_from_dict, machine_from_file
 from lumen.ports import Clock
 
@@ -36,7 +37,7 @@ class Machine(machines.MachineDefinition):
 
         Raises UsageError where a file can't be read, ProjectError for what they say.
         """
-        return machine_from_file(Path(path), cls)
+        return derived(cls, machine_from_file(Path(path)))
 
     @classmethod
     def from_dict(
@@ -46,7 +47,7 @@ class Machine(machines.MachineDefinition):
 
         `behaviors` are those that it may invoke, each a dict of its own, by their names.
         """
-        return machine_from_dict(data, name, behaviors or {}, cls)
+        return derived(cls, machine_from_dict(data, name, behaviors or {}))
 
 
 class Interpreter:

@@ -23,7 +23,6 @@ from lumen.formats.scxml import read_scxml
 from lumen.formats.xstate import read_xstate
 from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import Diagnostic, has_errors
-from lumen.language.machines import MachineDefinition
 from lumen.language.robots import Body
 from lumen.loading.behaviors import build_machine
 from lumen.loading.controllers import build_controller
@@ -126,5 +125,5 @@ def _faults(file: str, text: str, kind: str, body: Body | None) -> list[Diagnost
     elif kind == "controller":
         build_controller(data, report, name="imported")
     else:
-        build_machine(data, report, name="imported", into=MachineDefinition)
+        build_machine(data, report, name="imported")
     return [*found, *report.diagnostics]

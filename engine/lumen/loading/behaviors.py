@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from typing import Any, TypeVar
+from typing import Any
 
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
@@ -19,21 +19,18 @@ from lumen.loading.transitions import TransitionReader
 NOT_WITHIN = Code("not-within", "statecharts", ERROR, "a state is named that does not lie in the one meant")
 
 
-M = TypeVar("M", bound=MachineDefinition)
-
 CONTEXT_PREFIX = "context"
 """How `renamed` calls keys of the context: `context.name: context.visitor`."""
 
 
-def build_machine(data: Any, report: DocumentReport, *, name: str, into: type[M]) -> M | None:
+def build_machine(data: Any, report: DocumentReport, *, name: str) -> MachineDefinition | None:
     """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
 
-    `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out. `into` is the
-    class of the result: `Machine`, or one derived from it.
+    `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out.
     """
     if not isinstance(data, Mapping) or not data.get("states"):
         return None
-    return into(**_Builder(data, report, name).fields())
+    return MachineDefinition(**_Builder(data, report, name).fields())
 
 
 def fingerprint(data: Any) -> str:
@@ -54,7 +51,7 @@ class _Builder:
         self.beginnings: dict[str, tuple[str, ...]] = {}
 
     def fields(self) -> dict[str, Any]:
-        """Everything that a `Machine` holds."""
+        """Everything that a machine holds."""
         data = self.data
         check_shapes(self.outline, self.report)
         check_ids(self.outline, self.report)

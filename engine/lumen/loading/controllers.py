@@ -1,7 +1,7 @@
-"""A fuzzy controller, `fuzzy/NAME.yaml`, from its plain data to a `Controller`."""
+"""A fuzzy controller, `fuzzy/NAME.yaml`, from its plain data to a `ControllerDefinition`."""
 
 from collections.abc import Mapping
-from typing import Any, TypeVar
+from typing import Any
 
 from lumen.language.controllers import ControllerDefinition, TrackingSettings
 from lumen.language.diagnostics import NodePath
@@ -13,10 +13,8 @@ from lumen.loading.table import spread, termless
 from lumen.loading.units import ANGLES, BAD_DURATION, seconds
 from lumen.loading.variables import build_variables
 
-C = TypeVar("C", bound=ControllerDefinition)
 
-
-def build_controller(data: Any, report: DocumentReport, *, name: str, into: type[C] = ControllerDefinition) -> C | None:  # type: ignore[assignment]
+def build_controller(data: Any, report: DocumentReport, *, name: str) -> ControllerDefinition | None:
     """The controller that the data of `fuzzy/NAME.yaml` describes, None where it has no inputs or no outputs."""
     if not isinstance(data, Mapping) or not data.get("inputs") or not data.get("outputs"):
         return None
@@ -27,7 +25,7 @@ def build_controller(data: Any, report: DocumentReport, *, name: str, into: type
     inputs, outputs = build_variables(data, report, "inputs"), build_variables(data, report, "outputs")
     blocks = Rulebook(data, report, inputs, outputs).blocks()
     bindings = Bindings(data, report, outputs, angle)
-    return into(
+    return ControllerDefinition(
         name=name,
         inputs=inputs,
         outputs=outputs,

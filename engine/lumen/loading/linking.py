@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
-from typing import Generic, TypeVar
 
 from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH, UNKNOWN_CONTEXT_KEY
 from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
@@ -16,13 +15,13 @@ UNKNOWN_BEHAVIOR = Code("unknown-behavior", "references", ERROR, "a behaviour is
 INVOKE_CYCLE = Code("invoke-cycle", "statecharts", ERROR, "a behaviour would invoke itself in the end")
 
 
-M = TypeVar("M", bound=MachineDefinition)
-
 MAX_INVOKE_DEPTH = 16
 """How many levels of behaviours may run within one another."""
 
 
-def link(machines: Mapping[str, M], reports: Mapping[str, DocumentReport], names: Collection[str]) -> dict[str, M]:
+def link(
+    machines: Mapping[str, MachineDefinition], reports: Mapping[str, DocumentReport], names: Collection[str]
+) -> dict[str, MachineDefinition]:
     """These machines by name, each with those that it invokes; what can't be invoked is reported.
 
     `names` are all behaviours that there are; one that could not be read is among them and is not missed.
@@ -31,18 +30,18 @@ def link(machines: Mapping[str, M], reports: Mapping[str, DocumentReport], names
     return {name: linker.machine(name) for name in machines}
 
 
-class _Linker(Generic[M]):
+class _Linker:
     """Goes down from each behaviour to what it invokes; `way` are those above the one that is being linked."""
 
     def __init__(
-        self, machines: Mapping[str, M], reports: Mapping[str, DocumentReport], names: Collection[str]
+        self, machines: Mapping[str, MachineDefinition], reports: Mapping[str, DocumentReport], names: Collection[str]
     ) -> None:
         self.machines, self.reports, self.names = machines, reports, names
-        self.linked: dict[str, M] = {}
+        self.linked: dict[str, MachineDefinition] = {}
         self.levels: dict[str, int] = {}
         self.way: list[str] = []
 
-    def machine(self, name: str) -> M:
+    def machine(self, name: str) -> MachineDefinition:
         """The machine of that name with those that it invokes, and they with theirs."""
         if name not in self.linked:
             self.way.append(name)
@@ -57,7 +56,7 @@ class _Linker(Generic[M]):
             self.linked[name] = replace(machine, invoked=found) if found else machine
         return self.linked[name]
 
-    def invoked(self, name: str, invoke: Invoke) -> M | None:
+    def invoked(self, name: str, invoke: Invoke) -> MachineDefinition | None:
         """The machine that is invoked, None where it can't be."""
         report, where, wanted = self.reports[name], (*invoke.where, "behavior"), invoke.behavior
         if wanted in self.way:

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import fields
 from functools import partial
 from graphlib import CycleError, TopologicalSorter
-from typing import Any, TypeVar
+from typing import Any
 
 from lumen.interpreters.choreography import at_speed, mirrored, returning
 from lumen.language.diagnostics import NodePath, has_errors
@@ -22,8 +22,6 @@ DEFAULT_POSTURE = "Stand"
 MAX_KEYFRAMES = 20_000
 """In one list; the schema says so too, but reads every one of them before it does."""
 
-M = TypeVar("M", bound=MotionDefinition)
-
 
 def build_motion(
     data: Any,
@@ -33,8 +31,7 @@ def build_motion(
     body: Body,
     motions: Mapping[str, MotionDefinition] | None = None,
     broken: Collection[str] = (),
-    into: type[M] = MotionDefinition,  # type: ignore[assignment]
-) -> M | None:
+) -> MotionDefinition | None:
     """The motion that the data of `motions/NAME.yaml` describes, None where it moves nothing.
 
     `motions` are those that it may `play`, built before it; `broken` are names of files that can't be.
@@ -56,15 +53,13 @@ def build_motion(
             hint = "give its last keyframe a time above 0"
             report(ZERO_DURATION, ("keyframes",), "the motion takes no time", hint=hint, key=True)
         return None
-    return _finished(part, data, poses, name, into)
+    return _finished(part, data, poses, name)
 
 
 def build_motions(
     files: Mapping[str, tuple[Any, DocumentReport]],
     body: Body,
-    *,
-    into: type[M] = MotionDefinition,  # type: ignore[assignment]
-) -> dict[str, M]:
+) -> dict[str, MotionDefinition]:
     """Every motion of a project that can be built, from the data and the report of each by its name.
 
     Motions are built after those that they play; a circle of them is reported where it closes.
@@ -74,11 +69,11 @@ def build_motions(
     for name, other in circles:
         message = f"`{name}` plays `{other}`, which in the end plays `{name}`"
         files[name][1](MOTION_CYCLE, plays[name][other], message, hint="let one of them play something else")
-    built: dict[str, M] = {}
+    built: dict[str, MotionDefinition] = {}
     for name in order:
         data, report = files[name]
-        given = (into, body, {played: (built.get(played), played in files) for played in plays[name]})
-        build = partial(build_motion, data, report, name=name, body=body, motions=built, broken=files.keys(), into=into)
+        given = (body, {played: (built.get(played), played in files) for played in plays[name]})
+        build = partial(build_motion, data, report, name=name, body=body, motions=built, broken=files.keys())
         motion = report.memoize(("motion", report.document.file), given, partial(unless_too_deep, report, build))
         if motion is not None:
             built[name] = motion
@@ -96,7 +91,7 @@ def countable(data: Any, report: DocumentReport) -> bool:
     return False
 
 
-def _finished(part: MotionDefinition, data: Mapping[str, Any], poses: PoseReader, name: str, into: type[M]) -> M:
+def _finished(part: MotionDefinition, data: Mapping[str, Any], poses: PoseReader, name: str) -> MotionDefinition:
     """The whole motion: its speed, its side, the way back and where it comes from."""
     if "speed" in data and poses.number(data["speed"], ("speed",)):
         part = at_speed(part, data["speed"])
@@ -109,7 +104,7 @@ def _finished(part: MotionDefinition, data: Mapping[str, Any], poses: PoseReader
     values = {f.name: getattr(part, f.name) for f in fields(MotionDefinition)}
     values |= {"name": name, "start": start or "", "end": end or ""}
     values["origin"] = {joint: origin[joint] for joint in part.tracks if joint in origin}
-    return into(**values)
+    return MotionDefinition(**values)
 
 
 def _played(data: Any) -> Iterator[tuple[str, NodePath]]:

@@ -3,17 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import PurePosixPath
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
-from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.controllers import build_controller
-from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import Unreadable, fingerprint
 from lumen.loading.linking import link
@@ -47,7 +45,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
         found.say(MISSING_FILE, MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
     elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
         found.settings = main.built
-    models, behaviors = _each(found, "models", build_body), _each(found, "behaviors", _machine)
+    models, behaviors = _each(found, "models", build_body), _each(found, "behaviors", build_machine)
     sources = {name: (file.data, file.report) for name, file in models.items()}
     found.bodies = build_likes(_built(models), sources, found.names["models"])
     reports = {name: file.report for name, file in behaviors.items()}
@@ -127,10 +125,6 @@ def _read(found: ProjectDraft, file: str, content: bytes, kind: str, build: Buil
     if read is not None:
         found.reports[file] = read.report
     return read
-
-
-def _machine(data: Any, report: DocumentReport, *, name: str) -> MachineDefinition | None:
-    return build_machine(data, report, name=name, into=MachineDefinition)
 
 
 def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import Diagnostic, has_errors
@@ -17,11 +17,10 @@ from lumen.loading.plain import plain_document
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
 
-M = TypeVar("M", bound=MachineDefinition)
-Read = Callable[[str], tuple[Document | None, list[Diagnostic]]]
+ReadDocument = Callable[[str], tuple[Document | None, list[Diagnostic]]]
 
 
-def machine_from_file(path: Path, into: type[M]) -> M:
+def machine_from_file(path: Path) -> MachineDefinition:
     """The machine in a file; what it invokes stands beside it.
 
     Raises UsageError where a file can't be read, ProjectError for what they say.
@@ -34,28 +33,28 @@ def machine_from_file(path: Path, into: type[M]) -> M:
         except OSError as error:
             raise UsageError(f"can't read {files[name]}: {(error.strerror or str(error)).lower()}") from None
 
-    return _Family(read, files.keys(), into).head(path.stem)
+    return _Family(read, files.keys()).head(path.stem)
 
 
-def machine_from_dict(data: Mapping[str, Any], name: str, behaviors: Mapping[str, Any], into: type[M]) -> M:
+def machine_from_dict(data: Mapping[str, Any], name: str, behaviors: Mapping[str, Any]) -> MachineDefinition:
     """The machine that a dict of a file's shape describes; `behaviors` are those that it may invoke, by name.
 
     Raises ProjectError.
     """
     every = {**behaviors, name: data}
-    return _Family(lambda each: plain_document(each, every[each]), every.keys(), into).head(name)
+    return _Family(lambda each: plain_document(each, every[each]), every.keys()).head(name)
 
 
-class _Family(Generic[M]):
+class _Family:
     """A behaviour, those that it invokes, and those that they invoke."""
 
-    def __init__(self, read: Read, names: Collection[str], into: type[M]) -> None:
-        self.read, self.names, self.into = read, names, into
-        self.machines: dict[str, M] = {}
+    def __init__(self, read: ReadDocument, names: Collection[str]) -> None:
+        self.read, self.names = read, names
+        self.machines: dict[str, MachineDefinition] = {}
         self.reports: dict[str, DocumentReport] = {}
         self.loose: list[Diagnostic] = []
 
-    def head(self, name: str) -> M:
+    def head(self, name: str) -> MachineDefinition:
         """The machine of that name, its family linked; raises ProjectError."""
         waiting = [name]
         while waiting:
@@ -75,7 +74,7 @@ class _Family(Generic[M]):
         report = self.reports[name] = DocumentReport(document or Document(name, None))
         if document is None:
             return []
-        machine = build_machine(check_schema(document, "behavior", report), report, name=name, into=self.into)
+        machine = build_machine(check_schema(document, "behavior", report), report, name=name)
         if machine is None:
             if not has_errors([*diagnostics, *report.diagnostics]):
                 report(MISSING_KEY, (), "a behaviour needs `states`", hint="write `states:` with at least one state")

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import isfinite
-from typing import Any, TypeVar
+from typing import Any
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.stories import (
@@ -27,15 +27,13 @@ from lumen.loading.units import BAD_DURATION, seconds
 DEFAULT_WITHIN = 30.0
 """How long an expectation waits where it does not say [s]."""
 
-S = TypeVar("S", bound=Story)
 
-
-def build_story(data: Any, report: DocumentReport, *, name: str, into: type[S] = Story) -> S | None:  # type: ignore[assignment]
+def build_story(data: Any, report: DocumentReport, *, name: str) -> Story | None:
     """The story in the data of `behaviors/stories/NAME.yaml`, None where it has no steps."""
     if not isinstance(data, Mapping) or not data.get("steps"):
         return None
     rows = ((("steps", i), row) for i, row in enumerate(data["steps"]))
-    return into(
+    return Story(
         name=name,
         title=data.get("title", name),
         steps=tuple(StoryStep(action, where) for where, row in rows if (action := _action(row, report, where))),

@@ -10,7 +10,6 @@ from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.durations import duration
 from lumen.formats.xstate.json_source import JsonSource
 from lumen.language.diagnostics import NodePath, has_errors
-from lumen.language.machines import MachineDefinition
 from lumen.loading.behaviors import build_machine
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.plain import plain_document
@@ -91,7 +90,7 @@ class XStateActionReader:
         if document is None:
             return False
         report = DocumentReport(document)
-        build_machine(check_schema(document, "behavior", report), report, name="machine", into=MachineDefinition)
+        build_machine(check_schema(document, "behavior", report), report, name="machine")
         return not has_errors([*found, *(d for d in report.diagnostics if d.code != "unknown-state")])
 
     def guard(self, data: Any, where: NodePath) -> str | None:
