@@ -22,6 +22,7 @@ PURPOSES: Mapping[str, str] = {
     "fuzzy": "controllers, in Python",
     "motion": "motions, in Python",
     "bus": "a bus, by its address",
+    "project": "a project, checked",
     "runtime": "the loop, fifty times a second",
     "robots": "simulated, NAOqi, remote, recording",
     "buses": "memory, local, AMQP",

@@ -1,6 +1,7 @@
 """Statecharts from files and dicts, and a thin shell that runs one: `Machine`, `initial`, `step`, `Interpreter`."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -37,7 +38,7 @@ class Machine(machines.MachineDefinition):
 
         Raises UsageError where a file can't be read, ProjectError for what they say.
         """
-        return derived(cls, machine_from_file(Path(path)))
+        return cls._derived(machine_from_file(Path(path)), {})
 
     @classmethod
     def from_dict(
@@ -47,7 +48,15 @@ class Machine(machines.MachineDefinition):
 
         `behaviors` are those that it may invoke, each a dict of its own, by their names.
         """
-        return derived(cls, machine_from_dict(data, name, behaviors or {}))
+        return cls._derived(machine_from_dict(data, name, behaviors or {}), {})
+
+    @classmethod
+    def _derived(cls, machine: machines.MachineDefinition, known: dict[str, Self]) -> Self:
+        """The same machine in this class, and those that it invokes, each of which is made once."""
+        for name, other in machine.invoked.items():
+            if name not in known:
+                known[name] = cls._derived(other, known)
+        return derived(cls, replace(machine, invoked={name: known[name] for name in machine.invoked}))
 
 
 class Interpreter:
