@@ -1,11 +1,24 @@
-"""What all tests may ask for, how they are marked, and which examples hypothesis draws: the same in every run."""
+"""What all tests may ask for, how they are marked and measured, and which examples hypothesis draws: the same ones."""
 
 from hypothesis import settings
 
+from tests.cpu_time import (
+    pytest_addoption,
+    pytest_runtest_makereport,
+    pytest_runtest_protocol,
+    pytest_terminal_summary,
+)
 from tests.marking import pytest_collection_modifyitems
 from tests.rabbitmq import broker
 
-__all__ = ["broker", "pytest_collection_modifyitems"]
+__all__ = [
+    "broker",
+    "pytest_addoption",
+    "pytest_collection_modifyitems",
+    "pytest_runtest_makereport",
+    "pytest_runtest_protocol",
+    "pytest_terminal_summary",
+]
 
 settings.register_profile("seeded", derandomize=True, deadline=None)
 settings.load_profile("seeded")
