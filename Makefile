@@ -4,16 +4,23 @@ PYTHON ?= python3
 BIN := .venv/bin
 STORY ?= visitor
 SPEED ?= 4
+TESTS ?= tests
+LEFT_OUT := soak or slow or broker or physics or npm
 
-.PHONY: help run setup test soak broker check packages clean
+# Where Python may not write what it has compiled, each of the processes that tests start compiles everything again.
+unexport PYTHONDONTWRITEBYTECODE
+
+.PHONY: help run setup quick test soak broker check packages clean
 
 help:
 	@echo "make run      a visitor meets the simulated robot (STORY=visitor, SPEED=1|4|max)"
 	@echo "make setup    what the tests need: .venv, Debian packages, what npm has"
-	@echo "make test     everything, under 10 minutes"
+	@echo "make quick    the tests nearest to what changed first, without the long ones (TESTS=tests/FOLDER)"
+	@echo "make test     everything, with style, types and floors"
 	@echo "make broker   a private RabbitMQ on loopback, installed where it is missing"
 	@echo "make check    style, types and floors only"
-	@echo "make soak     the long tests in full"
+	@echo "make soak     the randomised tests with all their examples: hours"
+	@echo "make packages the Debian packages among that, where they are missing"
 	@echo "make clean    delete what all these made"
 
 run: .venv/run
@@ -21,6 +28,10 @@ run: .venv/run
 
 setup: .venv/test packages
 	@$(BIN)/python scripts/fetch.py
+
+quick: .venv/test
+	@$(BIN)/python scripts/nearest.py $(TESTS) | xargs $(BIN)/python -m pytest -n 2 --dist loadfile \
+		--no-loadscope-reorder --hypothesis-profile quick --cpu-limit 1 -m "not ($(LEFT_OUT))"
 
 test: setup check
 	@$(BIN)/lumen lint --strict

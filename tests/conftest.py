@@ -21,4 +21,5 @@ __all__ = [
 ]
 
 settings.register_profile("seeded", derandomize=True, deadline=None)
+settings.register_profile("quick", settings.get_profile("seeded"), max_examples=10)
 settings.load_profile("seeded")

@@ -91,6 +91,7 @@ def flooded(bus: Bus, count: int) -> None:
     undo()
 
 
+@pytest.mark.slow
 def test_what_waits_is_bounded_and_the_newest_stay(caplog: pytest.LogCaptureFixture) -> None:
     bus, seen = connect("memory://"), Collector()
     bus.subscribe("lumen.a", seen)
@@ -134,6 +135,7 @@ def test_coming_and_going_leaves_nothing_behind() -> None:
     assert not bus._hub.subscriptions  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 def test_a_flood_of_keys_fills_no_memory() -> None:
     bus, seen = connect("memory://"), Collector()
     bus.subscribe("lumen.#", seen)

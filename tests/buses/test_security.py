@@ -134,6 +134,7 @@ def old_broker(listener: socket.socket, version: str) -> None:
             threading.Thread(target=serve, args=(wire,), daemon=True).start()
 
 
+@pytest.mark.slow
 def test_a_broker_that_is_too_old_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     listener = socket.create_server(("127.0.0.1", 0))
     threading.Thread(target=old_broker, args=(listener, "3.6.10"), daemon=True).start()

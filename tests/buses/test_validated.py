@@ -127,6 +127,7 @@ VALUES = st.recursive(SCALARS, lambda v: st.lists(v, max_size=3), max_leaves=5)
 FIELDS = st.sampled_from(sorted({field for schema in SCHEMAS.values() for field in schema["properties"]}))
 
 
+@pytest.mark.slow
 @given(name=st.sampled_from(sorted(SCHEMAS)), body=st.dictionaries(FIELDS, VALUES, max_size=6) | VALUES)
 def test_a_quick_yes_is_never_wrong(name: str, body: Any) -> None:
     assert not quick(SCHEMAS[name])(body) or Draft202012Validator(SCHEMAS[name]).is_valid(body)

@@ -8,6 +8,7 @@ import lumen
 from lumen.cli.main import main
 
 
+@pytest.mark.slow
 def test_a_new_project_is_whole_and_clean(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "mine"
     assert main(["new", str(folder)]) == 0
@@ -54,6 +55,7 @@ def test_a_motion_on_the_simulated_robot(capsys: pytest.CaptureFixture[str]) -> 
     assert "finished, on its feet" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_film_of_a_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "goodbye.mp4"
     short = tmp_path / "nod.yaml"

@@ -15,6 +15,7 @@ CHART = """<scxml xmlns="http://www.w3.org/2005/07/scxml" initial="a">
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("format", ["scxml", "xstate"])
 def test_the_tour_goes_out_and_comes_back(format: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, back = tmp_path / "tour", tmp_path / "back.yaml"

@@ -60,6 +60,7 @@ def test_a_sheet_shows_every_variable_and_every_answer(head: Controller) -> None
     assert curve.ys[80] == pytest.approx(head.evaluate({"FaceXLoc": 80, "FaceYLoc": 120})["AngleX"])
 
 
+@pytest.mark.slow
 def test_two_inputs_are_a_surface_and_three_are_slices() -> None:
     sheet = controller_sheet(Controller.from_dict(SEVERAL))
     titles = [panel.title for panel in sheet.panels]
@@ -97,6 +98,7 @@ def test_a_motion_shows_keys_and_limits() -> None:
     assert max(hand.lines[0].ys) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_the_image_is_there_and_not_blank(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -108,6 +110,7 @@ def test_the_image_is_there_and_not_blank(
     assert pixels.shape[0] > 300
 
 
+@pytest.mark.slow
 def test_the_text_of_an_svg_is_text(tmp_path: Path, head: Controller) -> None:
     file = tmp_path / "at.svg"
     assert main(["plot", HEAD, "--at", "FaceXLoc=80", "FaceYLoc=120", "-o", str(file)]) == 0
@@ -118,6 +121,7 @@ def test_the_text_of_an_svg_is_text(tmp_path: Path, head: Controller) -> None:
     assert draw(small, ".svg") == draw(small, ".svg")
 
 
+@pytest.mark.slow
 def test_any_name_can_be_drawn(head: Controller) -> None:
     sheet = replace(controller_sheet(head), title=r"$\frac{ 50 % of $ äöü", panels=controller_sheet(head).panels[:1])
     assert Image.open(io.BytesIO(draw(sheet, ".png"))).size[0] > 0

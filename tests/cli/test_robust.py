@@ -58,6 +58,7 @@ def greeted(show: WholeNode) -> None:
     assert "greet" in states(show)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("key", "body"),
     [
@@ -89,6 +90,7 @@ def edit(folder: Path, old: str, new: str, file: str = "behaviors/tour.yaml") ->
     return lumen.load(folder)
 
 
+@pytest.mark.slow
 def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Path, show: WholeNode) -> None:
     greeted(show)
     live(show, 6.0)
@@ -101,6 +103,7 @@ def test_a_changed_after_of_the_active_state_runs_from_when_it_was_set(copy: Pat
     assert show.loop.clock.now() < asked + 10.5
 
 
+@pytest.mark.slow
 def test_routes_that_moved_are_spoken_and_heard_on_their_new_keys(copy: Path, show: WholeNode) -> None:
     edit(copy, "lumen.audio.speech.recognition", "lumen.audio.ears", "lumen.yaml")
     project = edit(copy, "lumen.visual.face.detection", "lumen.visual.eyes", "lumen.yaml")
@@ -113,6 +116,7 @@ def test_routes_that_moved_are_spoken_and_heard_on_their_new_keys(copy: Path, sh
     assert show.loop.runtime.snapshot.context["visitor"] == "Ada"
 
 
+@pytest.mark.slow
 def test_a_livelock_drops_the_event_that_began_it(copy: Path) -> None:
     loop = "  spin:\n    initial: still\n    states:\n      still: {on: {stop: x}}\n"
     loop += "      x: {always: {guard: 'context.battery == 100', target: y}}\n"

@@ -19,6 +19,7 @@ from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
 
 
+@pytest.mark.slow
 def test_a_story_is_told_line_by_line_and_summed_up(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor"]) == 0
     told = capsys.readouterr().out.replace("\n" + " " * 18, " ")
@@ -91,6 +92,7 @@ def test_so_much_time_and_no_more(copy: Path, capsys: pytest.CaptureFixture[str]
     assert "Ended before the story did: 0:05 of simulated time" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_the_tour_in_indonesian(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = ["run", str(copy), "--robot", "recording", "--speed", "max", "--story", "visitor", "--for", "12s"]
     assert main([*run, "--language", "id"]) == 1
@@ -116,6 +118,7 @@ def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> N
     ]
 
 
+@pytest.mark.slow
 def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:
     """A person on a pipe: each line waits for what it answers."""
     run = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", "max"]
@@ -137,6 +140,7 @@ def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:
     assert "visitor  walks away" in told
 
 
+@pytest.mark.slow
 def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) -> None:
     log = tmp_path / "told.txt"
     story = copy / "behaviors" / "stories" / "long.yaml"

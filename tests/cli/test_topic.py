@@ -82,6 +82,7 @@ def run(exhibition: Exhibition, capsys: pytest.CaptureFixture[str]) -> Run:
     return command
 
 
+@pytest.mark.slow
 def test_echo_prints_messages_and_nothing_that_a_terminal_obeys(run: Run) -> None:
     code, out, _ = run("topic", "echo", "sonar", "--count", "2")
     assert (code, out) == (0, f'{SONAR}  {{"rightSensor": 0.5, "leftSensor": 2.55}}\n' * 2)
@@ -95,6 +96,7 @@ def test_echo_prints_messages_and_nothing_that_a_terminal_obeys(run: Run) -> Non
     }
 
 
+@pytest.mark.slow
 def test_list_hz_and_bw_measure(run: Run) -> None:
     listed = {row["key"]: row for row in _topics(run, "list")}
     assert listed[SONAR]["messages"] >= 2
@@ -114,6 +116,7 @@ def _topics(run: Run, *words: str) -> list[dict[str, Any]]:
     return list(json.loads(out)["topics"])
 
 
+@pytest.mark.slow
 def test_pub_sends_what_fits_its_route_and_prints_the_answer(run: Run) -> None:
     rest = '{"type": "motion", "method": "rest"}'
     assert run("topic", "pub", "command", rest, "--wait", "10s") == (0, "command finished\n", "")

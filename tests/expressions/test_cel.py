@@ -97,6 +97,7 @@ def test_the_table_has_these_rows() -> None:
     assert re.findall(r"^\| (.*?) \|", table, re.MULTILINE)[2:] == list(DIFFERENT)
 
 
+@pytest.mark.slow
 @seed(2015)
 @settings(BUSY, max_examples=300)
 @given(expressions(), scopes)
@@ -122,6 +123,7 @@ def flat(draw: st.DrawFn) -> str:
     return f"{row} ? {draw(OPERANDS)} : {draw(flat())}" if draw(st.integers(0, 5)) == 5 else row
 
 
+@pytest.mark.slow
 @seed(2015)
 @settings(BUSY, max_examples=500)
 @given(flat())

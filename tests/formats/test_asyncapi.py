@@ -69,6 +69,7 @@ def test_no_password_gets_into_the_document() -> None:
     assert "broker.hall:5671" in text
 
 
+@pytest.mark.slow
 def test_the_command_writes_it(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert main(["export", "asyncapi", "-o", str(tmp_path / "lumen.yaml"), "--project", str(ROOT)]) == 0
     assert yaml.safe_load((tmp_path / "lumen.yaml").read_text())["asyncapi"] == "3.0.0"

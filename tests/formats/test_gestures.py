@@ -246,6 +246,7 @@ def test_no_file_is_a_traceback(ending: str, place: int, junk: bytes) -> None:
     assert data["keyframes"]
 
 
+@pytest.mark.slow
 def test_the_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, out = tmp_path / "wave.motion", tmp_path / "wave.yaml"
     file.write_text(WEBOTS)

@@ -111,6 +111,7 @@ ELEMENTS = st.recursive(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.lists(ELEMENTS, min_size=1, max_size=5))
 def test_any_elements_give_a_machine_or_a_line(elements: list[str]) -> None:
@@ -130,6 +131,7 @@ JSON_VALUES = st.recursive(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.dictionaries(st.sampled_from(["a", "b", "c d"]), JSON_VALUES, min_size=1, max_size=3), JSON_VALUES)
 def test_any_json_gives_a_machine_or_a_line(states: dict[str, Any], on: Any) -> None:
@@ -155,6 +157,7 @@ def test_what_is_whole_is_not_complained_of() -> None:
     assert not has_errors(read_scxml("chart", chart, "chart")[1])
 
 
+@pytest.mark.slow
 def test_ten_thousand_states_take_seconds() -> None:
     """And so do candidates whose order no map can keep, and values that are given to each other in a chain."""
     order = b'<transition event="e%d.x"/><transition event="e%d"/><transition event="e%d.x"/>'

@@ -61,12 +61,14 @@ def settles(format: str, chart: dict[str, Any]) -> None:
     assert json.dumps(document.data) == json.dumps(once)
 
 
+@pytest.mark.slow
 @FEW
 @given(chart=charts(), happenings=HAPPENINGS)
 def test_what_comes_back_from_scxml_behaves_the_same(chart: dict[str, Any], happenings: list[str]) -> None:
     behaves_the_same("scxml", chart, happenings)
 
 
+@pytest.mark.slow
 @FEW
 @given(chart=charts(deep=False), happenings=HAPPENINGS)
 def test_what_comes_back_from_xstate_behaves_the_same(chart: dict[str, Any], happenings: list[str]) -> None:
@@ -76,6 +78,7 @@ def test_what_comes_back_from_xstate_behaves_the_same(chart: dict[str, Any], hap
     behaves_the_same("xstate", chart, happenings)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("format", FORMATS)
 @FEW
 @given(chart=charts())

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 
 from lumen.formats.conversion_findings import dotted
@@ -65,6 +66,7 @@ def _faults(element: ET.Element) -> Iterator[str]:
         yield "elseif after else"
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(chart=charts())
 def test_any_machine(chart: dict[str, Any]) -> None:

@@ -97,6 +97,7 @@ def test_a_missing_file_and_a_wrong_one_say_so(tmp_path_factory: pytest.TempPath
         Controller.load(file)
 
 
+@pytest.mark.slow
 def test_loading_and_one_evaluation_need_no_numpy() -> None:
     code = (
         "import sys; from lumen.fuzzy import Controller; c = Controller.load('fuzzy/head.yaml');"

@@ -53,6 +53,7 @@ def test_the_layered_centroid_is_the_centroid_of_the_sampled_set(
         assert layered.crisp([row[i] for row in rows]) == pytest.approx(expected[i], abs=1e-7, nan_ok=True)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=60)
 @given(
     st.sampled_from(T_NORMS), st.sampled_from(S_NORMS), st.sampled_from(T_NORMS), st.sampled_from(S_NORMS),

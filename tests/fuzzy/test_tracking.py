@@ -72,6 +72,7 @@ def test_an_integer_beyond_all_floats_is_no_number(plain: Tracker) -> None:
     assert plain.see({"x": 10**400, "y": 120}, 10.0) is None
 
 
+@pytest.mark.slow
 @given(st.floats(-2.1, 2.1), st.floats(-0.7, 0.6), st.integers(0, 319), st.integers(0, 239))
 def test_every_limit_holds(yaw: float, pitch: float, x: int, y: int) -> None:
     tracker = Tracker(CONTROLLER, HEAD)

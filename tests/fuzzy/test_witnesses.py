@@ -25,6 +25,7 @@ def scikit_fuzzy(head: Controller, output: str, x: float) -> float:
     return float(defuzz(universe, whole, "centroid"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "output"), [("FaceXLoc", "AngleX"), ("FaceYLoc", "AngleY")])
 def test_scikit_fuzzy_says_the_same_of_the_head_controller(name: str, output: str) -> None:
     head = Controller.load("fuzzy/head.yaml")

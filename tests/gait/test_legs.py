@@ -28,6 +28,7 @@ side = st.sampled_from(SIDES)
 turns = st.floats(-0.25, 0.25)
 
 
+@pytest.mark.slow
 @given(side, turns, st.floats(-0.5, -0.2), turns, st.floats(0.2, 1.2), st.floats(-0.8, 0.0), turns)
 def test_bending_a_leg_to_where_its_sole_is_gives_the_angles_back(
     leg: Side, yaw: float, pitch: float, roll: float, knee: float, ankle: float, tilt: float
@@ -37,6 +38,7 @@ def test_bending_a_leg_to_where_its_sole_is_gives_the_angles_back(
     assert bend(leg, rotation, place + 0.04511 * rotation[:, 2]) == pytest.approx(tuple(angles.values()), abs=1e-6)
 
 
+@pytest.mark.slow
 @given(st.floats(-0.06, 0.06), st.floats(0.09, 0.15), turns, st.floats(-0.02, 0.02), st.floats(-0.03, 0.03), turns)
 def test_standing_on_two_feet_both_hips_agree_and_the_feet_are_where_they_should_be(
     ahead: float, apart: float, turned: float, x: float, y: float, heading: float

@@ -32,6 +32,7 @@ def lint(files: dict[str, bytes]) -> None:
         assert diagnostic.message
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.sampled_from(FILES), st.binary(max_size=200))
 def test_random_bytes(file: str, content: bytes) -> None:
@@ -44,6 +45,7 @@ def test_a_file_cut_anywhere(file: str, data: st.DataObject) -> None:
     lint({**BASE, file: BASE[file][: data.draw(st.integers(0, len(BASE[file])))]})
 
 
+@pytest.mark.slow
 @settings(max_examples=80, deadline=None)
 @given(st.sampled_from(TEXTS), st.data())
 def test_a_line_gone_doubled_or_indented(file: str, data: st.DataObject) -> None:
@@ -54,6 +56,7 @@ def test_a_line_gone_doubled_or_indented(file: str, data: st.DataObject) -> None
     lint({**BASE, file: b"\n".join(lines)})
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from([file for file in FILES if file.endswith(".yaml")]), st.data())
 def test_any_value_in_place_of_any_other(file: str, data: st.DataObject) -> None:
@@ -73,6 +76,7 @@ def test_any_file_missing(file: str) -> None:
     lint({name: content for name, content in BASE.items() if name != file})
 
 
+@pytest.mark.slow
 def test_an_alias_bomb_is_too_large() -> None:
     lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x, x]"]
     lines += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]" for i in range(1, 10)]
@@ -80,6 +84,7 @@ def test_an_alias_bomb_is_too_large() -> None:
     assert "too-large" in {d.code for d in diagnostics}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("depth", [40, 95, 5_000])
 def test_states_nested_without_end(depth: int) -> None:
     text = "states: {a: " * depth + "{}" + "}" * depth

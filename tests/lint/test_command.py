@@ -103,6 +103,7 @@ def test_an_empty_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert "lumen.yaml:1:1 error[missing-file]" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_every_error_at_once_and_no_traceback(project: Path) -> None:
     (project / "motions/wave.yaml").write_bytes(b"\xff\xfe")
     edit(project / "lumen.yaml", "behavior:", "behaviour:")
@@ -201,6 +202,7 @@ def test_select_and_ignore(project: Path, capsys: pytest.CaptureFixture[str]) ->
         assert [d["code"] for d in json.loads(capsys.readouterr().out)["diagnostics"]] == codes
 
 
+@pytest.mark.slow
 def test_the_verdict_counts_though_nobody_reads_it(project: Path) -> None:
     edit(project / "lumen.yaml", "story: hello", "story: helo")
     command = f"set -o pipefail; {sys.executable} -m lumen lint {project} | true"
@@ -211,6 +213,7 @@ def test_the_verdict_counts_though_nobody_reads_it(project: Path) -> None:
     assert (done.returncode, done.stderr) == (1, "")
 
 
+@pytest.mark.slow
 def test_where_nothing_can_be_printed_that_is_said(project: Path) -> None:
     command = f"{sys.executable} -m lumen lint {project} > /dev/full"
     environment = {"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin"}
@@ -257,6 +260,7 @@ def test_explain_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
     assert [entry["code"] for entry in json.loads(capsys.readouterr().out)["codes"]] == list(CODES)
 
 
+@pytest.mark.slow
 def test_lint_imports_nothing_heavy(project: Path) -> None:
     code = (
         "import sys; from lumen.cli.main import main; main(['lint', sys.argv[1]]);"

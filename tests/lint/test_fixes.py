@@ -127,6 +127,7 @@ def test_many_slips_cost_few_looks() -> None:
     assert (len(done), len(looks)) == (64, 2)
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(st.sampled_from(sorted(f for f in BASE if f.endswith(".yaml"))), st.data())
 def test_every_proposal_is_within_the_file_and_makes_its_finding_go_or_is_not_made(

@@ -56,6 +56,7 @@ def test_the_hook_runs_for_every_file_of_a_project_and_no_other() -> None:
     assert not [file for file in ("README.md", "engine/lumen/bus.py", "docs/yaml.md", "a.yaml") if files.search(file)]
 
 
+@pytest.mark.slow
 def test_the_hook_passes_and_fails(repository: Path) -> None:
     project = repository / "stand"
     assert shell(HOOK["entry"], project).returncode == 0
@@ -66,6 +67,7 @@ def test_the_hook_passes_and_fails(repository: Path) -> None:
     assert "unknown-state" in done.stdout
 
 
+@pytest.mark.slow
 def test_the_action_annotates_at_the_word(repository: Path) -> None:
     steps = ACTION["runs"]["steps"]
     assert ACTION["runs"]["using"] == "composite"

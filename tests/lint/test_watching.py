@@ -46,6 +46,7 @@ def answer(process: Guarded[str]) -> str:
     raise AssertionError(f"it ended: {said}")
 
 
+@pytest.mark.slow
 def test_a_saved_file_is_answered(project: Path, watching: Guarded[str]) -> None:
     assert "nothing wrong; " in answer(watching)
     tour = project / "behaviors/tour.yaml"

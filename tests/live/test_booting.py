@@ -51,6 +51,7 @@ def fail_with(monkeypatch: pytest.MonkeyPatch, hash: str, error: Exception) -> N
     monkeypatch.setattr(WholeNode, "tick", tick)
 
 
+@pytest.mark.slow
 def test_files_that_end_every_start_give_way_to_the_last_good_ones(
     copy: Path, run: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -75,6 +76,7 @@ def test_files_that_end_every_start_give_way_to_the_last_good_ones(
     assert "THESE FILES" not in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_what_a_start_has_left_aside_is_taken_once_it_changes(copy: Path) -> None:
     before = lumen.load(copy)
     save(copy, SORRY, PARDON)
@@ -87,6 +89,7 @@ def test_what_a_start_has_left_aside_is_taken_once_it_changes(copy: Path) -> Non
     one.show.close()
 
 
+@pytest.mark.slow
 def test_a_fault_of_the_world_is_no_fault_of_the_files(
     copy: Path, run: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -97,6 +100,7 @@ def test_a_fault_of_the_world_is_no_fault_of_the_files(
     assert CrashCounter(Home(home_of(copy))).count(hash) == 0
 
 
+@pytest.mark.slow
 def test_bad_files_and_last_good_are_journaled(copy: Path, run: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(run) == 0
     save(copy, "onDone: any_question", "onDone: any_questoin")
@@ -109,6 +113,7 @@ def test_bad_files_and_last_good_are_journaled(copy: Path, run: list[str], capsy
     assert entry["diagnostics"][0]["code"] == "unknown-state"
 
 
+@pytest.mark.slow
 def test_a_start_on_newer_files_is_a_reload_and_journaled(copy: Path, run: list[str]) -> None:
     one = Live(copy)
     before = one.show.loop.project.hash
@@ -154,6 +159,7 @@ def test_where_nothing_else_is_known_to_be_good_the_files_are_tried_again(copy: 
     run_directory.close(forget=False)
 
 
+@pytest.mark.slow
 def test_what_was_replaced_has_ended_nothing_and_what_failed_has(live: Live) -> None:
     trials, exhibition = live.records.trials, live.show.loop
     assert trials

@@ -37,6 +37,7 @@ def manual(copy: Path) -> Iterator[Live]:
     one.show.close()
 
 
+@pytest.mark.slow
 def test_a_saved_text_is_in_force_told_and_journaled(live: Live) -> None:
     before = live.show.loop.project.hash
     live.edit(SORRY, PARDON)
@@ -50,6 +51,7 @@ def test_a_saved_text_is_in_force_told_and_journaled(live: Live) -> None:
     assert set(entry["took"]) == {"loading", "stories", "applying", "waiting"}
 
 
+@pytest.mark.slow
 def test_by_hand_it_is_staged_until_somebody_applies_it(manual: Live) -> None:
     before = manual.show.loop.project
     manual.edit(SORRY, PARDON)
@@ -61,6 +63,7 @@ def test_by_hand_it_is_staged_until_somebody_applies_it(manual: Live) -> None:
     assert manual.ask("apply")["verdict"] == "refused"
 
 
+@pytest.mark.slow
 def test_a_rollback_brings_back_what_ran_before_and_stays(live: Live) -> None:
     before = live.show.loop.project.hash
     assert "nothing to go back to" in live.ask("rollback")["reason"]
@@ -75,6 +78,7 @@ def test_a_rollback_brings_back_what_ran_before_and_stays(live: Live) -> None:
     assert live.show.loop.project.hash != before
 
 
+@pytest.mark.slow
 def test_a_dry_run_says_what_would_be_and_changes_nothing(manual: Live) -> None:
     before = manual.show.loop.project
     manual.edit(SORRY, PARDON)
@@ -85,6 +89,7 @@ def test_a_dry_run_says_what_would_be_and_changes_nothing(manual: Live) -> None:
     assert manual.show.loop.project is before
 
 
+@pytest.mark.slow
 def test_reload_answers_with_the_diagnostics(live: Live) -> None:
     live.edit("onDone: any_question", "onDone: any_questoin")
     answer = live.ask("reload")
@@ -128,6 +133,7 @@ def waving(copy: Path) -> Iterator[Live]:
     one.show.close()
 
 
+@pytest.mark.slow
 def test_it_waits_for_what_the_robot_does_and_now_does_not(waving: Live) -> None:
     waving.greet()
     waving.until(lambda: "goodbye" in waving.states)
@@ -138,6 +144,7 @@ def test_it_waits_for_what_the_robot_does_and_now_does_not(waving: Live) -> None
     assert waving.verdicts[-2:] == ["waiting", "applied"]
 
 
+@pytest.mark.slow
 def test_patience_ends(waving: Live) -> None:
     waving.edit("reload: {patience: 60s}", "reload: {patience: 10ms}", "lumen.yaml")
     waving.until_told("are active")
@@ -165,6 +172,7 @@ def test_a_story_saved_with_the_files_is_played_and_refuses_them(live: Live) -> 
     assert live.show.loop.project is before
 
 
+@pytest.mark.slow
 def test_a_story_that_no_longer_holds_is_told_after_the_files_are_in_force(live: Live) -> None:
     refusal = "{guard: \"heard(event.data.result, 'no_more')\", target: offer}"
     live.edit(refusal, refusal.replace("offer", "how_are_you"))
@@ -172,6 +180,7 @@ def test_a_story_that_no_longer_holds_is_told_after_the_files_are_in_force(live:
     live.until_told("the story `refuses` does not hold with these files")
 
 
+@pytest.mark.slow
 def test_the_same_in_another_process(copy: Path) -> None:
     one = Live(copy, apart=True)
     one.edit(SORRY, PARDON)

@@ -9,6 +9,7 @@ from lumen.language.stories import Visitor
 from tests.live.shows import Live
 
 
+@pytest.mark.slow
 def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
     live.edit("en: I am sorry, I did not understand that.", "en: Come again, please?")
     live.until_told("are active")
@@ -22,6 +23,7 @@ def test_a_saved_text_is_the_next_sentence(live: Live) -> None:
     live.until_told("“Come again, please?”")
 
 
+@pytest.mark.slow
 def test_the_visitors_name_survives(live: Live) -> None:
     walker = live.show.visitor
     assert walker
@@ -37,6 +39,7 @@ def test_the_visitors_name_survives(live: Live) -> None:
     live.until_told("“Wonderful, Ada!”")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
@@ -67,6 +70,7 @@ def storyless(copy: Path) -> None:
     main.write_text(main.read_text("utf-8").replace("story: refuses", "#"), "utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("storyless")
 def test_a_state_that_is_active_is_not_taken_away(live: Live) -> None:
     walker = live.show.visitor

@@ -18,6 +18,7 @@ def fail(*_: Any, **__: Any) -> Any:
     raise ZeroDivisionError("a fault of ours")
 
 
+@pytest.mark.slow
 def test_a_fault_leaves_the_old_bundle_running(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     before = live.show.loop.project
     with monkeypatch.context() as patched:
@@ -29,6 +30,7 @@ def test_a_fault_leaves_the_old_bundle_running(live: Live, monkeypatch: pytest.M
     live.until_told("the saved files are active")
 
 
+@pytest.mark.slow
 def test_a_bus_that_refuses_is_told(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     before, usual = live.show.loop.project, live.show.loop.inbox.listen
 
@@ -43,6 +45,7 @@ def test_a_bus_that_refuses_is_told(live: Live, monkeypatch: pytest.MonkeyPatch)
     assert live.show.loop.project is before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("error", [ZeroDivisionError("a fault"), LumenError("it never comes to rest")])
 def test_a_bundle_that_fails_in_its_probation_is_taken_back_and_no_event_lost(
     live: Live, monkeypatch: pytest.MonkeyPatch, error: Exception
@@ -66,6 +69,7 @@ def test_a_bundle_that_fails_in_its_probation_is_taken_back_and_no_event_lost(
     assert live.verdicts[-1] == "rolled back"
 
 
+@pytest.mark.slow
 def test_after_its_probation_a_bundle_is_on_its_own(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     live.greet()
     live.edit(SORRY, PARDON)
@@ -80,6 +84,7 @@ def test_after_its_probation_a_bundle_is_on_its_own(live: Live, monkeypatch: pyt
     assert live.show.loop.project.hash == after
 
 
+@pytest.mark.slow
 def test_what_performs_may_fail_too(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     before = live.show.loop.project.hash
     live.edit(SORRY, PARDON)
@@ -96,6 +101,7 @@ def test_what_performs_may_fail_too(live: Live, monkeypatch: pytest.MonkeyPatch)
     assert live.show.loop.project.hash == before
 
 
+@pytest.mark.slow
 def test_where_there_is_no_way_back_it_begins_anew(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     live.greet()
     live.speak("my name is Ada", "how_are_you")

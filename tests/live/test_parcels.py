@@ -14,6 +14,7 @@ TOUR = "behaviors/tour.yaml"
 SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
 
 
+@pytest.mark.slow
 def test_a_project_arrives_as_it_was(copy: Path) -> None:
     sent = lumen.load(copy)
     came = DeltaDecoder().unpack(DeltaEncoder().pack(sent))
@@ -23,6 +24,7 @@ def test_a_project_arrives_as_it_was(copy: Path) -> None:
     assert came.place(TOUR, where) == sent.place(TOUR, where)
 
 
+@pytest.mark.slow
 def test_only_what_differs_travels_and_is_new(copy: Path) -> None:
     sender, receiver = DeltaEncoder(), DeltaDecoder()
     before = receiver.unpack(sender.pack(lumen.load(copy)))
@@ -43,6 +45,7 @@ def test_a_project_travels_after_its_stories_were_played(copy: Path) -> None:
     assert DeltaDecoder().unpack(DeltaEncoder().pack(project)) == project
 
 
+@pytest.mark.slow
 def test_the_same_process_judges_again_and_again(copy: Path, caplog: pytest.LogCaptureFixture) -> None:
     jury = ValidationWorker(copy)
     jury.begin()

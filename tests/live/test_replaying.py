@@ -16,6 +16,7 @@ from tests.live.shows import Live
 FINE = "en: [I am glad to hear that.,"
 
 
+@pytest.mark.slow
 def test_a_trace_replays_across_reloads_to_the_same_steps(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     live = Live(copy)
     runtime, trace = live.show.loop.runtime, list[tuple[str, float, Any]]()

@@ -49,6 +49,7 @@ def resumed(folder: Path) -> Resumption | str:
     return found
 
 
+@pytest.mark.slow
 def test_it_goes_on_where_it_was_and_what_was_under_way_has_failed(copy: Path) -> None:
     one = Live(copy)
     crashed(one)
@@ -66,6 +67,7 @@ def test_it_goes_on_where_it_was_and_what_was_under_way_has_failed(copy: Path) -
     again.show.close()
 
 
+@pytest.mark.slow
 def test_newer_files_are_a_reload(copy: Path) -> None:
     one = Live(copy)
     crashed(one)
@@ -87,6 +89,7 @@ def test_timers_go_on_while_nobody_is_there(copy: Path) -> None:
     assert later.due == pytest.approx(timer.due - snapshot.at - 20.0)
 
 
+@pytest.mark.slow
 def test_what_is_too_old_or_damaged_is_begun_anew(copy: Path) -> None:
     one = Live(copy)
     crashed(one)
@@ -132,6 +135,7 @@ def test_only_what_is_new_is_written(copy: Path) -> None:
     one.show.close()
 
 
+@pytest.mark.slow
 def test_a_disk_that_refuses_ends_nothing(copy: Path, caplog: pytest.LogCaptureFixture) -> None:
     one = Live(copy)
     (one.home.folder / f"{SNAPSHOT_FILE}.new").mkdir()
@@ -141,6 +145,7 @@ def test_a_disk_that_refuses_ends_nothing(copy: Path, caplog: pytest.LogCaptureF
     assert "can't be kept" in caplog.text
 
 
+@pytest.mark.slow
 def test_the_journal_is_bounded_and_whole(tmp_path: Path) -> None:
     journal = Journal(tmp_path)
     for number in range(3_000):
@@ -173,6 +178,7 @@ def silent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", None)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("silent")
 def test_a_run_that_is_killed_is_gone_on_with(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with running(copy) as process:
@@ -198,6 +204,7 @@ def test_a_run_that_is_killed_is_gone_on_with(copy: Path, capsys: pytest.Capture
     assert "THE FILES HAVE ERRORS" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("silent")
 def test_a_second_run_of_a_project_leaves_the_first_alone(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with running(copy):

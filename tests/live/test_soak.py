@@ -13,6 +13,7 @@ def holds(found: Outcome) -> None:
     assert found.handles[1] <= found.handles[0]
 
 
+@pytest.mark.slow
 def test_fifty_edits_under_load() -> None:
     holds(soak(50, quiet=0.12))
 

@@ -94,6 +94,7 @@ def some(found: list[CodeType], every: bool) -> list[CodeType]:
     return found if every else random.Random(1).sample(found, SAMPLE)
 
 
+@pytest.mark.slow
 @every
 def test_a_fault_in_loading_or_linting(bench: Bench, every: bool) -> None:
     saved, running = bench.saved(), bench.live.show.loop.project
@@ -116,6 +117,7 @@ def fresh(validation: Validation) -> Callable[[], Validation]:
     return lambda: replace(validation, project=pickle.loads(packed), running=None)
 
 
+@pytest.mark.slow
 @every
 @pytest.mark.parametrize("forth", [True, False])
 def test_a_fault_in_planning_or_applying(bench: Bench, forth: bool, every: bool) -> None:

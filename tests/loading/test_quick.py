@@ -58,6 +58,7 @@ def test_every_shipped_file_gets_a_quick_yes(kind: str, document: Document) -> N
     assert QUICK[kind](document.data)
 
 
+@pytest.mark.slow
 @settings(max_examples=250)
 @given(st.sampled_from(SMALL), st.randoms(use_true_random=False))
 def test_a_quick_yes_is_never_wrong(chosen: tuple[str, Document], random: Random) -> None:

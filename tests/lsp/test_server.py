@@ -159,6 +159,7 @@ def test_a_file_of_no_project(client: Client, tmp_path: Path) -> None:
         assert client.request("textDocument/completion", **params) == []
 
 
+@pytest.mark.slow
 def test_utf_8_where_the_client_prefers_it(project: Path) -> None:
     with Client(project, encoding="utf-8") as client:
         assert client.capabilities["positionEncoding"] == "utf-8"

@@ -128,6 +128,7 @@ def test_hover_over_a_finding_shows_its_rule() -> None:
     assert "unknown-state" in hover(analysis, *here)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("file", "text", "name", "edits", "moved"),
     [
@@ -168,6 +169,7 @@ def test_names_that_can_not_be_given(file: str, text: str, name: str, reason: st
         rename(SHIPPED, word, name)
 
 
+@pytest.mark.slow
 def test_every_state_key_phrase_and_route_can_be_renamed() -> None:
     """A sample of all words that can: the project after it says the same, so it has no findings."""
     uses = [w for w in SHIPPED.index.uses if w.defines and w.text and w.place.file in (TOUR, "lumen.yaml")]
@@ -192,6 +194,7 @@ def test_words_stand_where_they_say() -> None:
         assert lines[word.place.file][word.place.line - 1][word.place.column - 1 :].startswith(word.text)
 
 
+@pytest.mark.slow
 def test_nothing_raises_whatever_the_files_hold() -> None:
     nursery, random = Nursery(), Random(4)
     for number in range(12):

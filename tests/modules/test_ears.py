@@ -134,6 +134,7 @@ def sphinx(project: Project) -> Sphinx:
     return sphinx
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "voice"),
     [
@@ -151,6 +152,7 @@ def test_silence_is_nothing_also_to_who_expects_something(sphinx: Sphinx) -> Non
     assert sphinx.recognise(Sound(16_000, b"")) == ""
 
 
+@pytest.mark.slow
 def test_words_that_were_spoken_are_recognised_on_the_bus(stand: Make, sphinx: Sphinx) -> None:
     here = stand()
     listening(here, sphinx)
@@ -170,6 +172,7 @@ def test_expects_what_the_tour_listens_for_and_what_visitors_say_in_stories(stan
     assert parrot.expected == []
 
 
+@pytest.mark.slow
 def test_another_language_model_for_another_tour(sphinx: Sphinx, project: Project) -> None:
     sound = espeak().speak("kucing", "id", pace=150)
     assert sphinx.recognise(sound) != "kucing"

@@ -90,6 +90,7 @@ def test_finds_the_drawn_face_where_it_is(eyes: Make, drawn: Mapping[Any, Any]) 
         assert faces.bodies[-1] == {"x": round(seen["x"]), "y": round(seen["y"]), "time": float(number)}
 
 
+@pytest.mark.slow
 def test_finds_a_photographed_face_at_any_size(eyes: Make, photographed: Pixels) -> None:
     here = eyes()
     faces = here.listen("lumen.visual.face.detection")
@@ -102,6 +103,7 @@ def test_finds_a_photographed_face_at_any_size(eyes: Make, photographed: Pixels)
         assert math.dist((face["x"], face["y"]), (179, 96)) < 8.0
 
 
+@pytest.mark.slow
 def test_finds_nobody_where_nobody_is(eyes: Make) -> None:
     here = eyes()
     seen = here.listen("lumen.visual.#")
@@ -121,6 +123,7 @@ def test_sees_that_there_are_people(eyes: Make, drawn: Mapping[Any, Any]) -> Non
     assert abs(people.wait(1)[0]["x"] - x) < 40
 
 
+@pytest.mark.slow
 def test_who_shows_their_face_is_a_person(photographed: Pixels) -> None:
     grey, finder = cv2.cvtColor(photographed, cv2.COLOR_RGB2GRAY), PersonDetector()
     assert finder.people(grey) == [], "from the chest up there is no whole person"
@@ -157,6 +160,7 @@ def test_learns_who_somebody_is_and_tells_them_from_others(
     assert FaceGallery(file, lambda: 0.0).names == []
 
 
+@pytest.mark.slow
 def test_faces_that_were_learnt_long_ago_are_deleted(photographed: Pixels) -> None:
     grey = cv2.cvtColor(photographed, cv2.COLOR_RGB2GRAY)
     (face, *_) = PersonDetector().faces(grey)
@@ -168,6 +172,7 @@ def test_faces_that_were_learnt_long_ago_are_deleted(photographed: Pixels) -> No
     assert known.who(grey, face) == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
@@ -213,6 +218,7 @@ def test_faces_that_are_damaged(tmp_path: Path) -> None:
         FaceGallery(tmp_path / "faces.npz", lambda: 0.0)
 
 
+@pytest.mark.slow
 def test_a_video_file(stand: Make, project: Project, photographed: Pixels, tmp_path: Path) -> None:
     writer = cv2.VideoWriter(str(tmp_path / "v.avi"), cv2.VideoWriter.fourcc(*"MJPG"), 30.0, (320, 240))
     for _ in range(6):

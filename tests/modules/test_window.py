@@ -78,6 +78,7 @@ def test_a_port_that_is_taken_is_one_line() -> None:
         assert "\n" not in str(error.value)
 
 
+@pytest.mark.slow
 def test_the_eyes_show_what_they_found(stand: Callable[..., Stand], photographed: np.ndarray) -> None:
     here = stand()
     here = stand(with_options(here.project, "eyes", window=0))

@@ -99,6 +99,7 @@ def test_who_plays_a_broken_motion_is_not_blamed_for_it() -> None:
     assert found
 
 
+@pytest.mark.slow
 def test_long_chains_of_motions_are_built() -> None:
     files = {f"m{i}": f"keyframes: [{{play: m{i + 1}}}]" for i in range(2000)}
     built, found = project(**files, m2000=NOD)

@@ -15,6 +15,7 @@ def test_mirrored_twice_is_the_motion_itself(motion: MotionDefinition) -> None:
     assert mirrored(mirrored(motion)) == motion
 
 
+@pytest.mark.slow
 @given(motions())
 def test_a_mirrored_motion_moves_the_other_side(motion: MotionDefinition) -> None:
     there, here = Trajectory(mirrored(motion)).sample(0.7), Trajectory(motion).sample(0.7)
@@ -53,6 +54,7 @@ def test_speed_changes_when_and_not_where(motion: MotionDefinition, speed: float
     assert Trajectory(faster).sample(t / speed) == pytest.approx(Trajectory(motion).sample(t), abs=1e-6)
 
 
+@pytest.mark.slow
 @given(motions())
 def test_joined_motions_follow_one_another(motion: MotionDefinition) -> None:
     twice = joined([(0.0, motion), (motion.duration, motion)], 2 * motion.duration)

@@ -20,6 +20,7 @@ def test_every_motion_and_every_passage_is_a_case() -> None:
     assert all(case.way == "from Stand" for case in found if not case.passage)
 
 
+@pytest.mark.slow
 def test_what_is_known_is_kept_and_damage_is_as_good_as_nothing(tmp_path: Path) -> None:
     for name in ("models", "motions", "behaviors", "fuzzy", "schemas", "lumen.yaml"):
         (tmp_path / name).symlink_to(ROOT / name)

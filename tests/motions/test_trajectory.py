@@ -18,6 +18,7 @@ def moments(motion: MotionDefinition, count: int = 200) -> list[float]:
     return [motion.duration * i / count for i in range(count + 1)]
 
 
+@pytest.mark.slow
 @given(motions())
 def test_passes_through_its_keys(motion: MotionDefinition) -> None:
     trajectory = Trajectory(motion)
@@ -26,6 +27,7 @@ def test_passes_through_its_keys(motion: MotionDefinition) -> None:
             assert trajectory.sample(key.time)[joint] == key.angle
 
 
+@pytest.mark.slow
 @given(motions(), st.floats(-0.5, 0.5))
 def test_begins_where_the_robot_is(motion: MotionDefinition, angle: float) -> None:
     start = dict.fromkeys(motion.tracks, angle)
@@ -33,6 +35,7 @@ def test_begins_where_the_robot_is(motion: MotionDefinition, angle: float) -> No
     assert sample(motion, -1.0, start) == start
 
 
+@pytest.mark.slow
 @given(motions())
 def test_stays_inside_the_limits_between_keys(motion: MotionDefinition) -> None:
     trajectory = Trajectory(motion)
@@ -42,6 +45,7 @@ def test_stays_inside_the_limits_between_keys(motion: MotionDefinition) -> None:
             assert limits.minimum - 1e-9 <= angle <= limits.maximum + 1e-9
 
 
+@pytest.mark.slow
 @given(motions())
 def test_never_leaves_the_range_of_neighbouring_keys(motion: MotionDefinition) -> None:
     """Whatever the interpolation: only Bezier handles can lead beyond."""
@@ -55,6 +59,7 @@ def test_never_leaves_the_range_of_neighbouring_keys(motion: MotionDefinition) -
                 assert min(a, b) - 1e-9 <= angle <= max(a, b) + 1e-9
 
 
+@pytest.mark.slow
 @given(motions())
 def test_never_jumps(motion: MotionDefinition) -> None:
     """Between two moments no joint goes farther than its peak speed allows."""
@@ -67,6 +72,7 @@ def test_never_jumps(motion: MotionDefinition) -> None:
             assert abs(after[joint] - before[joint]) <= 1.05 * speed * step + 1e-9
 
 
+@pytest.mark.slow
 @given(motions((Interpolation.MINIMUM_JERK, Interpolation.CUBIC, BEZIER)))
 def test_speed_has_no_jump_where_the_kind_is_one_kind(motion: MotionDefinition) -> None:
     """A smooth interpolation arrives at a key as fast as it leaves it."""
@@ -80,6 +86,7 @@ def test_speed_has_no_jump_where_the_kind_is_one_kind(motion: MotionDefinition) 
             assert abs((at[2] - at[1]) - (at[1] - at[0])) / eps <= 1e-3 * fastest + 1e-2
 
 
+@pytest.mark.slow
 @given(motions())
 def test_what_it_says_of_speeds_is_what_samples_show(motion: MotionDefinition) -> None:
     """`overspeed` names a joint exactly where dense samples are too fast."""
@@ -115,6 +122,7 @@ def test_bezier_handles_shape_the_way_between_keys() -> None:
     assert sample(motion, 1.25)["HeadYaw"] < 0.25
 
 
+@pytest.mark.slow
 @given(st.floats(0.0, 5.0), st.floats(-2, 2), st.floats(0.0, 5.0), st.floats(-2, 2))
 def test_any_handle_leaves_time_running_forward(out: float, up: float, inward: float, down: float) -> None:
     keys = (Keyframe(1.0, 0.0, BEZIER, handle_out=(out, up)), Keyframe(2.0, 1.0, BEZIER, handle_in=(-inward, down)))

@@ -9,6 +9,7 @@ from tests.mutation.__main__ import WELL, survey, table
 SEED = 20_000
 
 
+@pytest.mark.slow
 def test_two_hundred_mutants() -> None:
     counts, misses, said = found = survey(SEED, 200, stories=1)
     assert not misses, [(mutant.number, mutant.difference, outcome) for mutant, outcome in misses]

@@ -25,6 +25,7 @@ def answers(events: list) -> list[str]:  # type: ignore[type-arg]
     return [event.name for event in events]
 
 
+@pytest.mark.slow
 def test_it_is_taken_over_with_its_reflexes_on(robot: Lockstep) -> None:
     world = robot.nao.world
     assert world.called("setState") == [("disabled",)]
@@ -68,6 +69,7 @@ def test_what_a_joint_can_not_do_is_never_sent(robot: Lockstep, live: Live, keys
     assert robot.nao.world.called("angleInterpolationBezier") == []
 
 
+@pytest.mark.slow
 def test_cancelled_motions_end_and_go_back_to_where_they_began(robot: Lockstep, live: Live, project: Project) -> None:
     robot.start("a", Perform(project.motions["dance"]))
     live(5.0)
@@ -216,6 +218,7 @@ def test_with_motors_off_nothing_moves(robot: Lockstep, live: Live, project: Pro
     assert answers(live(4.0)) == ["done.command.wake"]
 
 
+@pytest.mark.slow
 def test_a_fall_ends_everything_until_it_is_up_again(robot: Lockstep, live: Live, project: Project) -> None:
     robot.start("a", Perform(project.motions["dance"]))
     live(1.0)

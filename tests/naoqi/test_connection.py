@@ -86,6 +86,7 @@ def test_services_that_are_missing_are_told_and_gone_without(
     assert any("sense `image` is gone" in line for line in lines)
 
 
+@pytest.mark.slow
 def test_a_connection_lost_in_a_motion_fails_it_and_comes_back(
     robot: Lockstep, live: Live, project: Project, caplog: pytest.LogCaptureFixture
 ) -> None:

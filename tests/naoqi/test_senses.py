@@ -20,6 +20,7 @@ def image(robot: Lockstep) -> Image:
     return found
 
 
+@pytest.mark.slow
 def test_an_image_is_rgb_and_dated_by_our_clock(robot: Lockstep, live: Live) -> None:
     live(1.0)
     found = image(robot)

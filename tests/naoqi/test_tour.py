@@ -14,6 +14,7 @@ def played(project: Project, robot: Lockstep | RecordingRobot) -> Run:
     return play(project, project.stories["visitor"], robot)
 
 
+@pytest.mark.slow
 def test_the_whole_tour_is_the_recording_robots_tour(project: Project) -> None:
     joint = replace(project.routes["joint"], every=0.2)
     blind = replace(project, routes={**{n: r for n, r in project.routes.items() if n != "image"}, "joint": joint})

@@ -169,6 +169,7 @@ def repository(copy: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch
     return root
 
 
+@pytest.mark.slow
 def test_a_revision_is_compared_and_every_configuration_told(
     repository: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -192,6 +193,7 @@ def test_a_revision_is_compared_and_every_configuration_told(
     assert {row["outcome"]: row["after"] for row in told["configurations"]}["moved"] == ["talk.dance"]
 
 
+@pytest.mark.slow
 def test_lint_finds_what_a_reload_would_refuse_or_move(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tour = repository / TOUR
     assert main(["lint", "--against", "HEAD", "--ignore", "dead-end", "--format", "concise"]) == 0

@@ -41,6 +41,7 @@ def assert_sound(machine: Machine, snapshot: Snapshot) -> None:
         assert stands.context.keys() == inner.context.keys()
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=30)
 @given(st.data(), machine_data(deeds=True), happenings, happenings)
 def test_a_plan_is_legal_and_goes_on(data: st.DataObject, old: Data, events: Happenings, later: Happenings) -> None:
@@ -72,6 +73,7 @@ def goes_on(machine: Machine, snapshot: Snapshot, events: Happenings) -> None:
         assert_sound(machine, snapshot)
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=4)
 @given(machines(), machines(), HAPPENINGS)
 def test_invoked_behaviours_are_legal_as_well(before: Machine, after: Machine, events: list[str]) -> None:
@@ -86,6 +88,7 @@ def invoked_legal(before: Machine, after: Machine, events: list[str]) -> None:
                 assert_sound(after, verdict.snapshot)
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=15)
 @given(machine_data(deeds=True), happenings)
 def test_the_same_content_does_nothing(data: Data, events: Happenings) -> None:
@@ -94,6 +97,7 @@ def test_the_same_content_does_nothing(data: Data, events: Happenings) -> None:
         assert migrate(before, after, snapshot, at=snapshot.at + 1.0) == MigrationPlan(snapshot)
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=15)
 @given(machine_data(deeds=True), happenings)
 def test_what_differs_elsewhere_changes_nothing(data: Data, events: Happenings) -> None:
@@ -108,6 +112,7 @@ def test_what_differs_elsewhere_changes_nothing(data: Data, events: Happenings) 
             assert migrate(after, before, there.snapshot, back=True) == MigrationPlan(snapshot)
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=30)
 @given(st.data(), machine_data(deeds=True), happenings)
 def test_there_and_back_restores_what_did_not_change(data: st.DataObject, old: Data, events: Happenings) -> None:
@@ -127,6 +132,7 @@ def test_there_and_back_restores_what_did_not_change(data: st.DataObject, old: D
             assert kept == {p: w for p, w in again.snapshot.doing.items() if p in snapshot.doing}
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=30)
 @given(st.data(), machine_data(), happenings)
 def test_what_is_left_runs_its_old_exit_actions_from_the_inside(
@@ -152,6 +158,7 @@ def test_what_is_left_runs_its_old_exit_actions_from_the_inside(
             assert not any(c.text.startswith("new") for c in verdict.leaving if isinstance(c, Log))
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=30)
 @given(st.data(), machine_data(deeds=True), happenings)
 def test_deadlines_are_kept(data: st.DataObject, old: Data, events: Happenings) -> None:
@@ -166,6 +173,7 @@ def test_deadlines_are_kept(data: st.DataObject, old: Data, events: Happenings) 
                 assert (timer.kind, timer.due, timer.delay) in dues or moved or timer.kind == "wait"
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=10)
 @given(st.data(), machine_data(deeds=True), happenings)
 def test_a_plan_is_pure(data: st.DataObject, old: Data, events: Happenings) -> None:

@@ -156,12 +156,14 @@ def test_a_cancelled_command_says_so_within_a_second(robot: Body) -> None:
     assert answer.name == "cancelled.command.a"
 
 
+@pytest.mark.slow
 def test_one_motion_after_the_other(robot: Body, project: Project) -> None:
     robot.start("a", Perform(project.motions["goodbye"]))
     robot.start("b", Perform(project.motions["goodbye"]))
     assert names(live(robot, 2 * project.motions["goodbye"].duration + 2.0)) == ["done.command.a", "done.command.b"]
 
 
+@pytest.mark.slow
 def test_rest_comes_before_everything(robot: Body, project: Project) -> None:
     robot.start("dance", Perform(project.motions["dance"]))
     robot.start("say", Say("x" * 200))
@@ -173,6 +175,7 @@ def test_rest_comes_before_everything(robot: Body, project: Project) -> None:
     assert answers[3] == "done.command.rest"
 
 
+@pytest.mark.slow
 def test_stop_ends_what_it_names_and_nothing_else(robot: Body, project: Project) -> None:
     robot.start("dance", Perform(project.motions["dance"]))
     robot.start("say", Say("x" * 30))
@@ -206,6 +209,7 @@ def test_an_aim_leaves_alone_what_a_command_owns(robot: Body) -> None:
     assert joints.angles[joints.names.index("HeadYaw")] == pytest.approx(0.3, abs=0.03)
 
 
+@pytest.mark.slow
 def test_a_motion_owns_what_it_moves_and_nothing_else(robot: Body, project: Project) -> None:
     motion = project.motions["photo"]
     assert "HeadYaw" not in motion.tracks
@@ -230,6 +234,7 @@ def test_no_aim_leaves_the_limits(robot: Body, project: Project, angle: float) -
     assert limit.minimum - 0.05 <= measured <= limit.maximum + 0.05
 
 
+@pytest.mark.slow
 def test_a_move_goes_on_until_another_one_or_stop_ends_it(robot: Body) -> None:
     robot.start("a", Move(0.02))
     assert live(robot, 2.0) == []
@@ -251,6 +256,7 @@ def test_what_is_no_angle_moves_nothing(robot: Body, angle: float) -> None:
     assert after.angles == pytest.approx(before.angles, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_recording_takes_its_time_while_everything_else_goes_on(robot: Body) -> None:
     robot.start("ears", Record("r1", 1.0))
     robot.start("say", Say("Hello"))

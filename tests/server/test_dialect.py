@@ -151,6 +151,7 @@ VALUES = st.recursive(
 NAMES = st.sampled_from(["x", "speed", "jointNames", "angles", "handName", "text", "language", "postureName"])
 
 
+@pytest.mark.slow
 @given(method=METHODS, parameter=st.dictionaries(NAMES, VALUES) | VALUES)
 def test_whatever_comes_is_a_command_or_a_refusal(method: str, parameter: Any) -> None:
     try:

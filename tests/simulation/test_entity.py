@@ -15,6 +15,7 @@ from tests.simulation.conftest import MODELS
 EXAMPLE = MODELS.parent / "examples" / "dm_control" / "nao_in_your_world.py"
 
 
+@pytest.mark.slow
 def test_the_example_crouches(capsys: pytest.CaptureFixture[str]) -> None:
     runpy.run_path(str(EXAMPLE))
     assert capsys.readouterr().out == "its torso is 0.23 m above the ground\n"

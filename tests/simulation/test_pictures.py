@@ -85,6 +85,7 @@ def test_a_hall_without_that_camera_is_not_filmed(robot: SimulatedRobot, tmp_pat
         Film(tmp_path / "film.mp4", robot, "ceiling")
 
 
+@pytest.mark.slow
 def test_without_opengl_there_are_no_images_and_a_remedy() -> None:
     script = f"""
 import pathlib

@@ -20,6 +20,7 @@ def test_its_numbers_written_again_are_the_file(body: Body, path: Path) -> None:
     assert "LKneePitch: 121" in changed
 
 
+@pytest.mark.slow
 def test_a_passage_that_ends_elsewhere_costs_more(body: Body) -> None:
     path = MODELS / "passages/sitrelax-straddle.yaml"
     text = Text(path.read_text("utf-8"), body)

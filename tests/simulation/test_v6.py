@@ -61,6 +61,7 @@ def test_it_stands_and_walks(v6: Body) -> None:
     assert robot.greatest_tilt < 10
 
 
+@pytest.mark.slow
 def test_a_project_names_it() -> None:
     files = read_files(MODELS.parent)
     main = files["lumen.yaml"].replace(b"model: nao", b"model: v6")

@@ -49,6 +49,7 @@ def as_data(steps: list[Step], machine: Machine) -> list[Any]:
     return [(*s[:4], s.raised, serialize(machine, s.snapshot)) for s in steps]
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=40)
 @given(machine_data(deeds=True), happenings, st.integers(0, 10))
 def test_what_was_on_the_disk_goes_on_as_if_it_had_not_been(data: Data, events: Happenings, moment: int) -> None:
@@ -71,6 +72,7 @@ def settled(machine: Machine, saved: str) -> str:
     return json.dumps(serialize(machine, snapshot))
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=40)
 @given(machine_data(deeds=True), happenings, happenings)
 def test_what_happened_elsewhere_does_not_matter(data: Data, events: Happenings, others: Happenings) -> None:
@@ -117,6 +119,7 @@ def changed(data: Data, path: tuple[Any, ...], change: Callable[[Any, Any], None
     return copy
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=100)
 @given(st.data(), machine_data(deeds=True))
 def test_anything_wrong_anywhere_is_told_or_runs(data: st.DataObject, sound: Data) -> None:
@@ -145,6 +148,7 @@ def built(data: Data) -> tuple[Machine | None, Sequence[Diagnostic]]:
         return None, error.diagnostics
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=60)
 @given(st.data(), machine_data())
 def test_a_target_that_is_nowhere_is_told_at_its_place(data: st.DataObject, sound: Data) -> None:
@@ -158,6 +162,7 @@ def test_a_target_that_is_nowhere_is_told_at_its_place(data: st.DataObject, soun
         assert ("unknown-state", f"machine ({'.'.join(map(str, path))})") in told
 
 
+@pytest.mark.slow
 @settings(PATIENT, max_examples=60)
 @given(st.data(), machine_data())
 def test_an_id_used_twice_is_told(data: st.DataObject, sound: Data) -> None:
@@ -170,6 +175,7 @@ def test_an_id_used_twice_is_told(data: st.DataObject, sound: Data) -> None:
     assert "duplicate-id" in {d.code for d in caught.value.diagnostics}
 
 
+@pytest.mark.slow
 def test_ten_thousand_states_at_once_run() -> None:
     regions = {
         f"r{i}": {"entry": {"log": "in"}, "states": {"a": {"on": {"go": "b"}, "exit": {"log": "out"}}, "b": None}}

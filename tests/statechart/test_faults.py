@@ -133,6 +133,7 @@ def test_nesting_without_end_is_a_diagnostic() -> None:
     assert "too-large" in {d.code for d in caught.value.diagnostics}
 
 
+@pytest.mark.slow
 def test_a_dict_that_holds_itself_is_a_diagnostic() -> None:
     data: dict[str, Any] = {"states": {"a": None}}
     data["states"].update({"b": data, "c": data})
@@ -141,6 +142,7 @@ def test_a_dict_that_holds_itself_is_a_diagnostic() -> None:
     assert "too-large" in {d.code for d in caught.value.diagnostics}
 
 
+@pytest.mark.slow
 def test_ten_thousand_states_run() -> None:
     count = 10_000
     states = {f"s{i}": {"on": {"go": f"s{(i + 1) % count}"}} for i in range(count)}
@@ -149,6 +151,7 @@ def test_ten_thousand_states_run() -> None:
     assert step(machine, snapshot, Event("go")).entered == ("s1",)
 
 
+@pytest.mark.slow
 def test_a_thousand_regions_run() -> None:
     regions = {f"r{i}": {"states": {"a": {"on": {"go": "b"}}, "b": None}} for i in range(1_000)}
     machine = Machine.from_dict({"type": "parallel", "states": regions})
@@ -169,6 +172,7 @@ TREES = st.recursive(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(TREES, TREES)
 def test_any_data_is_a_machine_or_a_project_error(top: Any, inner: Any) -> None:

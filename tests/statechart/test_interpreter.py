@@ -197,6 +197,7 @@ def test_a_context_that_can_not_be_is_told(context: Any, types: Any, code: str) 
     assert code in {d.code for d in caught.value.diagnostics}
 
 
+@pytest.mark.slow
 def test_a_thousand_and_more_timers_may_end_at_once() -> None:
     sends = [{"send": {"event": "x", "delay": "1s"}} for _ in range(1500)]
     data = {"context": {"n": 0}, "states": {"a": {"entry": sends, "on": {"x": {"actions": COUNTING}}}}}

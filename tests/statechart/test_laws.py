@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -138,6 +139,7 @@ def next_step(machine: Machine, snapshot: Snapshot, what: str, through_disk: boo
     return step(machine, snapshot, happen(snapshot, what))
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_the_same_events_give_the_same_steps(machine: Machine, happenings: list[str]) -> None:
@@ -146,6 +148,7 @@ def test_the_same_events_give_the_same_steps(machine: Machine, happenings: list[
     assert run(machine, happenings, through_disk=True) == steps
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_every_configuration_is_legal(machine: Machine, happenings: list[str]) -> None:
@@ -161,6 +164,7 @@ def test_every_configuration_is_legal(machine: Machine, happenings: list[str]) -
                 assert active == [c for c in state.children if inner.states[c].kind is not StateKind.HISTORY]
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_what_waits_belongs_to_an_active_state(machine: Machine, happenings: list[str]) -> None:
@@ -171,6 +175,7 @@ def test_what_waits_belongs_to_an_active_state(machine: Machine, happenings: lis
         assert {child.state for child in snapshot.invoked.values()} <= active
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_what_began_ends_once_and_ids_are_never_used_again(machine: Machine, happenings: list[str]) -> None:

@@ -203,6 +203,7 @@ ODD: list[Any] = [
 RICHES, FULL = machine(RICH), rich()
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.tuples(st.sampled_from(list(nodes(FULL))), st.sampled_from(ODD)), min_size=1, max_size=3))
 @example([])

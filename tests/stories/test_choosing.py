@@ -20,6 +20,7 @@ def test_one_story_in_many_ways(copy: Path, words: list[str], capsys: pytest.Cap
     assert names([str(copy), *words], capsys) == ["shy"]
 
 
+@pytest.mark.slow
 def test_a_pattern_means_all_that_fit(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert names([str(copy), "safety_b*", "shy"], capsys) == [
         "safety_battery", "safety_brain", "safety_broken_posture", "safety_broken_wake", "shy",

@@ -193,6 +193,7 @@ def test_no_rest_is_found() -> None:
     assert found(walked(states)) == [("restless", "a", 1)]
 
 
+@pytest.mark.slow
 def test_the_story_of_no_rest_ends_there(story: Callable[..., Path], capsys: pytest.CaptureFixture[str]) -> None:
     folder = story("  - wait: 1s\n")
     assert main(["test", str(folder), "--explore", "--behavior", "door"]) == 1

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -48,6 +49,7 @@ def walked(machine: Machine) -> StateSpaceSearch:
     return search
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(regions(), regions())
 def test_keys_that_can_not_matter_any_more_do_not_matter(one: Any, other: Any) -> None:

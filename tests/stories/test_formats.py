@@ -19,6 +19,7 @@ def told(arguments: list[str], code: int, capsys: pytest.CaptureFixture[str]) ->
     return capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_every_story_has_a_line_and_all_are_counted(project: Project, capsys: pytest.CaptureFixture[str]) -> None:
     shown = told([project.root, "shy", "silence"], 0, capsys)
     assert "ok       0:29  shy: Somebody does not tell their name" in shown
@@ -27,6 +28,7 @@ def test_every_story_has_a_line_and_all_are_counted(project: Project, capsys: py
     assert "\x1b" not in shown
 
 
+@pytest.mark.slow
 def test_the_same_twice(project: Project, capsys: pytest.CaptureFixture[str]) -> None:
     def without_took(found: Any) -> Any:
         return [{k: v for k, v in story.items() if k != "took"} for story in found["stories"]]

@@ -25,6 +25,7 @@ def changed(copy: Path):  # type: ignore[no-untyped-def]
     return replay
 
 
+@pytest.mark.slow
 def test_another_text(changed) -> None:  # type: ignore[no-untyped-def]
     run = changed(f'[I am glad to hear that., "{GLAD}"]', "[What a splendid day!]")
     assert run.failure == ""

@@ -71,6 +71,7 @@ def test_the_vocabulary_names_every_key_of_the_schemas(kind: str) -> None:
     assert wanted - written == set()
 
 
+@pytest.mark.slow
 def test_the_story_in_the_documentation_goes_as_it_says(copy: Path) -> None:
     [story] = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "stories.md").read_text("utf-8"), re.S)
     (copy / "behaviors" / "stories" / "song.yaml").write_text(story, "utf-8")

@@ -34,6 +34,7 @@ def test_the_story_ends_well(run, project: Project, name: str) -> None:  # type:
         assert story.errors == []
 
 
+@pytest.mark.slow
 def test_the_stories_together_enter_every_state_and_take_every_transition(project: Project) -> None:
     coverage = Coverage(project)
     for story in project.stories.values():
@@ -42,6 +43,7 @@ def test_the_stories_together_enter_every_state_and_take_every_transition(projec
     assert coverage.entered["tour"] >= {*GUIDE, *SAFETY, "paused", "interrupted"}
 
 
+@pytest.mark.slow
 def test_whatever_happens_the_tour_comes_back_to_where_it_began(project: Project) -> None:
     found = explored(project, "tour", bound=10_000)
     assert found.exploration.complete

@@ -8,8 +8,12 @@ from scripts.rule_pages import BASE, DOCS, said, written
 
 from lumen.loading.files import read_files
 from lumen.rules import check_files
-from lumen.rules.codes import CODES
+from lumen.rules.codes import CODES, FAMILIES
 from lumen.rules.pages import _HERE, page
+
+PLAYED = [pytest.mark.physics, pytest.mark.xdist_group("pages")]
+"""Examples that the simulated robot plays: once, in one worker, since what lint says of them is kept."""
+MARKS = {**dict.fromkeys(FAMILIES["physics"], PLAYED), "too-large": [pytest.mark.slow]}
 
 
 def test_the_project_below_the_examples_is_sound() -> None:
@@ -20,7 +24,7 @@ def test_every_code_has_a_page_and_every_page_a_code() -> None:
     assert {file.stem for file in _HERE.glob("*.md")} == CODES.keys()
 
 
-@pytest.mark.parametrize("code", CODES)
+@pytest.mark.parametrize("code", [pytest.param(code, marks=MARKS.get(code, ())) for code in CODES])
 def test_a_wrong_example_has_its_finding_at_the_marked_word_and_the_right_one_none(code: str) -> None:
     wrong, right = page(code).wrong, page(code).right
     (marked,) = [sheet for sheet in wrong if sheet.mark]
@@ -41,6 +45,8 @@ def test_a_page_says_what_and_why_in_few_words(code: str) -> None:
     assert found.right
 
 
+@pytest.mark.physics
+@pytest.mark.xdist_group("pages")
 def test_the_docs_are_what_the_pages_say() -> None:
     there = {file.name: file.read_text(encoding="utf-8") for file in DOCS.glob("*.md")}
     assert there == written(), "run `python scripts/rule_pages.py`"

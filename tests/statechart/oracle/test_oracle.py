@@ -111,6 +111,7 @@ def shown(event: Event) -> tuple[Any, ...]:
     return event.name, data, event.at
 
 
+@pytest.mark.slow
 @seed(2015)
 @settings(BUSY, max_examples=300)
 @given(machines(), happenings)
