@@ -7,6 +7,7 @@ installed, its evaluation.
 """
 
 import platform
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -22,6 +23,7 @@ SCOPE = Scope(
     configuration=frozenset({"talk", "talk.ask"}).__contains__,
     phrases={"dance": {"en": ("dance", "can you dance"), "id": ("menari", "joget")}},
 )
+DANCE = re.compile(r"(?i)\b(dance|sing)\b")
 GUARDS: dict[str, Callable[[Scope], Any] | None] = {
     "context.asked < 3": lambda s: s[0]["asked"] < 3,
     "context.asked < 3 && event.data.x > 100": lambda s: s[0]["asked"] < 3 and s[1]["data"]["x"] > 100,
@@ -29,6 +31,7 @@ GUARDS: dict[str, Callable[[Scope], Any] | None] = {
     "context.visitor == 'Ada'": lambda s: s[0]["visitor"] == "Ada",
     "In('talk')": lambda s: s[3]("talk"),
     "heard(event.data.result, 'dance')": None,
+    r"event.data.result.matches(r'(?i)\b(dance|sing)\b')": lambda s: DANCE.search(s[1]["data"]["result"]) is not None,
 }
 VALUES: dict[str, Callable[[Scope], Any]] = {
     "context.asked + 1": lambda s: s[0]["asked"] + 1,
