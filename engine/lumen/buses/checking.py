@@ -1,14 +1,12 @@
 """What is wrong with a body, in a line, by the JSON Schema of its message."""
 
 from collections.abc import Callable, Mapping
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.projects import Project
-from lumen.loading.quick import Quick, quick
 
 if TYPE_CHECKING:
-    from jsonschema import Draft202012Validator
     from jsonschema.exceptions import ValidationError
 
 MAX_SHOWN_CHARACTERS = 80
@@ -32,23 +30,13 @@ class SchemaCheck:
     """A check against one schema (2020-12)."""
 
     def __init__(self, schema: Mapping[str, object]) -> None:
-        self._schema = schema
+        self._schema = JsonSchema(schema)
 
     def __call__(self, body: Any) -> str:
-        if self._quick(body):
+        if self._schema.fits(body):
             return ""
-        error = next(self._validator.iter_errors(body), None)
+        error = next(self._schema.errors(body), None)
         return _say(error) if error else ""
-
-    @cached_property
-    def _quick(self) -> Quick:
-        return quick(self._schema)
-
-    @cached_property
-    def _validator(self) -> "Draft202012Validator":
-        from jsonschema import Draft202012Validator
-
-        return Draft202012Validator(self._schema)
 
 
 def _say(error: "ValidationError") -> str:

@@ -1,10 +1,10 @@
 """Errors of a JSON Schema validator in a student's words."""
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from lumen.interpreters.json_schema import occurs
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, nearest
 from lumen.loading.schema_messages import Error, describe, node, wording
 
@@ -87,7 +87,7 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
     known = list(error.schema.get("properties", ()))
     patterns = error.schema.get("patternProperties", ())
     free = [k for k in known if k not in error.instance] or known
-    unknown = [k for k in error.instance if not (k in known or any(re.search(pattern, k) for pattern in patterns))]
+    unknown = [k for k in error.instance if not (k in known or any(occurs(pattern, k) for pattern in patterns))]
     for key in unknown[MAX_UNKNOWN_KEYS:]:
         here, message = (*path, key), f"`{key}` is not a key of {node(path)}"
         yield Complaint(UNKNOWN_KEY, here, message, "", path, here, True)

@@ -1,11 +1,12 @@
 """Message schemas, `schemas/messages/NAME.schema.json`."""
 
 import json
-import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
 from lumen.loading.complaints import WRONG_TYPE, WRONG_VALUE
 from lumen.loading.document import MAX_NODE_DEPTH, TOO_LARGE, Document
@@ -118,9 +119,9 @@ def _texts(data: Any) -> Iterator[tuple[NodePath, str, str]]:
 
 def _pattern(path: NodePath, text: str, report: DocumentReport) -> None:
     try:
-        re.compile(text)
-    except (re.error, RecursionError, OverflowError) as error:
-        report(WRONG_VALUE, path, f"`{text}` is no regular expression: {error}", hint="look for a missing bracket")
+        compile_pattern(text)
+    except ExpressionError as error:
+        report(WRONG_VALUE, path, f"`{text}` is no regular expression: {error.message}", hint=error.hint)
 
 
 def _target(data: Any, reference: str) -> Any:

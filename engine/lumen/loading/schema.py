@@ -3,9 +3,10 @@
 import json
 from collections.abc import Iterator, Mapping
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from lumen.errors import LumenError
+from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.diagnostics import NodePath
 from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_TYPE, Complaint, complaints
 from lumen.loading.document import TOO_LARGE, Document
@@ -13,10 +14,6 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.misplaced import misplaced
 from lumen.loading.packaged import schema_folder
 from lumen.loading.pruning import prune
-from lumen.loading.quick import Quick, quick
-
-if TYPE_CHECKING:
-    from jsonschema import Draft202012Validator
 
 FILE_KINDS = ("lumen", "behavior", "story", "controller", "motion", "body", "message")
 """The kinds of file; each has a `schemas/KIND.schema.json`."""
@@ -38,11 +35,11 @@ def check_schema(document: Document, kind: str, report: DocumentReport) -> Any:
     said: set[NodePath] = set()
     for _ in range(MAX_PRUNING_ROUNDS):
         try:
-            if _quick(kind)(report.document.data):
+            if _schema(kind).fits(report.document.data):
                 return report.document.data
             if misplaced(report.document.data, kind, report):
                 return None
-            found = list(_complaints(_validator(kind), report.document.data))
+            found = list(_complaints(_schema(kind), report.document.data))
         except RecursionError:
             report(TOO_LARGE, (), "the file is nested too deeply to be read", hint="use fewer levels")
             return None
@@ -67,47 +64,29 @@ def load_schema(kind: str) -> Any:
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:
     """What is wrong with data by a schema that is sound itself."""
-    if _fits(quick(schema), data):
-        return []
-    from jsonschema import Draft202012Validator
-
-    return _followed(Draft202012Validator(schema), data)
+    return _faults(JsonSchema(schema), data)
 
 
 def schema_faults(schema: Any) -> list[Complaint]:
     """What is wrong with a JSON Schema itself."""
-    return [] if _fits(_quick("message"), schema) else _followed(_validator("message"), schema)
+    return _faults(_schema("message"), schema)
 
 
-def _followed(validator: "Draft202012Validator", data: Any) -> list[Complaint]:
+def _faults(schema: JsonSchema, data: Any) -> list[Complaint]:
     try:
-        return list(_complaints(validator, data))
+        return [] if schema.fits(data) else list(_complaints(schema, data))
     except RecursionError:
         return [Complaint(TOO_LARGE, (), "this is nested too deeply to be read", "use fewer levels", (), ())]
 
 
-def _fits(fits: Quick, data: Any) -> bool:
-    try:
-        return fits(data)
-    except RecursionError:
-        return False
-
-
 @cache
-def _quick(kind: str) -> Quick:
-    return quick(load_schema(kind))
+def _schema(kind: str) -> JsonSchema:
+    return JsonSchema(load_schema(kind))
 
 
-@cache
-def _validator(kind: str) -> "Draft202012Validator":
-    from jsonschema import Draft202012Validator  # takes 0.1 s: only where something is wrong
-
-    return Draft202012Validator(load_schema(kind))
-
-
-def _complaints(validator: "Draft202012Validator", data: Any) -> Iterator[Complaint]:
-    for error in validator.iter_errors(data):
-        yield from complaints(error, validator.schema)
+def _complaints(schema: JsonSchema, data: Any) -> Iterator[Complaint]:
+    for error in schema.errors(data):
+        yield from complaints(error, schema.schema)
 
 
 def _judge(found: list[Complaint], report: DocumentReport, said: set[NodePath]) -> set[NodePath]:

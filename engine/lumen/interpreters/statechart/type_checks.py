@@ -1,14 +1,12 @@
 """Which values a context key keeps: those of its first value's type, or of its `types:` entry."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from lumen.errors import UsageError
+from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition
-
-if TYPE_CHECKING:
-    from jsonschema import Draft202012Validator
 
 _TESTS: Mapping[str, Callable[[Any], bool]] = {
     "null": lambda v: v is None,
@@ -53,18 +51,17 @@ class TypeCheck:
     Where its `types:` entry says more than a type, the whole JSON Schema holds.
     """
 
-    __slots__ = ("_schema", "_validator", "names", "quick")
+    __slots__ = ("_schema", "names", "quick")
 
     def __init__(self, names: tuple[str, ...], schema: Mapping[str, Any] | None = None) -> None:
         self.names = names
         self.quick = frozenset(() if schema else (kind for name in names for kind in _QUICK[name]))
-        self._schema = schema or {}
-        self._validator: Draft202012Validator | None = None
+        self._schema = JsonSchema(schema) if schema else None
 
     def accepts(self, value: Any) -> bool:
         if self.names and not any(_TESTS[name](value) for name in self.names):
             return False
-        return not self._schema or not self._faults(value)
+        return self._schema is None or self._schema.fits(value) or not self._faults(value)
 
     def refusal(self, value: Any, verb: str = "be") -> str:
         """Why a key can't hold that value, to follow the key's name; `verb` is `be` or `become`."""
@@ -75,15 +72,9 @@ class TypeCheck:
 
     def _faults(self, value: Any) -> list[str]:
         """What the schema says against the value; nothing where it is unsound itself, which lint tells."""
-        from jsonschema import Draft202012Validator, SchemaError  # takes 0.1 s: only where a schema asks for it
-        from referencing.exceptions import Unresolvable
-
         try:
-            if self._validator is None:
-                Draft202012Validator.check_schema(self._schema)
-                self._validator = Draft202012Validator(self._schema)
-            return [error.message[:100] for error in self._validator.iter_errors(value)]
-        except (SchemaError, Unresolvable, RecursionError):
+            return [error.message[:100] for error in self._schema.errors(value)] if self._schema else []
+        except RecursionError:
             return []
 
     def __str__(self) -> str:
