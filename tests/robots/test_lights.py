@@ -42,7 +42,7 @@ def test_both_robots_and_motions_have_the_same_groups_and_colours() -> None:
     assert set(groups(load_schema("motion"))) == LIGHT_GROUPS.keys()
     behavior = load_schema("behavior")
     assert set(groups(behavior)) == {*LIGHT_GROUPS, "duration"}
-    assert behavior["$defs"]["colour"]["then"]["enum"] == list(COLOURS)
+    assert behavior["$defs"]["colour_name"]["enum"] == list(COLOURS)
 
 
 def test_a_colour_by_name_is_drawn_and_sent_as_it_looks_on_leds() -> None:
