@@ -28,10 +28,10 @@ from tests.guarded import PIPE, Guarded
 import lumen
 from lumen.app.garbage import GcScheduler
 from lumen.app.narrator import Narrator
-from lumen.app.parts.saved_files import RecordsPart, ReloadPart
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
+from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.setup import Setup
 from lumen.app.whole_node import WholeNode
 from lumen.bus import connect

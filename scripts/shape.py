@@ -336,7 +336,7 @@ def report(shape: Shape) -> str:
         _several(f"names of more than {most} files", shape.repeated_file_names),
         *(_listed(f"circles, imports {whens}", map(" ".join, found)) for whens, found in shape.circles.items()),
         _listed("imports up the floors or across", shape.arrows_up),
-        _listed(f"files that know the action `{shape.action}`", shape.action_files),
+        _listed(f"files that name `{shape.action}`, for whatever reason", shape.action_files),
     ]
     return "\n".join(parts)
 
@@ -368,7 +368,7 @@ def table(shape: Shape) -> str:
         (f"file names used more than {most} times", f"{len(shape.repeated_file_names)}"),
         ("circles of imports, type-only and late ones counted", f"{len(shape.circles[every])}"),
         ("imports up the floors", f"{len(shape.arrows_up)}"),
-        (f"files that know the action `{shape.action}`", f"{len(shape.action_files)}"),
+        (f"files that name `{shape.action}`, for whatever reason", f"{len(shape.action_files)}"),
     ]
     return "".join(f"| {name} | {figure} |\n" for name, figure in [("what", "how much"), ("---", "---"), *rows])
 

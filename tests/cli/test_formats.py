@@ -1,5 +1,6 @@
 """`lumen import` and `lumen export`."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -68,3 +69,13 @@ def test_mistakes_are_one_line(
     error = capsys.readouterr().err
     assert words in error
     assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize("verb", ["import", "play"])
+def test_a_pipe_or_a_device_is_no_file(verb: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pipe, device = tmp_path / "wave.motion", tmp_path / "zero.motion"
+    os.mkfifo(pipe)
+    device.symlink_to("/dev/zero")
+    for file in (pipe, device):
+        assert main([verb, str(file)]) == 2
+        assert capsys.readouterr().err == f"lumen {verb}: can't read {file}: it is a device or a pipe, not a file\n"

@@ -1,4 +1,4 @@
-"""A folder that says in its docstring what each of its files is for says it of all of them, and of no other."""
+"""Folders are packages, which contracts see, and one that says what each of its files is for says it of all of them."""
 
 import ast
 import re
@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-ENGINE = Path(__file__).parents[2] / "engine/lumen"
+ROOT = Path(__file__).parents[2]
+ENGINE = ROOT / "engine/lumen"
 LINE = re.compile(r"^    (\w+(?:\.py|/)) +\S", re.MULTILINE)
 
 
@@ -20,3 +21,16 @@ def test_each_file_is_named_once(folder: str) -> None:
         if path.suffix == ".py" or (path / "__init__.py").exists()
     ]
     assert sorted(LINE.findall(said)) == sorted(name for name in there if name != "__init__.py")
+
+
+def test_a_folder_of_python_files_is_a_package_since_a_contract_sees_no_other() -> None:
+    folders = {file.parent for tree in (ENGINE, ROOT / "tests") for file in tree.rglob("*.py")}
+    assert [folder for folder in folders if not (folder / "__init__.py").is_file()] == []
+
+
+def test_nothing_of_the_command_line_is_named_outside_its_tests_but_the_command() -> None:
+    for tree in ("tests", "benchmarks", "scripts", "docs", "examples"):
+        for file in sorted((ROOT / tree).rglob("*.py")):
+            if "tests/cli" not in str(file):
+                named = re.findall(r"^ *(?:from|import) +(lumen\.cli\b[^\n]*)", file.read_text("utf-8"), re.MULTILINE)
+                assert set(named) <= {"lumen.cli.main import main"}, file

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import lumen
-from lumen.app.parts.saved_files import ReloadPart
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.requests import COMMAND, STATUS
+from lumen.app.reload.saved_files import ReloadPart
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.projects import Project

@@ -5,10 +5,10 @@ from types import TracebackType
 from typing import Any, Self
 
 from lumen.app.narrator import Narrator
-from lumen.app.parts.saved_files import RecordsPart, ReloadPart
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
+from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.setup import Setup
 from lumen.app.whole_node import WholeNode
 from lumen.bus import connect

@@ -10,11 +10,12 @@ from typing import Any
 
 import lumen
 from lumen.app.lint.findings import Findings
+from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.formats.conversion_findings import MAX_FILE_BYTES, ForeignFileError
+from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.fcl import read_fcl
 from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll
@@ -82,16 +83,6 @@ def _gesture(body: Body, timeline: str, file: str, content: bytes, _: str) -> tu
     return read_gesture(file, content, body, timeline=timeline)
 
 
-def foreign_content(path: Path) -> bytes:
-    """What the file holds; raises UsageError where it can't be read, or is too large to be one of these."""
-    try:
-        if path.is_file() and path.stat().st_size > MAX_FILE_BYTES:
-            raise UsageError(f"{path} is larger than {MAX_FILE_BYTES // 1_000_000} MB: too large to be imported")
-        return path.read_bytes()
-    except OSError as error:
-        raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
-
-
 def _title(path: Path) -> str:
     return re.sub(r"[\s#*]+", "_", path.stem)
 
@@ -105,12 +96,6 @@ def _chart(path: Path, content: bytes) -> Reader:
         endings = ", ".join((*GESTURE_ENDINGS, *CONTROLLERS))
         raise UsageError(f"{path} is neither SCXML, the JSON of XState, nor a motion or a controller ({endings})")
     return read_scxml if start == b"<" else read_xstate
-
-
-def one_line(diagnostic: Diagnostic) -> str:
-    """A finding as the reason why a command can't run."""
-    hint = f" ({diagnostic.hint})" if diagnostic.hint else ""
-    return f"{diagnostic.place}: {diagnostic.message}{hint}"
 
 
 def _faults(file: str, text: str, kind: str, body: Body | None) -> list[Diagnostic]:

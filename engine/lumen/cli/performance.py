@@ -6,10 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lumen.app.exhibition import Exhibition
-from lumen.app.node import ROUNDING
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup
 from lumen.cli.main import ready
+from lumen.cli.printing import clock_time
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.real import RealClock
@@ -90,9 +90,3 @@ class _VisitorsTranscript(Transcript):
         super().visitor_action(action)
         if isinstance(action, Leave) and (distance := self.left()) is not None:
             self.distance = distance
-
-
-def clock_time(now: float) -> str:
-    """`3:07` for 187 [s], which the sum of many ticks may fall short of."""
-    minutes, seconds = divmod(int(now + ROUNDING), 60)
-    return f"{minutes}:{seconds:02d}"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import lumen
 from lumen.app.setup import SPEEDS, set_up
-from lumen.cli.importing import foreign_content, one_line
-from lumen.cli.run import film_path
+from lumen.cli.film_path import film_path
+from lumen.cli.foreign import foreign_content, one_line
 from lumen.errors import ProjectError, UsageError
 from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture

@@ -22,3 +22,9 @@ def show(text: str) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(error, BrokenPipeError):
             raise UsageError(f"can't print: {(error.strerror or str(error)).lower()}") from None
+
+
+def clock_time(now: float) -> str:
+    """`3:07` for 187 [s], which the sum of many ticks may fall short of."""
+    minutes, seconds = divmod(int(round(now, 6)), 60)
+    return f"{minutes}:{seconds:02d}"

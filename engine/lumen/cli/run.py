@@ -19,8 +19,10 @@ from lumen.app.setup import ROBOTS, SPEEDS, VOICES, Setup, set_up
 from lumen.app.stories import home_of, stories_of
 from lumen.bus import connect
 from lumen.buses.validated import validated
+from lumen.cli.film_path import film_path
 from lumen.cli.main import ready
-from lumen.cli.performance import Performance, clock_time
+from lumen.cli.performance import Performance
+from lumen.cli.printing import clock_time
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.real import RealClock
@@ -220,16 +222,3 @@ def _language(project: Project, language: str | None) -> str:
         hint = did_you_mean(language, project.languages, "it speaks")
         raise UsageError(f"the project does not speak `{language}`: {hint}")
     return language or ""
-
-
-def film_path(path: Path | None, robot: str) -> Path | None:
-    """Where a film may be written; raises UsageError where it may not."""
-    if path is None:
-        return None
-    if robot != "simulation":
-        raise UsageError("--video films the simulation: leave out --robot")
-    if path.suffix != ".mp4" or not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise UsageError(
-            f"can't write a film to {path}: name an .mp4 file in a folder that is there and yours to write"
-        )
-    return path

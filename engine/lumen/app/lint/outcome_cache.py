@@ -10,7 +10,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import lumen
 from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.robots.motion_codec import encode_motion
@@ -67,7 +66,7 @@ class OutcomeCache:
 @cache
 def engine() -> str:
     """A hash of the engine's code that moves the robot, and of the physics below it."""
-    root = Path(lumen.__file__).parent
+    root = Path(__file__).parents[2]
     files = [
         path for name in _ENGINE for path in ([root / name] if name.endswith(".py") else (root / name).glob("*.py"))
     ]

@@ -13,10 +13,10 @@ from lumen.app.parts.module import ModulePart
 from lumen.app.parts.module_troubles import ModuleTroublesPart
 from lumen.app.parts.motion import MotionPart
 from lumen.app.parts.remote_brain import RemoteBody, RemoteBrainPart
-from lumen.app.parts.saved_files import RecordsPart, ReloadPart
 from lumen.app.parts.visitor import RemoteVisitorPart
 from lumen.app.processes.bundles import BundleFollower
 from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.setup import Setup
 from lumen.buses.validated import ValidatedBus
 from lumen.language.modules import MODULES

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
-from lumen.cli.performance import clock_time
+from lumen.cli.printing import clock_time
 from lumen.cli.terminal import paint
 from lumen.cli.verdict import Verdict
 from lumen.runtime.coverage import Coverage
