@@ -6,6 +6,7 @@ import yaml
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, Place
 from lumen.loading.document import TOO_LARGE
+from lumen.loading.yaml_composer import TooLargeError
 
 MERGE_CONFLICT = Code("merge-conflict", "text", ERROR, "both sides of a merge stand in the file")
 NOT_UTF8 = Code("not-utf8", "text", ERROR, "a file is not UTF-8 text")
@@ -22,6 +23,7 @@ _HINTS = {
     "could not find expected ':'": "write `:` and a blank behind it if it is a key; else indent it below its key",
     "duplicate anchor": "give each anchor `&` a name of its own",
 }
+_SMALLER = "split it, or use fewer levels and aliases"
 _CONFLICT = re.compile(r"^(<{7}|={7}|>{7})(?= |$)", re.MULTILINE)
 _KEYED = re.compile(r" *[A-Za-z_][\w.]*:( |$)")
 
@@ -50,6 +52,13 @@ def not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
     return NOT_UTF8.at(Place(file, line, column, line, column + 1), message, "save it as UTF-8")
 
 
+def too_large(file: str, error: TooLargeError) -> Diagnostic:
+    """What to say of a file that holds too much."""
+    mark = error.mark
+    place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2) if mark else Place(file)
+    return TOO_LARGE.at(place, f"the file is too large to be read: {error}", _SMALLER)
+
+
 def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     if isinstance(error, yaml.reader.ReaderError):
         line = text.count("\n", 0, error.position) + 1
@@ -66,8 +75,6 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     if "simple key" in context and not text.splitlines()[error.context_mark.line].lstrip().startswith(("-", "?")):  # type: ignore[attr-defined]
         mark = error.context_mark  # type: ignore[attr-defined]
-    if mark is None:
-        return TOO_LARGE.at(Place(file), "the file is nested too deeply to be read", "use fewer levels")
     place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2)
     lines = text.splitlines()
     source = lines[mark.line] if mark.line < len(lines) else ""

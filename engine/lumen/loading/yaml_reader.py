@@ -12,9 +12,10 @@ from typing import Any
 import yaml
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place, Related
-from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Document, NodeSpan
+from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
 from lumen.loading.memoization import memoize
-from lumen.loading.yaml_errors import merge_conflict, not_utf8, syntax_error
+from lumen.loading.yaml_composer import PLAIN_TAGS, TooLargeError, compose
+from lumen.loading.yaml_errors import merge_conflict, not_utf8, syntax_error, too_large
 from lumen.loading.yaml_scalars import resolve
 
 COMPLEX_KEY = Code("complex-key", "text", ERROR, "a key is a list or a map")
@@ -26,14 +27,6 @@ YAML_TAG = Code("yaml-tag", "text", ERROR, "a tag stands before a value")
 
 _WHOLE, _DECIMALS = re.compile(r"[-+]?[0-9]+"), re.compile(r"[0-9]+(ms|s|min|h)?")
 _TAGS = {"!include": "write here what stands in that file: one file can't include another"}
-_PLAIN = frozenset(("tag:yaml.org,2002:str", "tag:yaml.org,2002:seq", "tag:yaml.org,2002:map"))
-
-
-class _Loader(yaml.CSafeLoader):
-    """Parses and composes; resolves nothing."""
-
-
-_Loader.yaml_implicit_resolvers = {}
 
 
 def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
@@ -50,13 +43,12 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         return None, [not_utf8(file, content, error.start)]
-    loader = _Loader(text)
     try:
-        node = loader.get_single_node()
-    except (yaml.MarkedYAMLError, yaml.reader.ReaderError, RecursionError) as error:
+        node = compose(text)
+    except (yaml.MarkedYAMLError, yaml.reader.ReaderError) as error:
         return None, [syntax_error(file, text, error)]
-    finally:
-        loader.dispose()
+    except TooLargeError as error:
+        return None, [too_large(file, error)]
     if node is None:
         return None, [EMPTY_FILE.at(Place(file), "the file is empty", "write its content, or delete it")]
     reader = _Reader(file)
@@ -81,7 +73,7 @@ class _Reader:
         if depth > MAX_NODE_DEPTH or len(self.spans) > MAX_NODES:
             self.overflow(node, depth)
             return None
-        if node.tag not in _PLAIN:
+        if node.tag not in PLAIN_TAGS:
             self.say(
                 YAML_TAG,
                 node,
@@ -138,7 +130,7 @@ class _Reader:
                 if depth > MAX_NODE_DEPTH
                 else f"more than {MAX_NODES:,} values"
             )
-            self.say(TOO_LARGE, node, f"the file is too large to be read: {what}", "split it, or use fewer aliases")
+            self.diagnostics.append(too_large(self.file, TooLargeError(what, node.start_mark)))
 
     def say(self, code: Code, node: yaml.Node, message: str, hint: str) -> None:
         self.diagnostics.append(code.at(self.place(node), message, hint))

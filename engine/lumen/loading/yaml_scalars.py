@@ -13,6 +13,9 @@ _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _INF = re.compile(r"([-+]?)\.(inf|Inf|INF)")
 _NAN = frozenset((".nan", ".NaN", ".NAN"))
 
+MAX_DIGITS = 250
+"""An integer that has more is read as a number with a point: no number that anybody means, and inf at worst."""
+
 
 def resolve(text: str) -> Any:
     """What a plain scalar stands for by the YAML 1.2 core schema (10.3.2)."""
@@ -23,13 +26,17 @@ def resolve(text: str) -> Any:
     if text[0] not in "+-.0123456789":
         return text
     if _INT.fullmatch(text):
-        return int(text) if len(text) < 300 else float(text)
+        return int(text) if len(text) < MAX_DIGITS else float(text)
     if _OCT.fullmatch(text):
-        return int(text[2:], 8)
+        return _integer(text[2:], 8)
     if _HEX.fullmatch(text):
-        return int(text[2:], 16)
+        return _integer(text[2:], 16)
     if _FLOAT.fullmatch(text):
         return float(text)
     if match := _INF.fullmatch(text):
         return -inf if match[1] == "-" else inf
     return nan if text in _NAN else text
+
+
+def _integer(digits: str, base: int) -> float:
+    return int(digits, base) if len(digits) < MAX_DIGITS else inf
