@@ -1,0 +1,43 @@
+"""What is installed or called from elsewhere is named by its contents: packages by hashes, actions by commits."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+REQUIREMENTS = ("requirements.txt", "requirements-test.txt")
+
+
+def requirements(name: str) -> Iterator[tuple[str, str, int]]:
+    """Name, version and number of hashes of each requirement in a file."""
+    text = re.sub(r"(?m)^#.*\n", "", (ROOT / name).read_text())
+    for row in text.replace("\\\n", " ").splitlines():
+        found = re.match(r"([A-Za-z0-9._-]+)==([^ ;]+)", row)
+        assert found, f"{name}: `{row[:60]}` is pinned by no version"
+        yield found[1], found[2], len(re.findall(r"--hash=sha256:[0-9a-f]{64}\b", row))
+
+
+@pytest.mark.parametrize("name", REQUIREMENTS)
+def test_every_package_is_pinned_by_the_hashes_of_its_files(name: str) -> None:
+    assert [package for package, _, hashes in requirements(name) if not hashes] == []
+
+
+def test_no_package_is_pinned_twice_nor_any_index_named() -> None:
+    packages = [package for name in REQUIREMENTS for package, _, _ in requirements(name)]
+    assert len(packages) == len(set(packages))
+    assert "//" not in "".join((ROOT / name).read_text() for name in REQUIREMENTS)
+
+
+def test_what_is_set_up_checks_the_hashes() -> None:
+    commands = [row for row in (ROOT / "Makefile").read_text().replace("\\\n", " ").splitlines() if "pip install" in row]
+    assert len(commands) == 3
+    assert all("--require-hashes" in row or "--no-deps --no-build-isolation" in row for row in commands)
+
+
+@pytest.mark.parametrize("page", ["action.yml", ".pre-commit-hooks.yaml", "README.md", *sorted(
+    str(page.relative_to(ROOT)) for page in (ROOT / "docs").glob("**/*.md"))])  # fmt: skip
+def test_actions_are_named_by_their_commits(page: str) -> None:
+    named = re.findall(r"uses: *\S+@(\S+)", (ROOT / page).read_text())
+    assert [ref for ref in named if not re.fullmatch(r"[0-9a-f]{40}|COMMIT", ref)] == []
