@@ -31,7 +31,8 @@ def test_no_package_is_pinned_twice_nor_any_index_named() -> None:
 
 
 def test_what_is_set_up_checks_the_hashes() -> None:
-    commands = [row for row in (ROOT / "Makefile").read_text().replace("\\\n", " ").splitlines() if "pip install" in row]
+    rows = (ROOT / "Makefile").read_text().replace("\\\n", " ").splitlines()
+    commands = [row for row in rows if "pip install" in row]
     assert len(commands) == 3
     assert all("--require-hashes" in row or "--no-deps --no-build-isolation" in row for row in commands)
 

@@ -2,8 +2,12 @@
 
 import http.client
 import socket
+import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from io import BytesIO
+from select import select
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -13,6 +17,7 @@ from lumen.errors import ModuleError
 from lumen.modules.eyes import Eyes
 from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.window import Window
+from lumen.modules.eyes.window_server import MAX_CONNECTIONS, Page
 from tests.modules.conftest import Stand, with_options
 from tests.modules.test_eyes import body, photographed
 from tests.waiting import until
@@ -20,9 +25,11 @@ from tests.waiting import until
 __all__ = ["photographed"]
 
 
-def looking(port: int) -> http.client.HTTPResponse:
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
-    connection.request("GET", "/")
+def looking(address: str, **headers: str) -> http.client.HTTPResponse:
+    where = urlsplit(address)
+    assert where.hostname
+    connection = http.client.HTTPConnection(where.hostname, where.port, timeout=60)
+    connection.request("GET", where.path, headers=headers)
     return connection.getresponse()
 
 
@@ -47,7 +54,7 @@ def window() -> Iterator[Window]:
 def test_shows_faces_and_people_in_their_frames(window: Window) -> None:
     grey = np.full((240, 320), 90, np.uint8)
     window.show(grey, [], [], "nobody looks: nothing is drawn")
-    page = looking(window.port)
+    page = looking(window.address)
     until(lambda: window._lookers)
     window.show(grey, [Box(100.0, 50.0, 40.0, 40.0)], [Box(200.0, 20.0, 60.0, 180.0)], "face 120 70: Budi")
     seen = picture(page).astype(int)
@@ -60,7 +67,7 @@ def test_shows_faces_and_people_in_their_frames(window: Window) -> None:
 
 
 def test_who_goes_is_not_shown_any_more(window: Window) -> None:
-    page = looking(window.port)
+    page = looking(window.address)
     until(lambda: window._lookers == 1)
     page.close()
 
@@ -78,6 +85,52 @@ def test_a_port_that_is_taken_is_one_line() -> None:
         assert "\n" not in str(error.value)
 
 
+def test_nobody_is_shown_anything_without_the_token_or_by_another_name(window: Window) -> None:
+    where = urlsplit(window.address)
+    bare = f"http://{where.netloc}/"
+    assert len(where.path.strip("/")) >= 20
+    assert [looking(bare + path).status for path in ("", "x", where.path.strip("/") + "x")] == [404] * 3
+    for name in ("evil.example", f"evil.example:{where.port}", "127.0.0.1", f"127.0.0.1:{where.port}, x", ""):
+        assert looking(window.address, Host=name).status == 421, name
+    page = looking(window.address, Host=f"localhost:{where.port}")
+    assert page.status == 200
+    page.close()
+
+
+def test_an_address_is_good_for_one_start(window: Window) -> None:
+    other = Window(0)
+    other.close()
+    assert urlsplit(other.address).path != urlsplit(window.address).path
+
+
+def test_who_is_slow_is_hung_up_on(window: Window, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Page, "timeout", 0.2)
+    with socket.create_connection(("127.0.0.1", urlsplit(window.address).port), timeout=60) as slow:
+        began = time.monotonic()
+        with suppress(OSError):
+            while not select([slow], [], [], 0.05)[0]:
+                slow.sendall(b"G")  # always something, and never a request
+        with suppress(ConnectionError):
+            assert slow.recv(1) == b""
+    assert time.monotonic() - began < 30
+
+
+def test_a_ninth_is_closed_and_finds_a_place_once_another_has_gone(window: Window) -> None:
+    pages = [looking(window.address) for _ in range(MAX_CONNECTIONS)]
+    with pytest.raises((http.client.RemoteDisconnected, ConnectionError)):
+        looking(window.address)
+    pages.pop().close()
+
+    def let_in() -> bool:
+        with suppress(http.client.RemoteDisconnected, ConnectionError):
+            pages.append(looking(window.address))
+        return len(pages) == MAX_CONNECTIONS
+
+    until(let_in)
+    for page in pages:
+        page.close()
+
+
 @pytest.mark.slow
 def test_the_eyes_show_what_they_found(stand: Callable[..., Stand], photographed: np.ndarray) -> None:
     here = stand()
@@ -85,7 +138,9 @@ def test_the_eyes_show_what_they_found(stand: Callable[..., Stand], photographed
     eyes = Eyes(here.project, here.bus, here.told.append, None)
     here.add(eyes)
     assert eyes._window
-    page = looking(eyes._window.port)
+    troubles = here.listen("lumen.trouble")
+    assert here.told == [f"what they see: {eyes._window.address}"]
+    page = looking(eyes._window.address)
     until(lambda: eyes._window._lookers)  # type: ignore[union-attr]
     here.bus.publish("avatar.NAO.data.joint", {"name": ["HeadYaw", "HeadPitch"], "angle": [0.1, 0.0], "stiffness": []})
     here.settle()
@@ -93,4 +148,5 @@ def test_the_eyes_show_what_they_found(stand: Callable[..., Stand], photographed
     seen = picture(page).astype(int)
     assert ((seen[:, :, 1] - seen[:, :, 0]) > 60).sum() > 100, "there is a frame around the face"
     assert eyes._head == "head +5.7 +0.0 deg"
+    assert troubles.bodies == [], "its address is no business of others"
     page.close()

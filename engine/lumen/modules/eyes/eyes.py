@@ -64,6 +64,8 @@ class Eyes(Module):
         self._people: list[Box] = []
         self._head = ""
         self._window = Window(options["window"]) if "window" in options else None
+        if self._window:
+            self._tell(f"what they see: {self._window.address}")  # on this terminal only: nobody else is to have it
 
     def hears(self) -> Mapping[str, MessageHandler]:
         heard: dict[str, MessageHandler] = {"visual_command": self._enrol, "forgotten": self._forget}

@@ -1,18 +1,17 @@
 """What the eyes see and find, live in a browser of this machine."""
 
 import threading
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from lumen.errors import ModuleError
 from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.opencv import opencv
+from lumen.modules.eyes.window_server import WindowServer
 
 if TYPE_CHECKING:
     from lumen.modules.eyes.pictures import Grey
+    from lumen.modules.eyes.window_server import Page
 
-WINDOW_HOST = "127.0.0.1"
-"""Only this machine sees who stands there."""
 PART_BOUNDARY = "frame"
 FACE_COLOUR, PERSON_COLOUR, TEXT_COLOUR = (0, 200, 0), (200, 120, 0), (255, 255, 255)
 """Colours, blue first."""
@@ -21,29 +20,20 @@ WAKE_INTERVAL = 1.0
 
 
 class Window:
-    """`http://127.0.0.1:PORT/` as a film of JPEGs; a picture is made only while somebody looks.
+    """`address` as a film of JPEGs; a picture is made only while somebody looks.
 
-    Port 0 is any free one; `port` is which. Raises ModuleError where it is taken.
+    Port 0 is any free one. Raises ModuleError where it is taken.
     """
 
     def __init__(self, port: int) -> None:
         self._cv2 = opencv()
         self._changed = threading.Condition()
         self._picture, self._number, self._lookers, self._open = b"", 0, 0, True
-        window = self
-
-        class Page(BaseHTTPRequestHandler):
-            def do_GET(self) -> None:
-                window.serve(self)
-
-            def log_message(self, format: str, *arguments: Any) -> None:
-                """Nothing: that somebody looks is not worth a line."""
-
         try:
-            self._server = ThreadingHTTPServer((WINDOW_HOST, port), Page)
+            self._server = WindowServer(port, self.serve)
         except (OSError, OverflowError) as error:
             raise ModuleError(f"the eyes' window can't be opened on port {port}: {error}") from None
-        self.port = self._server.server_address[1]
+        self.address = self._server.address
         threading.Thread(target=self._server.serve_forever, name="lumen-window", daemon=True).start()
 
     def show(self, grey: "Grey", faces: list[Box], people: list[Box], words: str) -> None:
@@ -63,16 +53,17 @@ class Window:
             self._picture, self._number = data, self._number + 1
             self._changed.notify_all()
 
-    def serve(self, page: BaseHTTPRequestHandler) -> None:
+    def serve(self, page: "Page") -> None:
         """Send every new picture until the looker goes."""
         page.send_response(200)
         page.send_header("Content-Type", f"multipart/x-mixed-replace; boundary={PART_BOUNDARY}")
         page.send_header("Cache-Control", "no-store")
+        page.send_header("Cross-Origin-Resource-Policy", "same-origin")
         page.end_headers()
         with self._changed:
             self._lookers, seen = self._lookers + 1, self._number
         try:
-            while self._open:
+            while self._open and page.wanted():
                 with self._changed:
                     if not self._changed.wait_for(lambda: self._number > seen or not self._open, WAKE_INTERVAL):  # noqa: B023
                         continue
@@ -80,7 +71,7 @@ class Window:
                 head = f"--{PART_BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\n\r\n"
                 page.wfile.write(head.encode() + data + b"\r\n")
         except OSError:
-            pass  # the looker is gone
+            pass  # the looker is gone, or takes nothing
         finally:
             with self._changed:
                 self._lookers -= 1
