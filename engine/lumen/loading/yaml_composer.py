@@ -4,6 +4,7 @@ libyaml's own composer calls itself for every level: 60,000 brackets end the pro
 event by event, and what is too much ends the reading there, before it is parsed any further.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import yaml
@@ -43,7 +44,7 @@ def compose(text: str) -> yaml.Node | None:
 
 class _Composer:
     def __init__(self, loader: yaml.CSafeLoader) -> None:
-        self._next = loader.get_event
+        self._next: Callable[[], Any] = loader.get_event
         self._anchors: dict[str, yaml.Node] = {}
         self._count = 0
 

@@ -1,6 +1,7 @@
 """What to say of a file that is not YAML: where it went wrong, in a student's words."""
 
 import re
+from typing import Any
 
 import yaml
 
@@ -72,7 +73,7 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         place = Place(file, start.line + 1, start.column + 1, start.line + 1, start.column + 2)
         hint = "close it with the same sign; a quote inside the text needs the other kind of quotes around it"
         return YAML_SYNTAX.at(place, "a quoted text begins here and is not closed where it should be", hint)
-    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+    mark: Any = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     if "simple key" in context and not text.splitlines()[error.context_mark.line].lstrip().startswith(("-", "?")):  # type: ignore[attr-defined]
         mark = error.context_mark  # type: ignore[attr-defined]
     place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2)
