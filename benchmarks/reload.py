@@ -153,7 +153,7 @@ class Soak:
         home = Home(root / ".lumen")
         home.hold()
         records = RunRecords(home)
-        self.reloading = Reloader(self.show.behavior, narrator, records=records, quiet=quiet, apart=True)
+        self.reloading = Reloader(self.show.behavior, narrator, records=records, quiet=quiet)
         self.show.add(ReloadPart(self.reloading))
         self.show.before.append(self.look)
         self.show.parts.append(RecordsPart(records, self.show.behavior))

@@ -2,6 +2,7 @@
 
 LumenError
  ├── ProjectError      the YAML can't be used; carries the diagnostics that say why
+ ├── FatalFilesError   reading the project's files ends the process that does it
  ├── UsageError        a flag, a name or a path given to Lumen is wrong
  ├── ExpressionError   an expression can't be read, or has no value here
  ├── SnapshotError     a snapshot belongs to another machine
@@ -45,6 +46,17 @@ class ProjectError(LumenError):
         first = str(errors[0]) if errors else "no diagnostics"
         more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
         super().__init__(first + more)
+
+
+class FatalFilesError(LumenError):
+    """Reading a project's files crashes, fills or holds up the process that does it: they are not read here.
+
+    `overdue` is whether it took too long.
+    """
+
+    def __init__(self, message: str, *, overdue: bool = False) -> None:
+        super().__init__(message)
+        self.overdue = overdue
 
 
 class UsageError(LumenError):

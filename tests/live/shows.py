@@ -7,21 +7,44 @@ from pathlib import Path
 from typing import Any
 
 import lumen
+from lumen.app.rehearsal import Rehearsal
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.requests import COMMAND, STATUS
 from lumen.app.reload.saved_files import ReloadPart
+from lumen.app.reload.validation_process import failure
+from lumen.app.reload.validation_worker import Loaded
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot
+from lumen.rules import check_files
 from lumen.runtime.home import Home
 from tests.nodes import Printed, whole
 from tests.waiting import Collector
 
 DEADLINE = 30.0
 QUIET = 0.06
+
+
+class Here:
+    """A `FileJudge` on the thread that asks: what tests are about is seldom where files are judged."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+
+    def begin(self) -> None:
+        """Nothing to begin."""
+
+    def load(self, files: Mapping[str, bytes]) -> Loaded:
+        return check_files(self._root, files)
+
+    def play(self, project: Project, story: str, seconds: float) -> Rehearsal | None:
+        return failure(project, story, seconds)
+
+    def close(self) -> None:
+        """Nothing to let go of."""
 
 
 class Live:
@@ -57,7 +80,7 @@ class Live:
             quiet=QUIET,
             budget=0.5,
             seen=seen,
-            apart=apart,
+            worker=None if apart else Here(folder),
         )
         self.show.add(ReloadPart(self.reloading))
         self.show.closing += [self.records.close, self.home.release]

@@ -4,12 +4,11 @@ from typing import Any
 
 import pytest
 
-from lumen.app.reload.validation_worker import InlineValidation
 from lumen.errors import BusError, LumenError
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan
 from lumen.language.events import Event
 from lumen.runtime import runtime
-from tests.live.shows import Live
+from tests.live.shows import Here, Live
 
 SORRY, PARDON = "en: I am sorry, I did not understand that.", "en: Come again, please?"
 
@@ -22,7 +21,7 @@ def fail(*_: Any, **__: Any) -> Any:
 def test_a_fault_leaves_the_old_bundle_running(live: Live, monkeypatch: pytest.MonkeyPatch) -> None:
     before = live.show.loop.project
     with monkeypatch.context() as patched:
-        patched.setattr(InlineValidation, "load", fail)
+        patched.setattr(Here, "load", fail)
         live.edit(SORRY, PARDON)
         live.until_told("refused: Lumen failed on these files: ZeroDivisionError('a fault of ours')")
     assert live.show.loop.project is before

@@ -9,9 +9,8 @@ from typing import Any, NamedTuple
 from lumen.bus import connect
 from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.errors import BusUnreachableError
-from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
-from lumen.loading.project import draft
+from lumen.loading.project import main_settings
 from lumen.ports import Bus
 from lumen.robots.command_receiver import KEY, ROUTE
 from lumen.runtime.home import ADDRESS_FILE, Home, home_of, homes
@@ -40,7 +39,7 @@ def reach(options: argparse.Namespace) -> Reached:
     if url and not url.startswith("memory:"):
         return Reached(connect(url), _command(root, found), url)
     if found is None:
-        settings = draft(read_files(root)).settings
+        settings = main_settings(root)
         if settings and not settings.bus.startswith("memory:"):
             return Reached(connect(settings.bus), _command(root, None), settings.bus)
         raise BusUnreachableError(
@@ -77,10 +76,10 @@ def _same_folder(one: object, other: Path) -> bool:
 
 
 def _command(root: Path, found: dict[str, Any] | None) -> str:
-    """The key as the exhibition says, else as the files do, however many errors they have."""
+    """The key as the exhibition says, else as lumen.yaml does, however many errors it has."""
     if found and isinstance(found.get("command"), str):
         return str(found["command"])
-    settings = draft(read_files(root)).settings
+    settings = main_settings(root)
     if settings is None:
         return KEY.replace("{robot}", "NAO")
     route = settings.routes.get(ROUTE)

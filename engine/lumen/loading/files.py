@@ -40,6 +40,11 @@ def read_files(root: Path) -> dict[str, bytes]:
     return dict(sorted(found.items()))
 
 
+def read_main_file(root: Path) -> bytes:
+    """lumen.yaml alone, empty where there is none."""
+    return _read(root / MAIN_FILE) or b""
+
+
 def belongs(path: str) -> bool:
     """Whether a file of that path from the project's root counts."""
     folder, _, name = path.rpartition("/")

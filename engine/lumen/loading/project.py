@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
@@ -13,12 +13,12 @@ from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import Unreadable, fingerprint
+from lumen.loading.files import Unreadable, fingerprint, read_main_file
 from lumen.loading.linking import link
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
-from lumen.loading.settings import build_settings
+from lumen.loading.settings import Settings, build_settings
 from lumen.loading.stories import build_story
 
 MISSING_FILE = Code("missing-file", "text", ERROR, "a file that is needed is not there")
@@ -60,6 +60,13 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     for file, report in found.reports.items():
         report.whole = not (report.pruned or file in torn or has_errors(report.diagnostics))
     return found
+
+
+def main_settings(root: Path) -> Settings | None:
+    """What lumen.yaml says, however many errors it has, and without any other file; None where it can't be read."""
+    found, content = ProjectDraft({}), read_main_file(root)
+    main = _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report))
+    return main.built if main else None
 
 
 def assemble(found: ProjectDraft, root: str) -> Project:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lumen.app.reload.requests import STATUS
 from lumen.language.projects import Project
-from lumen.loading.files import read_files
+from lumen.loading.files import fingerprint, read_files
 from lumen.ports import Bus, Message
 from lumen.rules import check_files
 from lumen.runtime.watcher import SWITCH_INTERVAL
@@ -55,10 +55,11 @@ class BundleFollower:
             usual = sys.getswitchinterval()
             sys.setswitchinterval(SWITCH_INTERVAL)
             try:
-                project, _ = check_files(self._root, read_files(self._root))
+                files = read_files(self._root)  # what the brain has not judged is not read here
+                project = check_files(self._root, files)[0] if fingerprint(files) == wanted else None
             finally:
                 sys.setswitchinterval(usual)
-            if project is not None and project.hash == wanted:
+            if project is not None:
                 missed = ""
                 self._loaded.put(project)
             elif not missed:

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.report import START, ReloadReport
+from lumen.app.reload.validation_worker import load_apart
 from lumen.errors import LumenError
 from lumen.interpreters.changes import changes
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.statechart import deserialize
 from lumen.language.projects import Project
-from lumen.rules import check_files
 from lumen.runtime.crash_counter import MAX_CRASHES
 from lumen.runtime.resuming import Resumption, resume
 from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
@@ -59,7 +59,7 @@ def _before(root: Path, keeper: SnapshotStore, kept: StoredSnapshot, project: Pr
     old: Project | None = project
     if kept.bundle != project.hash:
         files = keeper.files(kept.bundle)
-        old = check_files(root, files)[0] if files else None
+        old = load_apart(root, files)[0] if files else None
     if old is None or kept.behavior not in old.behaviors:
         return None
     return old if kept.behavior == old.behavior else replace(old, behavior=kept.behavior)

@@ -12,12 +12,12 @@ from lumen.app.recovery.previous_run import recover
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
+from lumen.app.reload.validation_worker import load_apart
 from lumen.buses.local import LocalBusServer
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.robots.command_receiver import command_key
-from lumen.rules import check_files
 from lumen.runtime.home import ADDRESS_FILE, Home, home_of
 from lumen.runtime.resuming import Resumption
 
@@ -71,9 +71,7 @@ class RunDirectory:
 
     def reloader(self, behavior: LiveBehavior, narrator: Narrator, *, mode: str) -> Reloader:
         """What takes saved files in this run; they are judged in another process."""
-        return Reloader(
-            behavior, narrator, mode=mode, records=self.records, applied=self.announce, seen=self.refused, apart=True
-        )
+        return Reloader(behavior, narrator, mode=mode, records=self.records, applied=self.announce, seen=self.refused)
 
     def begin_run(
         self, behavior: LiveBehavior, url: str, reloader: Reloader | None, *, fresh: bool
@@ -126,10 +124,13 @@ class RunDirectory:
         home.release()
 
     def last_good(self) -> Project | None:
-        """The bundle that ran last and was good, None where none was kept."""
+        """The bundle that ran last and was good, None where none was kept.
+
+        It was judged, and so were the files that are there now: none of that is read in this process.
+        """
         keeper = self.records.keeper
         files = keeper.files(keeper.good()) if keeper else None
-        return check_files(self.root, files)[0] if files else None
+        return load_apart(self.root, files)[0] if files else None
 
     def resumption(self, project: Project) -> Resumption | str:
         """How the run before is gone on with under this project; else why not, empty where there is nothing to say."""

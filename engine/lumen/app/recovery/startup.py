@@ -6,12 +6,12 @@ from pathlib import Path
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.report import START, ReloadReport
 from lumen.app.reload.rollback_guard import PERIOD
+from lumen.app.reload.validation_worker import load_apart
 from lumen.app.reload.validator import Validation
-from lumen.errors import ProjectError
+from lumen.errors import FatalFilesError, ProjectError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
-from lumen.rules import check_files
 from lumen.runtime.crash_counter import MAX_CRASHES
 from lumen.runtime.watcher import SavedFiles
 
@@ -21,18 +21,21 @@ def startup_project(
 ) -> Project:
     """The project in that folder; the last good one where it has errors and that is wanted, or ends every start.
 
-    `warn` hears of what a person has to know. Raises ProjectError where there is none to begin with.
+    `warn` hears of what a person has to know. Files are read in another process, which they may end. Raises
+    ProjectError or FatalFilesError where there is none to begin with.
     """
     files = read_files(root)
-    project, diagnostics = check_files(root, files)
-    if project is None:
+    try:
+        project, diagnostics = load_apart(root, files)
+        if project is None:
+            raise ProjectError(diagnostics)
+    except (ProjectError, FatalFilesError) as error:
         good = run_directory.last_good()
         if good and last_good:
-            warn(_instead_of_yours("THE FILES HAVE ERRORS"))
-            return _instead(run_directory, good, fingerprint(files), "", diagnostics)
+            return _last_good(run_directory, good, fingerprint(files), error, warn)
         if good:
             warn("`lumen run --last-good` starts with the last files that had no errors.")
-        raise ProjectError(diagnostics)
+        raise
     if (died := run_directory.records.died(project.hash)) >= MAX_CRASHES:
         good = run_directory.last_good()
         if good and good.hash != project.hash:
@@ -41,6 +44,21 @@ def startup_project(
             return _instead(run_directory, good, project.hash, why)
     run_directory.begin(project, files)
     return project
+
+
+def _last_good(
+    run_directory: RunDirectory,
+    good: Project,
+    hash: str,
+    error: ProjectError | FatalFilesError,
+    warn: Callable[[str], None],
+) -> Project:
+    """The last good project in place of files that can't be used."""
+    if isinstance(error, ProjectError):
+        warn(_instead_of_yours("THE FILES HAVE ERRORS"))
+        return _instead(run_directory, good, hash, "", error.diagnostics)
+    warn(_instead_of_yours("THE FILES END THE PROCESS THAT READS THEM"))
+    return _instead(run_directory, good, hash, str(error))
 
 
 def _instead(

@@ -15,7 +15,7 @@ from lumen.app.reload.notifier import ReloadNotifier
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.report import ReloadReport
 from lumen.app.reload.requests import COMMAND, WAITING, ReloadRequest, answering, request_from
-from lumen.app.reload.validation_worker import InlineValidation, ValidationWorker
+from lumen.app.reload.validation_worker import FileJudge, ValidationWorker
 from lumen.app.reload.validator import BUDGET, BundleValidator, Validation, fault_of, told
 from lumen.buses.validated import by_key
 from lumen.errors import BusError, UsageError
@@ -35,7 +35,7 @@ MODES = ("auto", "manual", "off")
 class Reloader:
     """Has saved files judged, and stages every good bundle; hears what operators ask for.
 
-    `apart` is whether files are judged in another process. `quiet` [s] and `budget` [s] are those of the watcher and of
+    `worker` judges them; else another process does. `quiet` [s] and `budget` [s] are those of the watcher and of
     stories; `applied` is told of each bundle that becomes active. `seen` is the hash of files that are there and not to
     be taken until they change, where those are not the ones that run.
     """
@@ -49,7 +49,7 @@ class Reloader:
         records: RunRecords | None = None,
         applied: Callable[[Project], None] = lambda _: None,
         seen: str = "",
-        apart: bool = False,
+        worker: FileJudge | None = None,
         quiet: float = QUIET_PERIOD,
         budget: float = BUDGET,
     ) -> None:
@@ -60,7 +60,7 @@ class Reloader:
         self._bus = behavior.loop.bus
         self._came: deque[Message] = deque(maxlen=WAITING)
         project = behavior.loop.project
-        self._worker = (ValidationWorker if apart else InlineValidation)(Path(project.root))
+        self._worker = worker or ValidationWorker(Path(project.root))
         self._validator = BundleValidator(self._worker, lambda: self._running, budget)
         self._watcher: FileWatcher[Validation | list[Rehearsal]] = FileWatcher(
             Path(project.root),

@@ -1,66 +1,59 @@
-"""Saved files judged in a process of its own, so that it never holds up a tick.
+"""Saved files judged in a process of its own, so that they never hold up a tick, and never end the exhibition.
 
 Python runs one thread at a time. A thread that loads files would keep the exhibition waiting for as long as the system
 lets it wait itself, some ticks on a busy machine. Of what comes back only that travels which differs from what is here
-already: some milliseconds. The child is our own program, and the pipe to it nobody else's.
+already: some milliseconds. The child is our own program, and the pipe to it nobody else's. What ends it would have
+ended us: it is never tried here (docs/decisions/023).
 """
 
-import logging
-import os
 import pickle
-import struct
+import signal
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Mapping
+from contextlib import closing, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
-from lumen.app.rehearsal import Rehearsal, rehearse
-from lumen.app.reload.delta import DeltaDecoder, DeltaEncoder
+from lumen.app.reload.delta import DeltaDecoder
+from lumen.app.reload.validation_process import ANSWER_TIMEOUT, MAX_MEMORY, OUT_OF_MEMORY, receive, send
+from lumen.errors import FatalFilesError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
-from lumen.rules import check_files
 
-_log = logging.getLogger(__name__)
-_LENGTH = struct.Struct(">I")
-NICENESS = 5
-"""By how much the judging process gives way to others on a busy machine, the robot above all (`nice`)."""
+if TYPE_CHECKING:
+    from lumen.app.rehearsal import Rehearsal
+
+COMMAND = [sys.executable, "-m", "lumen.app.reload.validation_process"]
 Loaded = tuple[Project | None, tuple[Diagnostic, ...]]
 
 
-class EnoughError(Exception):
-    """There is no time left for this story."""
-
-
-class InlineValidation:
-    """Loads files, and plays stories, on the thread that asks."""
-
-    def __init__(self, root: Path) -> None:
-        self._root = root
+class FileJudge(Protocol):
+    """Loads files, and plays stories."""
 
     def begin(self) -> None:
         """Files will have to be loaded soon."""
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
-        """The project that the files make, None where they have errors, and everything wrong with them."""
-        return check_files(self._root, files)
+        """The project that the files make, None where they have errors, and everything wrong with them.
 
-    def play(self, project: Project, story: str, seconds: float) -> Rehearsal | None:
+        Raises FatalFilesError where reading them ends whoever reads them.
+        """
+
+    def play(self, project: Project, story: str, seconds: float) -> "Rehearsal | None":
         """How a story fails with the project loaded last; None where it does not, or not within this time."""
-        return failure(project, story, seconds)
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """Let go of what it needs."""
 
 
 class ValidationWorker:
-    """What `Here` does, in another process; that is begun when it is first needed, and anew where it has died."""
+    """A `FileJudge` in another process, which is begun when it is first needed, and anew where it has died."""
 
-    def __init__(self, root: Path) -> None:
-        self._here = InlineValidation(root)
-        self._root = root
+    def __init__(self, root: Path, timeout: float = ANSWER_TIMEOUT) -> None:
+        self._root, self._timeout = root, timeout
         self._child: subprocess.Popen[bytes] | None = None
         self._receiver = DeltaDecoder()
 
@@ -70,19 +63,18 @@ class ValidationWorker:
             self._running()
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
+        began = self._child
         try:
-            parcel, diagnostics = self._ask("load", str(self._root), dict(files))
-        except (OSError, EOFError, pickle.UnpicklingError) as error:
-            _log.warning("the process that judges saved files is gone, they are judged beside the robot: %r", error)
-            self.close()
-            return self._here.load(files)
-        return (None if parcel is None else self._receiver.unpack(parcel)), diagnostics
+            return self._load(files)
+        except FatalFilesError as error:
+            if began is None or error.overdue:
+                raise
+            return self._load(files)  # what it had judged before may have been too much, and not these
 
-    def play(self, project: Project, story: str, seconds: float) -> Rehearsal | None:
+    def play(self, project: Project, story: str, seconds: float) -> "Rehearsal | None":
         try:
             found: Rehearsal | None = self._ask("play", story, seconds)
-        except (OSError, EOFError, pickle.UnpicklingError):
-            self.close()
+        except FatalFilesError:
             return None
         return found
 
@@ -93,19 +85,42 @@ class ValidationWorker:
             child.kill()
             child.communicate()
 
+    def _load(self, files: Mapping[str, bytes]) -> Loaded:
+        parcel, diagnostics = self._ask("load", str(self._root), dict(files))
+        return (None if parcel is None else self._receiver.unpack(parcel)), diagnostics
+
     def _ask(self, *question: Any) -> Any:
-        child = self._running()
-        assert child.stdin
-        assert child.stdout
-        _write(child.stdin, question)
-        return _read(child.stdout)
+        """Its answer; raises what it raised, and FatalFilesError where it did not live to answer."""
+        try:
+            child = self._running()
+        except OSError as error:
+            raise FatalFilesError(f"no process can be begun that reads the files: {error.strerror}") from None
+        began, timer = time.monotonic(), threading.Timer(self._timeout, child.kill)
+        timer.start()
+        try:
+            assert child.stdin
+            assert child.stdout
+            send(child.stdin, question)
+            answer = receive(child.stdout)
+        except (OSError, EOFError, pickle.UnpicklingError):
+            self._child = None
+            child.kill()
+            child.communicate()
+            late = time.monotonic() - began >= self._timeout
+            how = f"it took more than {self._timeout:.0f} s" if late else _how(child.returncode)
+            raise FatalFilesError(f"these files end the process that reads them: {how}", overdue=late) from None
+        finally:
+            timer.cancel()
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
 
     def _running(self) -> "subprocess.Popen[bytes]":
         """The process, begun anew where there is none; raises OSError where the system has no room for it."""
         if self._child is None or self._child.poll() is not None:
             self.close()
             self._child = subprocess.Popen(
-                [sys.executable, "-m", "lumen.app.reload.validation_worker"],
+                COMMAND,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 start_new_session=True,  # Ctrl-C is not for it
@@ -113,58 +128,17 @@ class ValidationWorker:
         return self._child
 
 
-def failure(project: Project, story: str, seconds: float) -> Rehearsal | None:
-    """How a story fails with a project; None where it does not, or not within `seconds` of this machine's time."""
-    until = time.perf_counter() + seconds
-
-    def hurry(_: float) -> None:
-        if time.perf_counter() > until:
-            raise EnoughError
-
-    try:
-        rehearsal = rehearse(project, project.stories[story], hooks=[hurry])
-    except EnoughError:
-        return None
-    return rehearsal if rehearsal.failed else None
+def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:
+    """What these files make, read in a process of its own; raises FatalFilesError where they end it."""
+    with closing(ValidationWorker(root)) as worker:
+        return worker.load(files)
 
 
-def _write(pipe: IO[bytes], what: Any) -> None:
-    data = pickle.dumps(what, pickle.HIGHEST_PROTOCOL)
-    pipe.write(_LENGTH.pack(len(data)) + data)
-    pipe.flush()
-
-
-def _read(pipe: IO[bytes]) -> Any:
-    """What comes next; raises EOFError at the end."""
-    head = pipe.read(_LENGTH.size)
-    if len(head) < _LENGTH.size:
-        raise EOFError
-    return pickle.loads(pipe.read(*_LENGTH.unpack(head)))
-
-
-def _serve(question: Sequence[Any], project: Project | None, sender: DeltaEncoder) -> tuple[Any, Project | None]:
-    """The answer, and the project that is active after it."""
-    match question:
-        case ["load", str(root), dict(files)]:
-            project, diagnostics = check_files(Path(root), files)
-            return (None if project is None else sender.pack(project), diagnostics), project
-        case ["play", str(story), float(seconds)] if project:
-            return failure(project, story, seconds), project
-    return None, project
-
-
-def main() -> None:
-    """Answer until the pipe ends; what anybody prints goes to the terminal, not into the pipe."""
-    if hasattr(os, "nice"):
-        os.nice(NICENESS)
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    project, sender = None, DeltaEncoder()
-    with suppress(EOFError, BrokenPipeError):
-        while True:
-            answer, project = _serve(_read(sys.stdin.buffer), project, sender)
-            _write(answers, answer)
-
-
-if __name__ == "__main__":
-    main()
+def _how(code: int) -> str:
+    """How a process ended, by its exit code."""
+    if code == OUT_OF_MEMORY:
+        return f"it took more than {MAX_MEMORY >> 20} MB"
+    if code < 0:
+        with suppress(ValueError):
+            return f"it was ended by {signal.Signals(-code).name}"
+    return f"it ended with {code}"

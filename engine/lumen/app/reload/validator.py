@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 
 from lumen.app.rehearsal import Rehearsal
-from lumen.app.reload.validation_worker import InlineValidation, ValidationWorker
+from lumen.app.reload.validation_worker import FileJudge
+from lumen.errors import FatalFilesError
 from lumen.interpreters.changes import Change, Risk, changes
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.language.diagnostics import Diagnostic
@@ -59,12 +60,10 @@ class Validation:
 class BundleValidator:
     """Judges files against the bundle that runs, which `running` tells; called on a thread that may take its time.
 
-    `court` loads files and plays stories, here or in another process.
+    `worker` loads files and plays stories, in another process.
     """
 
-    def __init__(
-        self, worker: InlineValidation | ValidationWorker, running: Callable[[], Project], budget: float = BUDGET
-    ) -> None:
+    def __init__(self, worker: FileJudge, running: Callable[[], Project], budget: float = BUDGET) -> None:
         self._worker, self._running, self._budget = worker, running, budget
 
     def __call__(self, saved: SavedFiles) -> Validation:
@@ -82,6 +81,8 @@ class BundleValidator:
             failed = tuple(self._play(project, _saved_stories(project, saved.changed)))
             took = loaded - began, time.perf_counter() - loaded
             return Validation(saved, hash, project, diagnostics, running, found, failed, "", *took)
+        except FatalFilesError as error:
+            return Validation(saved, hash, fault=str(error))
         except Exception as error:  # a fault of ours costs the reload, and nothing else
             return Validation(saved, hash, fault=fault_of(error))
 
