@@ -108,11 +108,39 @@ class Client:
         ("publish", 1, 2, 3),
         ("dance",),
         ("proof", "again", "x"),
+        ("publish", "lumen.a", "", "", 10**400, 1),
+        ("publish", "lumen.a", "", "", float("nan"), 1),
+        ("publish", "lumen.a", "", "", "5", 1),
+        ("publish", "lumen.a", "", "", -1, 1),
+        ("publish", "lumen.a", "\ud800", "", None, 1),
+        ("publish", "lumen.a", "", "\ud800", None, 1),
+        ("publish", "\ud800", "", "", None, 1),
+        ("publish", "lumen.a", "x" * 300, "", None, 1),
+        ("publish", "lumen.a", "", "", None, json.loads("[" * 900 + "]" * 900)),
+        ("publish", "lumen.a", "", "", None, float("inf")),
+        ("publish", "lumen.a", "", "", None, "\ud800"),
+        ("publish", "lumen.a", "", "", None, {"x": 10**4000}),
+        ("subscribe", 10**4000, "lumen.#"),
+        ("subscribe", True, "\ud800.#"),
+        ("unsubscribe", 10**400),
+        ("mark", {}),
     ],
 )
 def test_nonsense_of_somebody_who_knows_the_key_costs_only_them(opened: Opened, words: tuple[object, ...]) -> None:
     with Client(opened) as client, Client(opened) as other:
+        client.bus.subscribe("lumen.a", Collector())
         other.bus._put(frame(*words))
+        client.still_hears()
+
+
+def test_a_fault_of_ours_in_handling_a_frame_costs_one_connection(
+    opened: Opened, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Client(opened) as client, Client(opened) as other:
+        monkeypatch.setattr(opened.bus, "publish", lambda *_, **__: 1 / 0)
+        other.bus._put(frame("publish", "lumen.a", "", "", None, 1))
+        assert other.bus.gone.wait(10.0)
+        monkeypatch.undo()
         client.still_hears()
 
 

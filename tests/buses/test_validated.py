@@ -27,6 +27,16 @@ def test_a_body_of_ours_that_does_not_fit_is_our_own_fault() -> None:
         bus.publish(FACE, {"x": 1})
 
 
+def test_a_body_that_nests_without_end_is_refused_before_anybody_looks_into_it() -> None:
+    body: Any = 1
+    for _ in range(50_000):
+        body = [body]
+    bus = connect("memory://", project())
+    for key in (FACE, "lumen.motion.head"):
+        with pytest.raises(BusError, match="nested"):
+            bus.publish(key, body)
+
+
 def test_a_wrong_body_that_comes_in_is_reported_and_goes_no_further() -> None:
     seen, refused = Collector(), []
     bus = connect("memory://hall", project(), on_refused=lambda key, reason: refused.append((key, reason)))

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from lumen.interpreters.json_schema import JsonSchema
+from lumen.interpreters.json_schema import MAX_DATA_DEPTH, JsonSchema
 from lumen.loading.document import Document
 from lumen.loading.files import read_files
 from lumen.loading.schema import FILE_KINDS, load_schema
@@ -129,3 +129,24 @@ def _change(data: Any, random: Random) -> None:
             del node[key]
     else:
         node[random.choice(["x", "at", "id", *node])] = value
+
+
+def _nested(levels: int) -> Any:
+    data: Any = 1
+    for level in range(levels):
+        data = [data] if level % 2 else {"a": data}
+    return data
+
+
+@pytest.mark.parametrize("schema", [{}, {"items": {"$ref": "#"}, "properties": {"a": {"$ref": "#"}}}])
+def test_data_in_which_jsonschema_rs_would_end_the_process_is_not_given_to_it(schema: Any) -> None:
+    assert JsonSchema(schema).fits(_nested(MAX_DATA_DEPTH))
+    assert not JsonSchema(schema).fits(_nested(MAX_DATA_DEPTH + 1))
+    deep = _nested(50_000)
+    assert not JsonSchema(schema).fits(deep)
+    with pytest.raises(RecursionError):
+        next(JsonSchema(schema).errors(deep))
+
+
+def test_a_schema_that_nests_too_deep_fits_nothing() -> None:
+    assert not JsonSchema({"const": _nested(50_000)}).fits(1)

@@ -19,6 +19,8 @@ MAX_BODY_BYTES = 1024 * 1024
 """How long a body may be [bytes of JSON in UTF-8]."""
 MAX_KEY_BYTES = 255
 """How long a routing key may be [bytes]: AMQP's bound on a short string."""
+MAX_TTL = 10 * 365 * 24 * 3600
+"""How long a message may be of use [s]."""
 KEY_PREFIXES = ("avatar", "lumen")
 """What every key of ours begins with."""
 TEXT = "text/plain"
@@ -108,8 +110,21 @@ def _derived(body: object, depth: int) -> Any:
 
 def check_key(key: str) -> None:
     """Raise BusError where AMQP could not carry this key: a text of 255 bytes at most."""
-    if not isinstance(key, str) or len(key.encode(errors="replace")) > MAX_KEY_BYTES:
+    if not isinstance(key, str) or not _fits(key):
         raise BadMessageError(f"a key is a text of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
+
+
+def _fits(key: str) -> bool:
+    try:
+        return len(key.encode()) <= MAX_KEY_BYTES
+    except UnicodeEncodeError:  # half a surrogate pair
+        return False
+
+
+def check_ttl(ttl: object) -> None:
+    """Raise BusError for what is no length of time: a number from 0 on, in [s], or None."""
+    if ttl is not None and not (type(ttl) in (int, float) and 0 <= ttl <= MAX_TTL):  # type: ignore[operator]
+        raise BadMessageError(f"a ttl is a number of seconds from 0 to {MAX_TTL}, not {str(ttl)[:40]!r}")
 
 
 def encode(body: Any) -> bytes:

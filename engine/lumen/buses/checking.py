@@ -35,7 +35,10 @@ class SchemaCheck:
     def __call__(self, body: Any) -> str:
         if self._schema.fits(body):
             return ""
-        error = next(self._schema.errors(body), None)
+        try:
+            error = next(self._schema.errors(body), None)
+        except RecursionError:
+            return "it is nested too deeply"
         return _say(error) if error else ""
 
 

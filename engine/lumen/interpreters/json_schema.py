@@ -24,6 +24,20 @@ _NAMED = frozenset(("properties", "patternProperties", "dependentSchemas", "$def
 """Keywords whose values are schemas under names."""
 
 
+MAX_DATA_DEPTH = 200
+"""Levels of lists and objects that are looked at: jsonschema-rs calls itself for each, until the process ends."""
+
+_FLAT = frozenset((str, int, float, bool, type(None)))
+
+
+def deeper_than(levels: int, data: Any) -> bool:
+    """Whether lists and objects lie within one another in more than so many levels."""
+    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list | tuple) else ()
+    if _FLAT.issuperset(map(type, inner)):
+        return not levels and isinstance(data, dict | list | tuple)
+    return not levels or any(deeper_than(levels - 1, value) for value in inner if type(value) not in _FLAT)
+
+
 class JsonSchema:
     """A schema, compiled when it is first needed. Where it is unsound itself, nothing fits, and nothing is wrong."""
 
@@ -32,6 +46,8 @@ class JsonSchema:
 
     def fits(self, data: Any) -> bool:
         """Whether the data certainly fits. A no without an error is a yes: nobody else knew what the data is."""
+        if deeper_than(MAX_DATA_DEPTH, data):
+            return False
         try:
             return self._quick is not None and self._quick.is_valid(data)
         except ValueError:  # half a surrogate pair, a key that is no text
@@ -39,6 +55,8 @@ class JsonSchema:
 
     def errors(self, data: Any) -> "Iterator[ValidationError]":
         """What is wrong with the data; raises RecursionError where schema or data lead on and on."""
+        if deeper_than(MAX_DATA_DEPTH, data):
+            raise RecursionError(f"nested in more than {MAX_DATA_DEPTH} levels")
         if self._only_quick:
             return self._told(data)
         return iter(self._explaining.iter_errors(data)) if self._quick else self._guessed(data)
@@ -48,6 +66,8 @@ class JsonSchema:
         """jsonschema-rs's validator; None for what it takes for unsound."""
         from jsonschema_rs import Draft202012Validator, RegexOptions
 
+        if deeper_than(MAX_DATA_DEPTH, self.schema):
+            return None
         try:
             return Draft202012Validator(_prepared(self.schema), pattern_options=RegexOptions(), offline=True)
         except ValueError:

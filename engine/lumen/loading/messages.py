@@ -7,6 +7,7 @@ from typing import Any
 
 from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.patterns import compile_pattern
+from lumen.interpreters.json_schema import deeper_than
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
 from lumen.loading.complaints import WRONG_TYPE, WRONG_VALUE
 from lumen.loading.document import MAX_NODE_DEPTH, TOO_LARGE, Document
@@ -36,6 +37,10 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
         data = json.loads(content)
     except (ValueError, RecursionError) as error:
         return None, (_syntax(file, content, error),)
+    if deeper_than(MAX_NODE_DEPTH, data):
+        return None, (
+            TOO_LARGE.at(Place(file), f"the file is nested deeper than {MAX_NODE_DEPTH} levels", "simplify it"),
+        )
     if _plainly_sound(data, content):
         return data, ()
     document, found = parse(file, content.replace(b"\t", b" "))  # JSON may be indented with tabs
@@ -53,9 +58,9 @@ def _plainly_sound(data: Any, content: bytes) -> bool:
     """Whether nothing is to be said of a schema, so that nobody needs its places: they take most of the time."""
     try:
         json.loads(content, object_pairs_hook=_each_once)
-        if not isinstance(data, dict) or _depth(data) > MAX_NODE_DEPTH:
+        if not isinstance(data, dict):
             return False
-    except (KeyError, RecursionError):
+    except KeyError:
         return False
     return examine(data, DocumentReport(Document("", data)))
 
@@ -66,11 +71,6 @@ def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         raise KeyError
     return found
-
-
-def _depth(data: Any) -> int:
-    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
-    return 1 + max(map(_depth, inner), default=0)
 
 
 def examine(schema: Any, report: DocumentReport, where: NodePath = ()) -> bool:

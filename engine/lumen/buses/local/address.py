@@ -34,7 +34,7 @@ class LocalAddress:
         """The address in what a file says; raises BusError where it holds none."""
         try:
             return LocalAddress(str(data["path"]), int(data["port"]), str(data["key"]))
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise BusAddressError(f"this is no address: {error!r}") from None
 
     def connect(self) -> socket.socket:
@@ -46,6 +46,9 @@ class LocalAddress:
         except OSError:
             wire.close()
             raise
+        except (TypeError, ValueError, OverflowError) as error:
+            wire.close()
+            raise OSError(str(error)) from None
         return wire
 
     def remove(self) -> None:

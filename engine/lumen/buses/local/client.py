@@ -148,7 +148,7 @@ class LocalBusClient:
                 if not data:
                     break
                 self._read += data
-        except (OSError, BadFrameError) as error:
+        except Exception as error:  # whatever comes ends the connection, and whoever waits hears of it
             if not self._closed:
                 _log.debug("the exhibition closed the connection: %r", error)
         self._end()
