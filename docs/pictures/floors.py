@@ -33,6 +33,7 @@ PURPOSES: Mapping[str, str] = {
     "loading": "YAML to values that remember their file and line",
     "interpreters": "values to steps: statecharts, expressions, fuzzy inference, trajectories, walking",
     "ports": "Robot, Bus, Clock: what the runtime asks of the world",
+    "upkeep": "threads begun again after a fault, and what is dropped counted",
     "errors": "the faults of the world, as one tree of exceptions",
     "language": "what the YAML can say, as frozen values",
 }
@@ -48,6 +49,7 @@ ZONES: Mapping[str, str] = {
     "loading": "files",
     "interpreters": "values",
     "ports": "values",
+    "upkeep": "values",
     "errors": "values",
     "language": "values",
 }

@@ -17,6 +17,7 @@ from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.trace_publisher import TRACE_KEY
+from lumen.upkeep.threads import ThreadWatch, WatchedThread
 
 ROUNDING = 1e-6
 """How far the sum of many ticks may be off [s]."""
@@ -48,6 +49,7 @@ class Node:
         self.claimed: Callable[[], None] = lambda: None
         self.now, self._asked = clock.now(), time.monotonic()
         self._begun: list[Part] = []
+        self._threads = ThreadWatch()
         self._waiting = ""
         self._interrupts, self._heeded, self._leaving = 0, False, False
 
@@ -116,6 +118,8 @@ class Node:
             self._begin(self.now)
         for part in self._begun:
             part.tick(self.now, changes)
+        for thread in self._threads.tick():
+            self._lose(thread)
         self._heed()
         return self.now
 
@@ -177,6 +181,13 @@ class Node:
                 raise UsageError(
                     f"{where_it_runs(peer)} runs at {theirs:g} × real time: say --speed {theirs:g} here, too"
                 )
+
+    def _lose(self, thread: WatchedThread) -> None:
+        """A thread could not be begun again: tell it, and let the robot rest where that leaves nobody to stop it."""
+        self._narrator.line("trouble", thread.lost)
+        if thread.vital:
+            for part in self._begun:
+                part.helpless(thread.lost)
 
     def _heed(self) -> None:
         """What the first interrupt asks for; where nobody has anything to do for it, it ends."""

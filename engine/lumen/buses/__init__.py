@@ -19,6 +19,7 @@ How RabbitMQ is used, from the inside out:
     outbox.py         what waits to be sent: bounded
     ratelimit.py      how much telemetry a second is handed on
     connection.py     a connection that belongs to one thread, and is opened again when it is lost
+    properties.py     what AMQP says of a message, whatever it says
     polled.py         pika's asynchronous connection, driven by that thread
     publisher.py      the connection that sends, and waits for the broker's confirmations
     consumer.py       the connection that receives

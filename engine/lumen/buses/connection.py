@@ -12,6 +12,8 @@ import pika
 from pika.exceptions import AMQPChannelError, AMQPError, ChannelClosedByBroker
 
 from lumen.buses.broker import BrokerAddress
+from lumen.buses.properties import TolerantConnection
+from lumen.upkeep.threads import WatchedThread
 
 MIN_RECONNECT_DELAY = 0.2
 """How long the first attempt to reconnect is waited for [s]; each further one twice as long."""
@@ -66,7 +68,7 @@ class BrokerConnection:
         self.channel: Any = None
         self.ending = threading.Event()
         self._opened: Future[None] = Future()
-        self._thread = threading.Thread(target=self._run, name=f"lumen-bus-{name}", daemon=True)
+        self._thread = WatchedThread(f"lumen-bus-{name}", self._run, vital=True)
         self._delay = MIN_RECONNECT_DELAY
 
     def open(self) -> None:
@@ -84,9 +86,7 @@ class BrokerConnection:
 
     def join(self, timeout: float) -> bool:
         """Wait until the thread has ended; whether it has, within `timeout` [s]."""
-        if self._thread.ident is not None:
-            self._thread.join(max(0.0, timeout))
-        return not self._thread.is_alive()
+        return self._thread.join(max(0.0, timeout))
 
     def begin(self) -> None:
         """The channel is open: make on the broker what is needed."""
@@ -97,7 +97,7 @@ class BrokerConnection:
 
     def connect(self) -> Any:
         """A new connection, open; raises what pika raises."""
-        return pika.BlockingConnection(self.address.parameters)
+        return pika.BlockingConnection(self.address.parameters, _impl_class=TolerantConnection)
 
     def open_channel(self) -> Any:
         return self.connection.channel()

@@ -8,15 +8,17 @@ from typing import Any
 
 from pika.exceptions import AMQPError, ChannelClosedByBroker, ConsumerCancelled
 
-from lumen.buses.bodies import MAX_BODY_BYTES
+from lumen.buses.bodies import MAX_BODY_BYTES, MAX_KEY_BYTES
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.declarer import QueueDeclarer
+from lumen.buses.properties import MessageProperties
 from lumen.buses.queues import UNROUTED, queue_of
 from lumen.buses.subscriptions import Delivery, Subscription, Subscriptions
 from lumen.errors import BusRefusedError
 from lumen.language.routes import Route
 from lumen.ports import MessageHandler
+from lumen.upkeep.drops import DropLog
 
 PREFETCH = 64
 """Deliveries of one subscription that the broker sends ahead of their being handled."""
@@ -50,6 +52,7 @@ class Consumer(BrokerConnection):
         self._epoch = 0
         self._acknowledged = 0
         self._turned = self._since = time.monotonic()
+        self.unreadable = DropLog(_log, "properties of messages")
 
     def begin(self) -> None:
         self._epoch += 1
@@ -64,6 +67,7 @@ class Consumer(BrokerConnection):
         self._since = self._turned if now - self._turned > TURN_TIME + STALL_TIME else now
         self._turned = now
         self.process(TURN_TIME)
+        self.unreadable.tell()
         return not self.ending.is_set()
 
     def subscriptions(self) -> list[Subscription]:
@@ -208,11 +212,19 @@ class Consumer(BrokerConnection):
     def _callback(self, subscription: Subscription) -> Callable[..., None]:
         def arrived(_: Any, method: Any, properties: Any, body: bytes) -> None:
             kept = body if len(body) <= MAX_BODY_BYTES else body[: MAX_BODY_BYTES + 1]
-            key, number, again = method.routing_key, method.delivery_tag, method.redelivered
+            key, properties = self._readable(method.routing_key, properties)
+            number, again = method.delivery_tag, method.redelivered
             subscription.received += 1
             self._receive(Delivery(subscription, key, kept, properties, number, self._epoch, again, self._arrival()))
 
         return arrived
+
+    def _readable(self, key: str | bytes, properties: MessageProperties) -> tuple[str, MessageProperties]:
+        """The key as a text, and the properties; what is left out of them is counted, and told."""
+        text = key if isinstance(key, str) else _short(key.decode(errors="backslashreplace"))
+        if properties.unreadable:
+            self.unreadable.add(text, f"{', '.join(properties.unreadable)} can't be read; the message is taken without")
+        return text, properties
 
     def _arrival(self) -> float:
         """When what is received now came at the earliest [s, monotonic], where this process stood still meanwhile.
@@ -221,3 +233,8 @@ class Consumer(BrokerConnection):
         """
         now = time.monotonic()
         return self._since if now - self._since > TURN_TIME + STALL_TIME else now
+
+
+def _short(key: str) -> str:
+    """As much of a key as AMQP could carry."""
+    return key.encode()[:MAX_KEY_BYTES].decode(errors="ignore")

@@ -13,6 +13,7 @@ from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import Refused
 from lumen.ports import Message
+from lumen.upkeep.threads import MessageGuard, WatchedThread
 
 FLUSH_MARK = "lumen.mark"
 """The type of a message that only says that everything published before it has arrived."""
@@ -37,7 +38,8 @@ class Dispatcher:
         self._marked = threading.Event()
         self._done: dict[tuple[int, str], None] = {}
         self._limiter = RateLimiter()
-        self._thread = threading.Thread(target=self._run, name="lumen-bus-handlers", daemon=True)
+        self.guard = MessageGuard(_log, "what hands on messages")
+        self._thread = WatchedThread("lumen-bus-handlers", self._run, vital=True)
         self._thread.start()
 
     def receive(self, delivery: Delivery) -> None:
@@ -46,7 +48,7 @@ class Dispatcher:
     @property
     def inside(self) -> bool:
         """Whether the caller is a handler."""
-        return threading.current_thread() is self._thread
+        return self._thread.current
 
     def expect(self, marks: set[str]) -> threading.Event:
         """An event that is set when marks with all of these bodies have come through."""
@@ -58,20 +60,23 @@ class Dispatcher:
     def end(self, timeout: float) -> bool:
         """Finish what has been received and end; whether that was done within `timeout` [s]."""
         self._waiting.put(None)
-        if self.inside:
-            return True
-        self._thread.join(max(0.0, timeout))
-        return not self._thread.is_alive()
+        return self.inside or self._thread.join(max(0.0, timeout))
 
     def _run(self) -> None:
         while (delivery := self._waiting.get()) is not None:
-            subscription = delivery.subscription
-            subscription.handled += 1
-            if delivery.properties.type == FLUSH_MARK:
-                self._mark_arrived(delivery.body.decode(errors="replace"))
-            elif subscription.active and self._wanted(subscription, delivery):
-                self._deliver(subscription, delivery)
-            self._handled(delivery)
+            delivery.subscription.handled += 1
+            try:
+                with self.guard(delivery.key):
+                    self._take(delivery.subscription, delivery)
+            finally:
+                self._handled(delivery)
+        self.guard.drops.tell(all=True)
+
+    def _take(self, subscription: Subscription, delivery: Delivery) -> None:
+        if delivery.properties.type == FLUSH_MARK:
+            self._mark_arrived(delivery.body.decode(errors="replace"))
+        elif subscription.active and self._wanted(subscription, delivery):
+            self._deliver(subscription, delivery)
 
     def _mark_arrived(self, mark: str) -> None:
         if mark in self._marks:

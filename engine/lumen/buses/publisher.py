@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import pika
+from pika.exceptions import AMQPChannelError, AMQPConnectionError
 
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
@@ -12,6 +13,7 @@ from lumen.buses.outbox import Outbox, OutgoingMessage
 from lumen.buses.polled import PolledConnection
 from lumen.buses.queues import SIDE_QUEUES, UNROUTED, ChannelCall, Queue, declare_side_queues
 from lumen.language.diagnostics import did_you_mean
+from lumen.upkeep.drops import DropLog
 
 MAX_UNCONFIRMED_MESSAGES = 1_000
 """Messages that are sent and not confirmed yet; more wait in the outbox."""
@@ -45,6 +47,7 @@ class Publisher(BrokerConnection):
         self._window: dict[int, OutgoingMessage] = {}
         self._bytes = self._number = self._dropped = self._late = 0
         self._warned: set[str] = set()
+        self.unsendable = DropLog(_log)
 
     def connect(self) -> PolledConnection:
         return PolledConnection(self.address.parameters)
@@ -118,10 +121,18 @@ class Publisher(BrokerConnection):
             delivery_mode=PERSISTENT_DELIVERY if message.id else None,
             headers=message.headers,
         )
+        try:
+            self.channel.basic_publish(
+                message.exchange, message.key, message.body, properties, mandatory=bool(message.id)
+            )
+        except (AMQPChannelError, AMQPConnectionError, OSError):
+            raise
+        except Exception as error:  # it can't be written down: sent again, it would end the connection again
+            self.unsendable.add(message.key, f"AMQP can't carry it: {error!r}")
+            return
         self._number += 1
         self._window[self._number] = message
         self._bytes += len(message.body)
-        self.channel.basic_publish(message.exchange, message.key, message.body, properties, mandatory=bool(message.id))
 
     def _confirmed(self, frame: Any) -> None:
         """The broker has this message, and with `multiple` all before it; or (a nack) could not take it."""

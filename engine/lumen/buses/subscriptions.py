@@ -3,8 +3,9 @@
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from lumen.buses.properties import MessageProperties
 from lumen.buses.queues import EXCHANGE
 from lumen.language.routes import Route
 from lumen.ports import MessageHandler
@@ -45,7 +46,7 @@ class Delivery(NamedTuple):
     subscription: Subscription
     key: str
     body: bytes
-    properties: Any
+    properties: MessageProperties
     number: int
     epoch: int
     again: bool = False

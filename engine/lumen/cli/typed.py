@@ -2,7 +2,6 @@
 
 import queue
 import sys
-import threading
 from collections.abc import Sequence
 from io import TextIOWrapper
 
@@ -11,6 +10,7 @@ from lumen.app.parts.part import Part
 from lumen.app.parts.visitor import VisitorPart
 from lumen.language.events import Event
 from lumen.language.stories import Arrive, Leave, Speak, Visitor
+from lumen.upkeep.threads import WatchedThread
 
 FAREWELL = 5.0
 """How long it goes on after whoever typed has left [s]."""
@@ -29,6 +29,7 @@ class TypedVisitorPart(Part):
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._gone: float | None = None
         self._now = 0.0
+        self._thread = WatchedThread("lumen-typing", self._read)
 
     @property
     def over(self) -> bool:
@@ -38,7 +39,7 @@ class TypedVisitorPart(Part):
         self._narrator.note(self._greeting)
         self._visitor.arrive(Visitor())
         self._narrator.visitor_action(Arrive(Visitor()))
-        threading.Thread(target=self._read, name="lumen-typing", daemon=True).start()
+        self._thread.start()
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Say what was typed since the last tick."""

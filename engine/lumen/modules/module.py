@@ -11,6 +11,7 @@ from lumen.errors import BusError, ModuleError
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.upkeep.threads import WatchedThread
 
 DEFAULT_KEYS: Mapping[str, str] = {
     "image": "avatar.{robot}.data.image",
@@ -71,7 +72,7 @@ class Module:
         self._busy = self._ending = False
         self._told: set[str] = set()
         self._undo: list[Callable[[], None]] = []
-        self._thread = threading.Thread(target=self._run, name=f"lumen-{self.name}", daemon=True)
+        self._thread = WatchedThread(f"lumen-{self.name}", self._run)
 
     def hears(self) -> Mapping[str, MessageHandler]:
         """The routes that it listens on, and what it does with a message of each."""
@@ -108,8 +109,7 @@ class Module:
         with self._changed:
             self._ending = True
             self._changed.notify_all()
-        if self._thread.is_alive() and threading.current_thread() is not self._thread:
-            self._thread.join(5.0)
+        self._thread.join(5.0)
 
     def publish(self, route: str, body: Any) -> None:
         """Send a body on a route; where the bus refuses, that is a line to the operator."""

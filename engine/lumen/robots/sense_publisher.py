@@ -10,6 +10,7 @@ from typing import Any
 
 from lumen.errors import BusError, RobotError
 from lumen.ports import Reading
+from lumen.upkeep.threads import WatchedThread
 
 MAX_LOGGED_REASONS = 20
 
@@ -95,11 +96,10 @@ class SensePublisher:
         with self._changed:
             self._ending = True
             self._changed.notify()
-        self._thread.join(max(0.0, timeout))
-        return not self._thread.is_alive()
+        return self._thread.join(max(0.0, timeout))
 
-    def _started(self) -> threading.Thread:
-        thread = threading.Thread(target=self._run, name=f"lumen-{self.name}", daemon=True)
+    def _started(self) -> WatchedThread:
+        thread = WatchedThread(f"lumen-{self.name}", self._run)
         thread.start()
         return thread
 
@@ -122,9 +122,8 @@ class SensePublisher:
         except RobotError as error:
             self._off(str(error))
             return False
-        except Exception as error:
-            self._off(repr(error))
-            raise
+        except Exception as error:  # a fault of ours costs this reading
+            self._refused(repr(error), error)
         finally:
             handed.end()
         return True
@@ -137,8 +136,8 @@ class SensePublisher:
         self._publish(body)
         self.count.published += 1
 
-    def _refused(self, reason: str) -> None:
-        """Once per reason, whatever the numbers in it."""
+    def _refused(self, reason: str, fault: Exception | None = None) -> None:
+        """Once per reason, whatever the numbers in it; with where it was raised where it is a fault of ours."""
         self.count.refused += 1
         with self._changed:
             kind = _DIGITS.sub("#", reason)
@@ -146,7 +145,7 @@ class SensePublisher:
             if new:
                 self._said.add(kind)
         if new:
-            _log.warning("a reading of the sense `%s` was refused: %s", self.name, reason)
+            _log.warning("a reading of the sense `%s` was refused: %s", self.name, reason, exc_info=fault)
 
     def _off(self, reason: str) -> None:
         with self._changed:

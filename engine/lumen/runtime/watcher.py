@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
 
 from lumen.loading.files import PROJECT_FOLDERS, Unreadable, fingerprint, read_files
+from lumen.upkeep.threads import WatchedThread
 
 QUIET_PERIOD = 0.3
 MAX_READ_PERIOD = 1.0
@@ -67,9 +68,9 @@ class FileWatcher(Generic[T]):
         self._stop, self._hint = threading.Event(), threading.Event()
         self._asked: queue.SimpleQueue[object] = queue.SimpleQueue()
         self.results: queue.SimpleQueue[T] = queue.SimpleQueue()
-        self._threads = [threading.Thread(target=self._load, name="lumen-loading", daemon=True)]
+        self._threads = [WatchedThread("lumen-loading", self._load)]
         if hints:
-            self._threads.append(threading.Thread(target=self._watch, name="lumen-watching", daemon=True))
+            self._threads.append(WatchedThread("lumen-watching", self._watch))
 
     def start(self) -> None:
         for thread in self._threads:

@@ -60,6 +60,10 @@ class BrainPart(Part):
         self._narrator.line("operator", "Ctrl-C: the robot rests; again to end")
         return True
 
+    def helpless(self, reason: str) -> None:
+        self.rest()
+        self._narrator.line("robot", f"rests, for nobody could stop it any more: {reason}")
+
     def rest(self) -> None:
         """Let the robot rest, and tell the behaviour to stop."""
         self.behavior.loop.robot.start("operator", Rest())

@@ -63,6 +63,10 @@ class HostedRobotPart(RobotPart):
         self._say("rests: Ctrl-C; again to end")
         return True
 
+    def helpless(self, reason: str) -> None:
+        self.robot.start("guard", Rest())
+        self._say(f"rests, for nobody could stop it any more: {reason}")
+
     def close(self) -> None:
         try:
             self._host.close()

@@ -38,6 +38,9 @@ class Part:
         """What Ctrl-C asks for; true where another one has to end it."""
         return False
 
+    def helpless(self, reason: str) -> None:
+        """Nobody can reach this process any more: what moves has to rest."""
+
     def summary(self) -> Iterator[str]:
         """What is said of it at the end, a line each."""
         return iter(())

@@ -2,7 +2,6 @@
 
 import queue
 import sys
-import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from lumen.loading.files import fingerprint, read_files
 from lumen.ports import Bus, Message
 from lumen.rules import check_files
 from lumen.runtime.watcher import SWITCH_INTERVAL
+from lumen.upkeep.threads import WatchedThread
 
 MOVED = ("applied", "rolled back")
 
@@ -27,7 +27,7 @@ class BundleFollower:
         self._wanted: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._loaded: queue.SimpleQueue[Project | str] = queue.SimpleQueue()
         self._undo = bus.subscribe(STATUS, self._hear)
-        self._thread = threading.Thread(target=self._run, name="lumen-bundles", daemon=True)
+        self._thread = WatchedThread("lumen-bundles", self._run)
         self._thread.start()
 
     def tick(self, now: float) -> None:

@@ -23,7 +23,7 @@ class RunRecords:
     """
 
     def __init__(self, home: Home | None) -> None:
-        self._told, self._trial = False, ""
+        self._told, self._failed, self._trial = False, False, ""
         self._desk = ThreadPoolExecutor(1, "records")
         self._keeping: Future[None] | None = None
         self.keeper = SnapshotStore(home) if home else None
@@ -88,8 +88,11 @@ class RunRecords:
         """Whether nothing is being written; says once that it could not be."""
         if self._keeping and not self._keeping.done():
             return False
-        if self._keeping:
-            self._keeping.result()
+        if self._keeping and (fault := self._keeping.exception()):
+            self._keeping = None
+            if not self._failed:
+                _log.error("where the behaviour stands could not be kept", exc_info=fault)
+            self._failed = True
         if self.keeper and self.keeper.trouble and not self._told:
             self._told = True
             _log.warning("where the behaviour stands can't be kept: %s", self.keeper.trouble)

@@ -29,6 +29,7 @@ from lumen.buses.local.sendbuffer import SendBuffer
 from lumen.errors import BusClosedError, BusError, BusRefusedError, BusUnreachableError, Refused
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler
+from lumen.upkeep.threads import WatchedThread
 
 CLOSE_TIMEOUT = 5.0
 """How long closing may take [s]."""
@@ -55,7 +56,7 @@ class LocalBusClient:
         self._arrived: deque[tuple[MessageHandler, int, Message]] = deque(maxlen=MAX_UNHANDLED_MESSAGES)
         self._arriving = threading.Condition()
         self._threads = [
-            threading.Thread(target=work, name=f"lumen-local-{name}", daemon=True)
+            WatchedThread(f"lumen-local-{name}", work)
             for name, work in (("out", self._send), ("in", self._receive), ("handlers", self._handle))
         ]
         for thread in self._threads:
@@ -106,7 +107,7 @@ class LocalBusClient:
         if self._closed:
             return
         deadline = time.monotonic() + CLOSE_TIMEOUT
-        inside = threading.current_thread() is self._threads[2]
+        inside = self._threads[2].current
         if not self.gone.is_set() and not inside:
             self._put(frame("mark"))
             self._marked.wait(CLOSE_TIMEOUT)
@@ -114,8 +115,7 @@ class LocalBusClient:
         self._unsent.emptied(max(0.0, deadline - time.monotonic()))
         self._end()
         for thread in self._threads:
-            if thread is not threading.current_thread():
-                thread.join(max(0.0, deadline - time.monotonic()))
+            thread.join(max(0.0, deadline - time.monotonic()))
         self._wire.close()
 
     def _end(self) -> None:

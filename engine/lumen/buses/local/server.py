@@ -7,7 +7,6 @@ too slowly loses the oldest messages, one that sends nonsense is disconnected, a
 import logging
 import selectors
 import socket
-import threading
 import time
 from collections import deque
 from collections.abc import Callable
@@ -30,6 +29,7 @@ from lumen.buses.local.frames import (
 )
 from lumen.errors import BusError
 from lumen.ports import Bus, Message
+from lumen.upkeep.threads import WatchedThread
 
 MAX_CLIENTS = 32
 """Connections at a time; a further one is closed at once."""
@@ -100,7 +100,7 @@ class LocalBusServer:
         self._marks: dict[str, Callable[[], None]] = {}
         self._undo = bus.subscribe(FLUSH_MARK, self._marked)
         self._ending = False
-        self._thread = threading.Thread(target=self._run, name="lumen-local-server", daemon=True)
+        self._thread = WatchedThread("lumen-local-server", self._run, vital=True)
         self._thread.start()
 
     def close(self) -> None:

@@ -7,6 +7,7 @@ from lumen.errors import ModuleError
 from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.opencv import opencv
 from lumen.modules.eyes.window_server import WindowServer
+from lumen.upkeep.threads import WatchedThread
 
 if TYPE_CHECKING:
     from lumen.modules.eyes.pictures import Grey
@@ -34,7 +35,8 @@ class Window:
         except (OSError, OverflowError) as error:
             raise ModuleError(f"the eyes' window can't be opened on port {port}: {error}") from None
         self.address = self._server.address
-        threading.Thread(target=self._server.serve_forever, name="lumen-window", daemon=True).start()
+        self._thread = WatchedThread("lumen-window", self._server.serve_forever)
+        self._thread.start()
 
     def show(self, grey: "Grey", faces: list[Box], people: list[Box], words: str) -> None:
         """The picture with a frame around the face that counts and each person, and a line of words."""

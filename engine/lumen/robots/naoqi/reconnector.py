@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from lumen.errors import RobotError
 from lumen.robots.naoqi.session import NaoqiSession
+from lumen.upkeep.threads import WatchedThread
 
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 10.0
 """How long until the first try to connect again, and at most until the next [s]: each waits twice as long."""
@@ -34,7 +35,7 @@ class Reconnector:
         self._changes: deque[ConnectionChange] = deque(maxlen=100)
         self._broken, self._ending = threading.Event(), threading.Event()
         self._lost_at = 0.0
-        self._thread = threading.Thread(target=self._keep, name="lumen-naoqi", daemon=True)
+        self._thread = WatchedThread("lumen-naoqi", self._keep)
 
     def open(self) -> None:
         """Connect for the first time. Raises RobotError where that is not possible."""
@@ -62,12 +63,12 @@ class Reconnector:
     def close(self) -> None:
         self._ending.set()
         self._broken.set()
-        if self._thread.is_alive():
-            self._thread.join(2.0)
+        self._thread.join(2.0)
 
     def _keep(self) -> None:
         while not self._ending.is_set():
-            self._broken.wait()
+            if self._session.up:
+                self._broken.wait()
             self._broken.clear()
             pause = self._first
             while not self._session.up and not self._ending.wait(pause):
@@ -83,6 +84,10 @@ class Reconnector:
         except RobotError as error:
             self._session.close()
             _log.info("the robot is still away: %s", error)
+            return
+        except Exception:  # a fault of ours must not end the trying
+            self._session.close()
+            _log.exception("the robot could not be reached")
             return
         away = time.monotonic() - lost_at
         self._changes.append(ConnectionChange("robot.back", away, ""))

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from lumen.errors import RobotError
 from lumen.ports import Reading
 from lumen.robots.naoqi.session import CONNECTION_LOST, NaoqiSession
+from lumen.upkeep.threads import WatchedThread
 
 SENSE_RETRY_DELAY = 1.0
 """How long a sense that failed is left alone [s]."""
@@ -30,7 +31,7 @@ class SensePoller:
         self._changed = threading.Condition()
         self._ending = threading.Event()
         self._hurry = threading.Event()
-        self._thread = threading.Thread(target=self._run, name=f"lumen-naoqi-{name}", daemon=True)
+        self._thread = WatchedThread(f"lumen-naoqi-{name}", self._run)
         self._thread.start()
 
     def fresh(self, timeout: float = 5.0) -> Reading | None:
@@ -69,6 +70,11 @@ class SensePoller:
             self.newest = None
             if self._session.ready and str(error) != CONNECTION_LOST and not self._ending.is_set():
                 self._tell(str(error))
+            return SENSE_RETRY_DELAY
+        except Exception as error:  # what the robot said is not what we understand: the next reading may be
+            self.newest = None
+            _log.debug("a reading of the sense `%s` failed", self.name, exc_info=error)
+            self._tell(repr(error))
             return SENSE_RETRY_DELAY
         if self._told:
             self._told = ""

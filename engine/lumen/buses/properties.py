@@ -1,0 +1,100 @@
+"""What AMQP says of a message, read so that nothing in it can end the connection.
+
+pika reads every header that a sender may invent, deep tables and dates beyond its own, and raises inside its reading of
+frames: the connection is gone with one message. Nobody here needs headers, so they are passed over unread; of the rest
+what is no text is left out, and named.
+"""
+
+from struct import error as struct_error
+from struct import unpack_from
+from typing import Any, NamedTuple
+
+import pika
+from pika import frame, spec
+
+_HEADER_START = spec.FRAME_HEADER_SIZE + 12
+"""Where in a frame the properties begin: behind the class, the weight and the length of the body."""
+_FIELDS = (
+    ("content_type", "text"), ("content_encoding", "text"), ("headers", "table"), ("delivery_mode", "byte"),
+    ("priority", "byte"), ("correlation_id", "text"), ("reply_to", "text"), ("expiration", "text"),
+    ("message_id", "text"), ("timestamp", "time"), ("type", "text"), ("user_id", "text"), ("app_id", "text"),
+    ("cluster_id", "text"),
+)  # fmt: skip
+"""AMQP 0-9-1's properties of a message in their order, from the highest bit of the flags on."""
+
+
+class MessageProperties(NamedTuple):
+    """What we go by of a message's properties; `unreadable` names those that were left out."""
+
+    content_type: str = ""
+    correlation_id: str = ""
+    reply_to: str = ""
+    message_id: str = ""
+    type: str = ""
+    timestamp: int = 0
+    unreadable: tuple[str, ...] = ()
+
+
+class TolerantConnection(pika.SelectConnection):  # type: ignore[misc]  # pika is not typed
+    """pika's connection, which reads the properties of messages with `read_properties`."""
+
+    def _read_frame(self) -> tuple[int, Any]:
+        data = self._frame_buffer
+        if len(data) < _HEADER_START or data[0] != spec.FRAME_HEADER:
+            return super()._read_frame()  # type: ignore[no-any-return]
+        _, channel, size = unpack_from(">BHL", data)
+        end = spec.FRAME_HEADER_SIZE + size + spec.FRAME_END_SIZE
+        if end > len(data) or data[end - 1] != spec.FRAME_END:
+            return super()._read_frame()  # type: ignore[no-any-return]
+        (length,) = unpack_from(">Q", data, _HEADER_START - 8)
+        return end, frame.Header(channel, length, read_properties(data[_HEADER_START : end - 1]))
+
+
+def read_properties(data: bytes) -> MessageProperties:
+    """The properties in these bytes of a header's frame, whatever they are."""
+    found: dict[str, Any] = {}
+    unreadable: list[str] = []
+    try:
+        flags, at = _flags(data)
+        for bit, (name, kind) in zip(range(15, 1, -1), _FIELDS, strict=True):
+            if flags & 1 << bit:
+                value, at = _READERS[kind](data, at)
+                if value is None:
+                    unreadable.append(name)
+                elif name in MessageProperties._fields:
+                    found[name] = value
+    except struct_error:
+        unreadable.append("the rest")
+    return MessageProperties(**found, unreadable=tuple(unreadable))
+
+
+def _flags(data: bytes) -> tuple[int, int]:
+    """The flags of the first word, and where the last word ends: the lowest bit says that one follows."""
+    at, word = 2, unpack_from(">H", data)[0]
+    first = word
+    while word & 1:
+        word, at = unpack_from(">H", data, at)[0], at + 2
+    return first, at
+
+
+def _text(data: bytes, at: int) -> tuple[str | None, int]:
+    end = at + 1 + unpack_from("B", data, at)[0]
+    try:
+        return data[at + 1 : end].decode(), end
+    except UnicodeDecodeError:
+        return None, end
+
+
+def _table(data: bytes, at: int) -> tuple[str | None, int]:
+    return "", at + 4 + unpack_from(">I", data, at)[0]
+
+
+def _byte(data: bytes, at: int) -> tuple[int | None, int]:
+    return unpack_from("B", data, at)[0], at + 1
+
+
+def _time(data: bytes, at: int) -> tuple[int | None, int]:
+    return unpack_from(">Q", data, at)[0], at + 8
+
+
+_READERS: dict[str, Any] = {"text": _text, "table": _table, "byte": _byte, "time": _time}

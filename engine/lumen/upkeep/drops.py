@@ -1,0 +1,59 @@
+"""What is dropped, counted under each key and told: a flood is known by its key, and costs no line for each message."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Mapping
+
+TELL_PERIOD = 10.0
+"""How long after a line about a key the next one comes at the earliest [s]."""
+MAX_KEYS = 1_000
+"""Keys that are counted apart; what is dropped under further ones is counted as `OTHERS`."""
+OTHERS = "other keys"
+
+
+class DropLog:
+    """Counts what is dropped (`counts`, by key) and logs it: the first at once, then each ten seconds how many.
+
+    Safe from any thread. Whoever owns it calls `tell` now and then, and at its end: what nothing follows is told then.
+    """
+
+    def __init__(
+        self, log: logging.Logger, what: str = "messages", clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._log, self._what, self._clock = log, what, clock
+        self._counts: dict[str, int] = {}
+        self._untold: dict[str, tuple[int, str]] = {}
+        self._told: dict[str, float] = {}
+        self._changing = threading.Lock()
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """How many were dropped under each key."""
+        with self._changing:
+            return dict(self._counts)
+
+    def add(self, key: str, why: str, count: int = 1) -> None:
+        """So many under that key were dropped."""
+        with self._changing:
+            key = key if key in self._counts or len(self._counts) < MAX_KEYS else OTHERS
+            first = key not in self._told
+            self._counts[key] = self._counts.get(key, 0) + count
+            if first:
+                self._told[key] = self._clock()
+            else:
+                self._untold[key] = (self._untold.get(key, (0, ""))[0] + count, why)
+        if first:
+            self._log.warning("%s on `%s` are dropped: %s", self._what, key, why)
+
+    def tell(self, *, all: bool = False) -> None:
+        """Log what was dropped since the last line about its key, where that was long enough ago, or `all`."""
+        if not self._untold:
+            return
+        now = self._clock()
+        with self._changing:
+            due = [key for key in self._untold if all or now - self._told[key] >= TELL_PERIOD]
+            told = [(key, *self._untold.pop(key), now - self._told[key]) for key in due]
+            self._told.update(dict.fromkeys(due, now))
+        for key, count, why, seconds in told:
+            self._log.warning("%d more %s on `%s` were dropped in %.0f s: %s", count, self._what, key, seconds, why)

@@ -1,0 +1,1 @@
+"""What anybody may send or save, at random and on purpose."""

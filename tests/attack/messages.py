@@ -1,0 +1,252 @@
+"""Hostile messages, from a `random.Random`: what a broker lets anybody send, and what a process may say at the door.
+
+    message(random, keys)   a key, the bytes of a body, and of its AMQP properties, for `send`
+    frame(random, keys)     bytes for the socket of the local bus: frames that are none, or hold what nobody expects
+    send(channel, message)  publishes one on `amq.topic` over a channel of pika's, which writes down what it is given
+
+Each of them is one of a list of small generators, so that another kind is another function. What they give depends on
+nothing but the seed, and is never much larger than 64 KiB.
+"""
+
+import json
+import struct
+from collections.abc import Callable, Sequence
+from random import Random
+from typing import Any, NamedTuple
+
+from pika import BasicProperties
+
+LARGEST = 64 * 1024
+"""How long a body, a table of headers or a frame is at most [bytes]."""
+METHODS = (
+    "say",
+    "rest",
+    "stop",
+    "wakeUp",
+    "moveTo",
+    "goToPosture",
+    "perform",
+    "setAngles",
+    "record",
+    "leds",
+    "outcome",
+)
+NAMES = ("type", "method", "parameter", "id", "text", "result", "x", "y", "time", "name", "replace", "session", "parts")
+"""Words of our own bodies: what is nearly right goes furthest."""
+NUMBERS = (0, -1, 1, 2**31, 2**53 + 1, 2**63, -(2**63) - 1, 10**400, 0.1, 1e308, -1e308, 1e-320)
+SHORT_FIELDS = ("content_type", "content_encoding", "correlation_id", "reply_to", "expiration", "message_id", "type")
+_BITS = {
+    "content_type": 15, "content_encoding": 14, "headers": 13, "delivery_mode": 12, "priority": 11,
+    "correlation_id": 10, "reply_to": 9, "expiration": 8, "message_id": 7, "timestamp": 6, "type": 5,
+}  # fmt: skip
+"""Which bit says that a property is there; those that a broker does not check."""
+
+
+class HostileMessage(NamedTuple):
+    """A message as it goes over the wire; `properties` as in the header's frame, from the flags on."""
+
+    key: str
+    body: bytes
+    properties: bytes
+
+
+class RawProperties(BasicProperties):  # type: ignore[misc]  # pika is not typed
+    """Properties that are sent as they are given."""
+
+    def __init__(self, raw: bytes) -> None:
+        super().__init__()
+        self._raw = raw
+
+    def encode(self) -> list[bytes]:
+        return [self._raw]
+
+
+def send(channel: Any, message: HostileMessage, exchange: str = "amq.topic") -> None:
+    """Publish it, whatever pika would have said."""
+    channel.basic_publish(exchange, message.key, message.body, RawProperties(message.properties))
+
+
+def message(random: Random, keys: Sequence[str]) -> HostileMessage:
+    """One message under one of these keys, with something wrong in its body, its properties, or both."""
+    return HostileMessage(random.choice(keys), random.choice(BODIES)(random), random.choice(PROPERTIES)(random))
+
+
+def frame(random: Random, keys: Sequence[str]) -> bytes:
+    """Bytes for the socket of a local bus."""
+    return random.choice(FRAMES)(random, keys)
+
+
+def encoded(**fields: bytes | int) -> bytes:
+    """Properties as they go over the wire: short strings, a table for `headers`, and numbers."""
+    flags, parts = 0, list[bytes]()
+    for name, bit in _BITS.items():
+        if (value := fields.get(name)) is None:
+            continue
+        flags |= 1 << bit
+        if isinstance(value, int):
+            parts.append(struct.pack(">Q" if name == "timestamp" else "B", value))
+        else:
+            parts.append(struct.pack(">I" if name == "headers" else "B", len(value)) + value)
+    return struct.pack(">H", flags) + b"".join(parts)
+
+
+def header(name: bytes, kind: bytes, value: bytes) -> bytes:
+    """One field of a table of headers."""
+    return struct.pack("B", len(name)) + name + kind + value
+
+
+def nested(depth: int) -> bytes:
+    """A table in a table, so many deep."""
+    table = b""
+    for _ in range(depth):
+        table = header(b"a", b"F", struct.pack(">I", len(table)) + table)
+    return table
+
+
+def noise(random: Random) -> bytes:
+    """Bytes that mean nothing."""
+    return random.randbytes(random.randrange(1, 200))
+
+
+def value(random: Random, depth: int = 4) -> Any:
+    """JSON data of any kind; its objects have our own words for keys."""
+    kind = random.randrange(7 if depth else 5)
+    match kind:
+        case 0:
+            return random.choice(NUMBERS)
+        case 1:
+            return random.choice((True, False, None))
+        case 2:
+            return random.choice(METHODS)
+        case 3:
+            return "".join(chr(random.randrange(1, 0xD800)) for _ in range(random.randrange(40)))
+        case 4:
+            return random.choice(("", " ", "\x1b[2J", "../../etc/passwd", "{{ visitor }}", "x" * 5_000, "\ufeff"))
+        case 5:
+            return [value(random, depth - 1) for _ in range(random.randrange(5))]
+        case _:
+            return {random.choice(NAMES): value(random, depth - 1) for _ in range(random.randrange(6))}
+
+
+def _data(random: Random) -> bytes:
+    return json.dumps(value(random)).encode()
+
+
+def _order(random: Random) -> bytes:
+    """Nearly a command."""
+    body = {"type": "motion", "method": random.choice(METHODS), "parameter": value(random), "id": value(random, 0)}
+    return json.dumps({key: body[key] for key in body if random.random() < 0.8}).encode()
+
+
+def _deep(random: Random) -> bytes:
+    depth = random.choice((64, 65, 1_000, 30_000))
+    return b"[" * depth + b"]" * random.choice((0, depth))
+
+
+def _digits(random: Random) -> bytes:
+    return b'{"x": ' + random.choice((b"", b"-", b"0.", b"1e")) + b"9" * random.choice((20, 400, 5_000)) + b"}"
+
+
+def _cut(random: Random) -> bytes:
+    whole = _order(random)
+    return whole[: random.randrange(len(whole))]
+
+
+def _long(random: Random) -> bytes:
+    return b'{"text": "' + b"la " * random.randrange(LARGEST // 4) + b'"}'
+
+
+def _constants(random: Random) -> bytes:
+    return random.choice((b"NaN", b"[Infinity]", b'{"x": -Infinity}', b"", b"\xff", b"\x00", b'"\\ud800"', b"nul"))
+
+
+BODIES: tuple[Callable[[Random], bytes], ...] = (noise, _data, _order, _deep, _digits, _cut, _long, _constants)
+"""The kinds of bodies."""
+
+
+def _usual(random: Random) -> bytes:
+    return encoded(content_type=b"application/json", reply_to=b"lumen.attack.answer", correlation_id=b"1")
+
+
+def _no_text(random: Random) -> bytes:
+    """Short strings that are no UTF-8."""
+    chosen = random.sample(SHORT_FIELDS, random.randrange(1, len(SHORT_FIELDS)))
+    return encoded(**{name: b"\xff\xfe" + random.randbytes(3) for name in chosen if name != "expiration"})
+
+
+def _answer(random: Random) -> bytes:
+    """An answer to where nobody or the wrong one is."""
+    places = (
+        b"amq.rabbitmq.reply-to.x",
+        b"lumen.#",
+        b"avatar.NAO.command",
+        b"*" * 255,
+        b"lumen." + b"x" * 249,
+        b"\x00",
+    )
+    return encoded(reply_to=random.choice(places), correlation_id=random.randbytes(random.randrange(256)))
+
+
+def _date(random: Random) -> bytes:
+    """Dates that no calendar has."""
+    far = random.choice((2**63, 2**64 - 1, 2**40))
+    return encoded(timestamp=far, headers=header(b"at", b"T", struct.pack(">Q", far)))
+
+
+def _tables(random: Random) -> bytes:
+    return encoded(headers=nested(random.choice((1, 100, 3_000))))
+
+
+def _headers(random: Random) -> bytes:
+    """Fields of all kinds, their names no texts."""
+    kinds = ((b"t", b"\x02"), (b"d", b"\x7f\xf0" + bytes(6)), (b"D", b"\xff" + b"\xff" * 4), (b"V", b""))
+    long = (b"S", struct.pack(">I", 30_000) + b"\xff" * 30_000)
+    fields = (random.choice((*kinds, long)) for _ in range(random.randrange(1, 4)))
+    return encoded(headers=b"".join(header(random.randbytes(5), *field) for field in fields))
+
+
+def _same(random: Random) -> bytes:
+    """The id of a message that was there before."""
+    return encoded(message_id=str(random.randrange(3)).encode(), delivery_mode=2, priority=random.randrange(256))
+
+
+PROPERTIES: tuple[Callable[[Random], bytes], ...] = (_usual, _no_text, _answer, _date, _tables, _headers, _same)
+"""The kinds of properties."""
+
+
+def framed(data: bytes) -> bytes:
+    """A frame that holds these bytes."""
+    return struct.pack(">I", len(data)) + data
+
+
+def _told(random: Random, keys: Sequence[str]) -> bytes:
+    """A word that is known, with what does not belong to it."""
+    words = ("publish", "subscribe", "unsubscribe", "mark", "proof", "prove", "message", "subscribed", "marked")
+    return framed(json.dumps([random.choice(words), *(value(random, 2) for _ in range(random.randrange(7)))]).encode())
+
+
+def _published(random: Random, keys: Sequence[str]) -> bytes:
+    """A message that may be published, but for a word."""
+    words = ["publish", random.choice(keys), "lumen.attack.answer", "1", random.choice((None, 1.0))]
+    words[random.randrange(len(words))] = value(random, 1)
+    return framed(json.dumps(words).encode()[:-1] + b"," + random.choice(BODIES)(random) + b"]")
+
+
+def _digited(random: Random, keys: Sequence[str]) -> bytes:
+    """A number of hundreds of digits where a time to live belongs."""
+    return framed(
+        b'["publish","%s","","",%s,1]' % (random.choice(keys).encode(), b"9" * random.choice((300, 400, 5_000)))
+    )
+
+
+def _length(random: Random, keys: Sequence[str]) -> bytes:
+    """A length that is a lie."""
+    return struct.pack(">I", random.choice((0, 1, 2**20 + 4_097, 2**32 - 1))) + noise(random)
+
+
+def _unmeant(random: Random, keys: Sequence[str]) -> bytes:
+    return random.choice((noise(random), framed(noise(random)), framed(_deep(random)), framed(_constants(random))))
+
+
+FRAMES: tuple[Callable[[Random, Sequence[str]], bytes], ...] = (_told, _published, _digited, _length, _unmeant)
+"""The kinds of frames."""

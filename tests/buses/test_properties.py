@@ -1,0 +1,92 @@
+"""What AMQP says of a message may be anything: the message is taken, and the connection stays."""
+
+import logging
+import struct
+from collections.abc import Iterator
+from random import Random
+from typing import Any
+
+import pika
+import pytest
+
+from lumen.bus import connect
+from lumen.buses.outbox import OutgoingMessage
+from lumen.buses.properties import MessageProperties, read_properties
+from lumen.buses.publisher import Publisher
+from tests.attack.messages import PROPERTIES, HostileMessage, encoded, header, nested, send
+from tests.rabbitmq import RabbitMQ
+from tests.waiting import Collector, until
+
+FAR = struct.pack(">Q", 2**63)
+POISON = {
+    "no UTF-8": encoded(content_type=b"\xff", reply_to=b"\xff\xfe", correlation_id=b"\x80", message_id=b"\xc0"),
+    "a type": encoded(type=b"\xff"),
+    "a date": encoded(timestamp=2**63, headers=header(b"at", b"T", FAR)),
+    "tables": encoded(headers=nested(3_000)),
+    "a decimal": encoded(headers=header(b"\xff", b"D", b"\xff\x7f\xff\xff\xff")),
+}
+
+
+@pytest.fixture
+def stranger(broker: RabbitMQ) -> Iterator[Any]:
+    connection = pika.BlockingConnection(pika.URLParameters(broker.url))
+    yield connection.channel()
+    connection.close()
+
+
+def test_properties_are_read_as_pika_reads_them() -> None:
+    given = pika.BasicProperties(
+        content_type="text/plain", content_encoding="utf-8", headers={"a": {"b": [1, None]}}, delivery_mode=2,
+        priority=3, correlation_id="c", reply_to="lumen.a", expiration="5", message_id="m", timestamp=7, type="t",
+        user_id="u", app_id="a", cluster_id="x",
+    )  # fmt: skip
+    read = read_properties(b"".join(given.encode()))
+    assert read == MessageProperties("text/plain", "c", "lumen.a", "m", "t", 7)
+    assert read_properties(b"".join(pika.BasicProperties(timestamp=7).encode())).timestamp == 7
+
+
+def test_no_bytes_are_too_many_or_too_few() -> None:
+    random = Random(1)
+    for make in (*PROPERTIES, lambda random: random.randbytes(random.randrange(40))):
+        for _ in range(200):
+            data = make(random)
+            read_properties(data)
+            read_properties(data[: random.randrange(len(data) + 1)])
+    assert read_properties(encoded(reply_to=b"\xff", type=b"t")) == MessageProperties(
+        type="t", unreadable=("reply_to",)
+    )
+
+
+def test_no_property_ends_the_connection_nor_the_thread_that_handles(
+    broker: RabbitMQ, stranger: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    bus, seen = connect(broker.url), Collector()
+    connection = bus._transport.consumer.connection  # type: ignore[attr-defined]
+    bus.subscribe("lumen.poison.#", seen)
+    with caplog.at_level(logging.WARNING):
+        for i, properties in enumerate(POISON.values()):
+            send(stranger, HostileMessage("lumen.poison.a", str(i).encode(), properties))
+        stranger.basic_publish("amq.topic", b"lumen.poison.\xff", b'"key"')
+        stranger.basic_publish("amq.topic", "lumen.poison.a", b'"last"')
+        assert seen.wait(7) == [0, 1, 2, 3, 4, "key", "last"]
+    assert bus._transport.consumer.connection is connection  # type: ignore[attr-defined]
+    assert seen.messages[5].key == "lumen.poison.\\xff"
+    told = [record.getMessage() for record in caplog.records]
+    assert told == [
+        "properties of messages on `lumen.poison.a` are dropped: content_type, correlation_id, reply_to, message_id "
+        "can't be read; the message is taken without"
+    ]
+    bus.close()
+    assert bus._transport.consumer.unreadable.counts == {"lumen.poison.a": 2}  # type: ignore[attr-defined]
+
+
+def test_an_answer_that_amqp_cant_carry_costs_that_answer(broker: RabbitMQ, caplog: pytest.LogCaptureFixture) -> None:
+    bus, seen = connect(broker.url), Collector()
+    bus.subscribe("lumen.carried", seen)
+    publisher: Publisher = bus._transport.publisher  # type: ignore[attr-defined]
+    publisher.outbox.put(OutgoingMessage("amq.topic", "lumen.carried", b"0", "x" * 300))
+    bus.publish("lumen.carried", 1)
+    assert seen.wait(1) == [1]
+    until(lambda: publisher.unsendable.counts)
+    assert "messages on `lumen.carried` are dropped: AMQP can't carry it" in caplog.text
+    bus.close()
