@@ -17,7 +17,7 @@ from lumen.errors import ModuleError
 from lumen.modules.eyes import Eyes
 from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.window import Window
-from lumen.modules.eyes.window_server import MAX_CONNECTIONS, Page
+from lumen.modules.eyes.window_server import MAX_CONNECTIONS, WindowPage
 from tests.modules.conftest import Stand, with_options
 from tests.modules.test_eyes import body, photographed
 from tests.waiting import until
@@ -104,7 +104,7 @@ def test_an_address_is_good_for_one_start(window: Window) -> None:
 
 
 def test_who_is_slow_is_hung_up_on(window: Window, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Page, "timeout", 0.2)
+    monkeypatch.setattr(WindowPage, "timeout", 0.2)
     with socket.create_connection(("127.0.0.1", urlsplit(window.address).port), timeout=60) as slow:
         began = time.monotonic()
         with suppress(OSError):

@@ -5,6 +5,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from lumen.app.narrator import Narrator
+from lumen.app.parts.forgetting import ForgettingPart
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
@@ -54,6 +55,8 @@ class Exhibition:
         self.node = WholeNode(project, setup, opened, story, narrator, language=language, shared=shared)
         behavior, directory = self.node.behavior, run_directory
         self.reloader: Reloader | None = None
+        forget = directory.records.forget if directory else lambda _: None
+        self.node.add(ForgettingPart(project, opened, behavior, forget))
         if reload:
             taken_by = directory.reloader if directory else Reloader
             self.reloader = taken_by(behavior, self.node.narrator, mode=reload)

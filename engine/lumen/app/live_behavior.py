@@ -5,6 +5,7 @@ from datetime import datetime
 
 from lumen.app.setup import Setup
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
+from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus
@@ -47,6 +48,11 @@ class LiveBehavior:
             epoch=time_of_day((story.clock or MORNING) if story else ""),
             context=story.context if story else None,
         )
+
+    def forget(self, person: PersonName) -> None:
+        """Go on without somebody's name, and tell so."""
+        if self.loop.runtime.forget(person):
+            self.trace.standing(self.loop.runtime.snapshot)
 
     def plan(self, project: Project, *, now: bool = False, back: bool = False) -> MigrationVerdict:
         """How another bundle would go on from here, or why it can't; nothing changes."""

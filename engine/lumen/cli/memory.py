@@ -2,16 +2,29 @@
 
 import argparse
 import json
-import time
+import os
+from collections.abc import Iterator
 from datetime import datetime
 from pathlib import Path
 
-from lumen.errors import UsageError
+from lumen.app.asking import ask
+from lumen.app.forgetting.files import forget_in
+from lumen.app.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
+from lumen.cli.reach import reach
+from lumen.errors import BusUnreachableError, UsageError
+from lumen.language.people import name_key
 from lumen.loading.packaged import find_project
-from lumen.modules.eyes.eyes import FACES_FILE
+from lumen.loading.project import main_settings
+from lumen.loading.settings import Settings
 from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
+from lumen.modules.module import DEFAULT_KEYS
+from lumen.ports import Bus
 from lumen.runtime.home import home_of
+
+ANSWERS = "lumen.operator.answer"
+ANSWER_TIMEOUT = 2.0
+"""How long the memory of a running exhibition has to answer [s]; where none answers, all others are told."""
 
 WHATS = ("visitors", "journal", "forget")
 
@@ -21,35 +34,28 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("what", choices=WHATS, help="list the visitors or the journal, or forget a visitor for good")
     add("name", nargs="?", metavar="NAME", help="forget: whom; journal: only what is about them")
     add("--project", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
+    add("--bus", metavar="URL", help="forget: where the exhibition runs; default: LUMEN_BUS, then this machine")
     add("--limit", metavar="N", type=int, default=50, help="journal: the newest so many entries (default: 50)")
     add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
-    file = home_of(find_project(options.project)) / DATABASE_FILE
+    root = find_project(options.project)
+    folder = home_of(root)
+    if options.what == "forget":
+        return _forget(options, root, folder)
+    file = folder / DATABASE_FILE
     if not file.exists():
         raise UsageError(f"nothing is remembered: there is no {file}")
     store = Store(file)
     try:
-        return _run(options, store, file)
+        return _list(options, store, file)
     finally:
         store.close()
 
 
-def _run(options: argparse.Namespace, store: Store, file: Path) -> int:
-    """Raises UsageError where a name is missing or not known, ModuleError where the database can't be used."""
-    if options.what == "forget":
-        if not (options.name or "").strip():
-            raise UsageError("say whom: `lumen memory forget NAME`")
-        faces = _faces(options.name, file.with_name(FACES_FILE))
-        visitors, entries = store.forget(options.name)
-        told = f"forgot {options.name}: {visitors} visitors, {entries} entries, {faces} pictures"
-        print(
-            json.dumps({"visitors": visitors, "entries": entries, "pictures": faces})
-            if options.format == "json"
-            else told
-        )
-        return 0 if visitors or entries or faces else 1
+def _list(options: argparse.Namespace, store: Store, file: Path) -> int:
+    """Raises ModuleError where the database can't be used."""
     rows = (
         store.visitors()
         if options.what == "visitors"
@@ -64,13 +70,79 @@ def _run(options: argparse.Namespace, store: Store, file: Path) -> int:
     return 0
 
 
-def _faces(name: str, file: Path) -> int:
-    """Delete the pictures that the eyes keep under that name; how many. Raises ModuleError where that can't be done."""
-    if not file.exists():
-        return 0
-    from lumen.modules.eyes.gallery import FaceGallery  # OpenCV takes its time to import
+def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
+    """0 where somebody was forgotten and nothing is left that is in reach; raises UsageError without a name."""
+    if not name_key(options.name or ""):
+        raise UsageError("say whom: `lumen memory forget NAME`")
+    found, settings = Forgetting(), main_settings(root)
+    routes = settings.routes if settings else {}
+    broker = _tell_running(options, settings, found)
+    forget_in(folder, options.name, found)
+    found.elsewhere += out_of_reach(routes.values(), broker)
+    if options.format == "json":
+        print(json.dumps(_told(found), ensure_ascii=False))
+    else:
+        for line in _lines(options.name, folder, found):
+            print(_plain(line))
+    return 0 if found.deleted and not found.left else 1
 
-    return FaceGallery(file, time.time).forget(name)
+
+def _tell_running(options: argparse.Namespace, settings: Settings | None, found: Forgetting) -> bool:
+    """Have the exhibition that runs forget them, too, and whoever stands there; whether it runs on a broker."""
+    try:
+        reached = reach(options)
+    except BusUnreachableError as error:
+        url = options.bus or os.environ.get("LUMEN_BUS") or (settings.bus if settings else "")
+        if url and not url.startswith("memory:"):
+            found.left.append(ForgottenPlace("the exhibition that runs", str(error)))
+        return bool(url) and not url.startswith("memory:")
+    try:
+        _ask(reached.bus, settings or Settings(), options.name, found)
+    finally:
+        reached.bus.close()
+    return bool(reached.broker)
+
+
+def _ask(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
+    """The memory, which tells all others; without one that is done here."""
+    try:
+        answer = next(
+            ask(bus, _key(settings, "fact"), {"method": "forget", "name": name}, ANSWERS, first=ANSWER_TIMEOUT)
+        )
+    except BusUnreachableError:
+        bus.publish(_key(settings, "forgotten"), {"name": name})
+        return
+    match answer:
+        case {"ok": True, "visitors": int(visitors), "entries": int(entries)}:
+            found.visitors, found.entries = visitors, entries
+            if visitors or entries:
+                what = f"visitors: {visitors}, entries of the journal: {entries}"
+                found.deleted.append(ForgottenPlace("the memory that runs", what))
+        case _:
+            reason = answer.get("reason") if isinstance(answer, dict) else answer
+            found.left.append(ForgottenPlace("the memory that runs", str(reason)[:500]))
+
+
+def _key(settings: Settings, route: str) -> str:
+    row = settings.routes.get(route)
+    return row.key_for(settings.robot) if row else DEFAULT_KEYS[route].replace("{robot}", settings.robot)
+
+
+def _told(found: Forgetting) -> dict[str, object]:
+    return {
+        **{"visitors": found.visitors, "entries": found.entries, "pictures": found.pictures},
+        **{name: [place._asdict() for place in getattr(found, name)] for name in ("deleted", "left", "elsewhere")},
+        "others": list(found.others),
+    }
+
+
+def _lines(name: str, folder: Path, found: Forgetting) -> Iterator[str]:
+    counts = f"{found.visitors} visitors, {found.entries} entries, {found.pictures} pictures"
+    yield f"forgot {name}: {counts}" if found.deleted else f"nothing of {name} is in {folder}"
+    for title, places in (("deleted", found.deleted), ("STILL THERE", found.left), ("not here", found.elsewhere)):
+        yield from (f"  {title}: {where}: {what}" for where, what in places)
+    if found.others:
+        yield f"  others, who are remembered: {', '.join(found.others)}"
 
 
 def _visitor(row: dict[str, object]) -> str:

@@ -8,7 +8,9 @@ from pathlib import Path
 
 from lumen.errors import ModuleError
 from lumen.language.modules import SOCIAL
+from lumen.language.people import PersonName
 from lumen.language.projects import Project
+from lumen.loading.json_lines import forget_lines
 from lumen.modules.module import Module
 from lumen.ports import Bus, Message, MessageHandler
 
@@ -30,7 +32,7 @@ class Social(Module):
         self._file = file
 
     def hears(self) -> Mapping[str, MessageHandler]:
-        return {"social_expression": self._post}
+        return {"social_expression": self._post, "forgotten": self._forget}
 
     def _post(self, message: Message) -> None:
         match message.body:
@@ -42,6 +44,12 @@ class Social(Module):
         self._write(json.dumps({"date": date, **message.body}, ensure_ascii=False))
         self.publish("social_perception", {"kind": "posted", "text": text, "date": date})
         self.well()
+
+    def _forget(self, message: Message) -> None:
+        """What would have been posted about somebody who is to be forgotten."""
+        match message.body:
+            case {"name": str(name)} if self._file:
+                forget_lines(self._file, PersonName(name))
 
     def _write(self, line: str) -> None:
         if self._file is None:

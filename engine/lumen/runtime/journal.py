@@ -1,12 +1,20 @@
 """What was reloaded, when, by whom, and what came of it: a line of JSON for each, bounded."""
 
 import json
+import logging
 import os
+import threading
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
+
+from lumen.errors import ModuleError
+from lumen.language.people import PersonName
+from lumen.loading.json_lines import forget_lines
+
+_log = logging.getLogger(__name__)
 
 JOURNAL_FILE = "journal.jsonl"
 MAX_JOURNAL_BYTES = 1_000_000
@@ -21,17 +29,29 @@ class Journal:
 
     def __init__(self, folder: Path | None) -> None:
         self._file = folder and folder / JOURNAL_FILE
+        self._writing = threading.Lock()
 
     def write(self, entry: Mapping[str, Any]) -> None:
         """Append an entry, with the date and time (UTC) before it."""
         if self._file is None:
             return
         line = json.dumps({"time": datetime.now(UTC).isoformat(timespec="milliseconds"), **entry}, ensure_ascii=False)
-        with suppress(OSError):
+        with self._writing, suppress(OSError):
             if self._file.exists() and self._file.stat().st_size > MAX_JOURNAL_BYTES:
                 os.replace(self._file, self._file.with_suffix(".jsonl.1"))
             with self._file.open("ab") as file:
                 file.write(line.encode("utf-8", "replace") + b"\n")
+
+    def forget(self, person: PersonName) -> None:
+        """Delete the entries that name somebody; any thread may. A disk that can't is logged."""
+        if self._file is None:
+            return
+        try:
+            with self._writing:
+                forget_lines(self._file.with_suffix(".jsonl.1"), person)
+                forget_lines(self._file, person)
+        except ModuleError as error:
+            _log.warning("the journal still names somebody who was to be forgotten: %s", error)
 
     def entries(self) -> Iterator[dict[str, Any]]:
         """All that is kept, the oldest first; a line that a crash cut off is left out."""

@@ -9,7 +9,9 @@ from lumen.interpreters.migration import MigrationVerdict, plan
 from lumen.interpreters.statechart import Snapshot, Step, elapse, initial, step
 from lumen.language.commands import Command
 from lumen.language.events import Event
+from lumen.language.people import PersonName
 from lumen.language.projects import Project
+from lumen.runtime.forgetting import forgetful
 
 _log = logging.getLogger(__name__)
 
@@ -68,6 +70,12 @@ class Runtime:
     def apply(self, project: Project, planned: Snapshot) -> None:
         """Go on with another bundle as planned, between two macrosteps."""
         self.project, self._snapshot = project, planned
+
+    def forget(self, person: PersonName) -> bool:
+        """Take somebody's name out of what is remembered; whether it was there."""
+        before = self.snapshot
+        self._snapshot = forgetful(self.project.machine, before, person)
+        return self._snapshot is not before
 
     def _hear(self, event: Event) -> list[Command]:
         try:

@@ -8,6 +8,7 @@ from typing import Any
 from lumen.app.claiming import presence_of
 from lumen.app.narrator import Narrator
 from lumen.app.node import Node
+from lumen.app.parts.forgetting import ForgettingPart
 from lumen.app.parts.hosted_robot import HostedRobotPart
 from lumen.app.parts.module import ModulePart
 from lumen.app.parts.module_troubles import ModuleTroublesPart
@@ -79,6 +80,7 @@ def assemble(
         behavior.adopt = adopt
         node.parts += [
             ReloadPart(reloader, brain.needs),
+            ForgettingPart(project, bus, behavior, run_directory.records.forget, brain.needs),
             brain,
             RecordsPart(run_directory.records, behavior, brain.needs),
         ]

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
+from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.crash_counter import CrashCounter
 from lumen.runtime.home import Home
@@ -78,6 +79,10 @@ class RunRecords:
             return
         on = tuple(exhibition.tracking.on)
         self._keeping = self._desk.submit(self.keeper.keep, exhibition.project, snapshot, on)
+
+    def forget(self, person: PersonName) -> None:
+        """Have what names somebody taken out of the journal; where they stand is written anew by `keep`."""
+        self._desk.submit(self.journal.forget, person)
 
     def close(self) -> None:
         """Wait for what is being written; nothing is written any more."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from lumen.errors import ModuleError
 from lumen.language.modules import EYES
+from lumen.language.people import name_key
 from lumen.language.projects import Project
 from lumen.modules.eyes.detector import Box, PersonDetector
 from lumen.modules.eyes.gallery import MAX_PICTURES_PER_NAME, FaceGallery
@@ -178,10 +179,12 @@ class Eyes(Module):
     def _forget(self, message: Message) -> None:
         """Who is forgotten is not recognised either."""
         match message.body:
-            case {"name": str(name)} if name.strip():
-                if self._learning.casefold() == name.strip().casefold():
+            case {"name": str(name)} if name_key(name):
+                if name_key(self._learning) == name_key(name):
                     self._learning, self._left = "", 0
-                self._gallery.forget(name.strip())
+                if name_key(self._who) == name_key(name):
+                    self._who = ""
+                self._gallery.forget(name)
 
     def _guarded(self, work: Callable[[], Any]) -> None:
         try:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ModuleError
+from lumen.language.people import name_key
 from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.opencv import opencv
 
@@ -45,7 +46,8 @@ class FaceGallery:
 
     def enrol(self, name: str, grey: "Grey", face: Box) -> int:
         """Remember this face under a name; how many pictures of it there are now. Raises ModuleError where it can't."""
-        mine = [i for i, (other, _, _) in enumerate(self._faces) if other == name]
+        key = name_key(name)
+        mine = [i for i, (other, _, _) in enumerate(self._faces) if name_key(other) == key]
         if len(mine) >= MAX_PICTURES_PER_NAME:
             del self._faces[mine[0]]
         if len(self._faces) >= MAX_PICTURES:
@@ -54,7 +56,7 @@ class FaceGallery:
             )
         self._faces.append((name, self._clock(), self._cut(grey, face)))
         self._save()
-        return sum(other == name for other, _, _ in self._faces)
+        return sum(name_key(other) == key for other, _, _ in self._faces)
 
     def who(self, grey: "Grey", face: Box) -> str:
         """Whose face that is; empty where it is nobody's that is known."""
@@ -64,8 +66,8 @@ class FaceGallery:
         return self.names[label] if distance <= MAX_DISTANCE else ""
 
     def forget(self, name: str) -> int:
-        """Delete what is kept under a name, whatever its capitals; how many pictures that were."""
-        return self._keep([face for face in self._faces if face[0].casefold() != name.casefold()])
+        """Delete what is kept under a name, however that is written; how many pictures that were."""
+        return self._keep([face for face in self._faces if name_key(face[0]) != name_key(name)])
 
     def expire(self, before: float) -> int:
         """Delete what was learnt before that time [s since 1970]; how many pictures that were."""

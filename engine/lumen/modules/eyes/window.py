@@ -11,7 +11,7 @@ from lumen.upkeep.threads import WatchedThread
 
 if TYPE_CHECKING:
     from lumen.modules.eyes.pictures import Grey
-    from lumen.modules.eyes.window_server import Page
+    from lumen.modules.eyes.window_server import WindowPage
 
 PART_BOUNDARY = "frame"
 FACE_COLOUR, PERSON_COLOUR, TEXT_COLOUR = (0, 200, 0), (200, 120, 0), (255, 255, 255)
@@ -55,7 +55,7 @@ class Window:
             self._picture, self._number = data, self._number + 1
             self._changed.notify_all()
 
-    def serve(self, page: "Page") -> None:
+    def serve(self, page: "WindowPage") -> None:
         """Send every new picture until the looker goes."""
         page.send_response(200)
         page.send_header("Content-Type", f"multipart/x-mixed-replace; boundary={PART_BOUNDARY}")

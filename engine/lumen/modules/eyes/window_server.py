@@ -29,8 +29,8 @@ class WindowServer(ThreadingHTTPServer):
     daemon_threads = True
     block_on_close = False
 
-    def __init__(self, port: int, serve: Callable[["Page"], None]) -> None:
-        super().__init__((WINDOW_HOST, port), Page)
+    def __init__(self, port: int, serve: Callable[["WindowPage"], None]) -> None:
+        super().__init__((WINDOW_HOST, port), WindowPage)
         self.serve = serve
         self._token = secrets.token_urlsafe(16)
         self._free = threading.BoundedSemaphore(MAX_CONNECTIONS)
@@ -61,7 +61,7 @@ class WindowServer(ThreadingHTTPServer):
         """Nothing: that a looker has gone is not worth a line."""
 
 
-class Page(BaseHTTPRequestHandler):
+class WindowPage(BaseHTTPRequestHandler):
     """One request; it has so long to arrive, however slowly it comes."""
 
     server: WindowServer

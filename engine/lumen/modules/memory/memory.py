@@ -9,8 +9,10 @@ from typing import Any
 
 from lumen.errors import ModuleError
 from lumen.language.modules import MEMORY
+from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
-from lumen.modules.memory.store import JournalEntry, Store
+from lumen.modules.memory.store import Forgotten, JournalEntry, Store
+from lumen.modules.memory.visit import JournalEnd, Visit
 from lumen.modules.module import DAY, KEEP_DAYS, Module
 from lumen.ports import Bus, Message, MessageHandler
 
@@ -46,9 +48,10 @@ class Memory(Module):
         super().__init__(project, bus, tell)
         self._store, self._clock = Store(file), clock
         self._pending: deque[JournalEntry] = deque(maxlen=MAX_PENDING_ENTRIES)
-        self._visitor, self._expired = "", 0.0
+        self._visit, self._expired = Visit(), 0.0
         self._sampled: dict[str, float] = {}
         self._met: deque[str] = deque(maxlen=MAX_PENDING_ENTRIES)
+        self._owed: dict[str, str] = {}
 
     def hears(self) -> Mapping[str, MessageHandler]:
         heard: dict[str, MessageHandler] = {
@@ -58,6 +61,7 @@ class Memory(Module):
             "gender": lambda m: self._note("gender", m.body, "gender"),
             "fact": self._fact,
             "journal": self._asked,
+            "forgotten": self._unlearn,
         }
         if self.settings.options.get("sample"):
             heard.update({sense: partial(self._sample, sense) for sense in SENSES})
@@ -67,7 +71,7 @@ class Memory(Module):
         """Write what waits, and delete what is older than it may be."""
         now = self._clock()
         try:
-            self._write()
+            self._settle()
             if now - self._expired > EXPIRY_INTERVAL:
                 self._store.expire(now - float(self.settings.options.get("keep", KEEP_DAYS)) * DAY)
                 self._expired = now
@@ -78,10 +82,16 @@ class Memory(Module):
 
     def end(self) -> None:
         try:
-            self._write()
+            self._settle()
         except ModuleError as error:
             self.tell(f"{error} ({len(self._pending)} entries are lost)")
         self._store.close()
+
+    def _settle(self) -> None:
+        """Write and forget what could not be written or forgotten before."""
+        self._write()
+        for name in list(self._owed.values()):
+            self._delete(name)
 
     def _write(self) -> None:
         while self._met:
@@ -94,12 +104,31 @@ class Memory(Module):
                 self._pending.popleft()
             self.well()
 
-    def _note(self, kind: str, body: Any, text: str, data: Mapping[str, Any] | None = None) -> None:
-        """An entry; `text` names the field of the body that says it in a word."""
+    def _note(
+        self, kind: str, body: Any, text: str, data: Mapping[str, Any] | None = None, *, theirs: bool = True
+    ) -> None:
+        """An entry; `text` names the field of the body that says it in a word.
+
+        What is not the visitor's (`theirs`), as what the robot feels, is noted also where they were forgotten.
+        """
         rest = {k: v for k, v in body.items() if k != text} if data is None else data
-        self._pending.append(
-            JournalEntry(self._clock(), self.project.robot, self._visitor, kind, str(body.get(text, "")), rest)
-        )
+        self._live(spoken=theirs and kind != "state")
+        said, visit = str(body.get(text, "")), self._visit
+        if visit.names_unwanted(said, rest) or (visit.muted and theirs):
+            return
+        whose = ("", 0) if visit.muted else (visit.visitor, visit.number)
+        self._pending.append(JournalEntry(self._clock(), self.project.robot, whose[0], kind, said, rest, whose[1]))
+
+    def _live(self, *, spoken: bool) -> None:
+        self._visit.live(self._clock(), self._earlier, spoken=spoken)
+
+    def _earlier(self) -> JournalEnd:
+        """Where an earlier run stopped; as good as nowhere where the database can't be read now."""
+        try:
+            return self._store.end()
+        except ModuleError as error:
+            self.tell(str(error))
+            return JournalEnd()
 
     def _state(self, message: Message) -> None:
         match message.body:
@@ -108,26 +137,21 @@ class Memory(Module):
             case {"command": {"verb": "say", "text": str(text)}}:
                 self._note("said", {"text": text}, "text")
             case {"context": dict(context)}:
-                self._meet(str(context.get(self.settings.options.get("visitor", VISITOR_KEY)) or ""))
+                name = str(context.get(self.settings.options.get("visitor", VISITOR_KEY)) or "")
+                self._live(spoken=False)
+                if self._visit.meet(name, stepped="entered" in message.body):
+                    self._met.append(name)
+                    self._note("visitor", {"name": name}, "name")
                 if entered := message.body.get("entered"):
                     data = {"event": message.body.get("event", "")}
                     self._note("state", {"text": ", ".join(entered)}, "text", data)
-
-    def _meet(self, name: str) -> None:
-        """The visitor in front of the robot, by the name that the behaviour knows."""
-        if name == self._visitor:
-            return
-        self._visitor = name
-        if name:
-            self._met.append(name)
-            self._note("visitor", {"name": name}, "name")
 
     def _sample(self, sense: str, message: Message) -> None:
         """Senses are noted once in every so many seconds, as Lumen's database did at 1 Hz."""
         now, every = self._clock(), float(self.settings.options["sample"])
         if now - self._sampled.get(sense, 0.0) >= every:
             self._sampled[sense] = now
-            self._note(sense, {}, "", message.body)
+            self._note(sense, {}, "", message.body, theirs=False)
 
     def _fact(self, message: Message) -> None:
         body = message.body if isinstance(message.body, dict) else {}
@@ -142,27 +166,45 @@ class Memory(Module):
             case "forget":
                 self._answer(message, lambda: self._forget(name))
             case _:
-                self._note("fact", body, "")
+                self._note("fact", body, "", theirs=False)
                 self._answer(message, dict)
 
     def _forget(self, name: str) -> dict[str, Any]:
-        if not name:
+        if not name_key(name):
             raise ModuleError("`forget` takes a `name`")
-        self._write()
-        if self._visitor.casefold() == name.casefold():
-            self._visitor = ""
         try:
-            visitors, entries = self._store.forget(name)
+            found = self._delete(name)
         finally:
             self.publish("forgotten", {"name": name})
-        return {"visitors": visitors, "entries": entries}
+        counted = {"visitors": found.visitors, "entries": found.entries}
+        return {**counted, "others": list(found.others)} if found.others else counted
+
+    def _unlearn(self, message: Message) -> None:
+        """Somebody was told to forget a visitor: this module, or whoever deletes the files."""
+        match message.body:
+            case {"name": str(name)} if name_key(name):
+                self._delete(name)
+
+    def _delete(self, name: str) -> Forgotten:
+        """Forget them now; where that can't be (ModuleError), as soon as the database can be written."""
+        self._owed[name_key(name)] = name
+        if self._visit.is_with(name):
+            self._visit.forget(name)
+        person = PersonName(name)
+        self._met = deque((met for met in self._met if name_key(met) != person.key), MAX_PENDING_ENTRIES)
+        self._write()
+        found = self._store.forget(name)
+        if self._visit.number in found.visits:
+            self._visit.forget(name)
+        del self._owed[person.key]
+        return found
 
     def _asked(self, message: Message) -> None:
         """An entry of somebody else's, or the question for some."""
         body = message.body if isinstance(message.body, dict) else {}
         if body.get("method") != "read":
             data = {k: v for k, v in body.items() if k not in ("method", "kind", "text")}
-            self._note(str(body.get("kind", "entry")), body, "text", data)
+            self._note(str(body.get("kind", "entry")), body, "text", data, theirs=False)
             self._answer(message, dict)
             return
         since, visitor, limit = body.get("since", 0.0), str(body.get("visitor", "")), body.get("limit", 100)

@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import sqlite3
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -11,27 +10,28 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from lumen.errors import ModuleError
+from lumen.language.people import PersonName, name_key
+from lumen.modules.memory.tables import prepare
+from lumen.modules.memory.visit import JournalEnd
 
 LOCK_TIMEOUT = 0.5
 """How long a locked database is waited for [s]."""
 MAX_ROWS = 1_000
 """Rows of one answer."""
 
-_TABLES = """
-CREATE TABLE IF NOT EXISTS journal (
-    id INTEGER PRIMARY KEY, time REAL NOT NULL, date TEXT NOT NULL, robot TEXT NOT NULL,
-    visitor TEXT NOT NULL COLLATE NOCASE, kind TEXT NOT NULL, text TEXT NOT NULL, data TEXT NOT NULL
-);
-CREATE INDEX IF NOT EXISTS journal_time ON journal (time);
-CREATE TABLE IF NOT EXISTS visitors (
-    name TEXT PRIMARY KEY COLLATE NOCASE, first REAL NOT NULL, last REAL NOT NULL,
-    visits INTEGER NOT NULL, data TEXT NOT NULL
-);
-"""
+_VISITOR = "name, first, last, visits, data"
+_ENTRY = "id, time, date, robot, visit, visitor, kind, text, data"
+_THEIRS = """SELECT id, visit FROM journal
+    WHERE key = :key OR names(text) OR holds(data) OR visit > 0 AND visit IN (
+        SELECT visit FROM journal GROUP BY visit
+        HAVING sum(key = :key) > 0 OR sum(kind = 'recognised' AND same(text)) > 0 AND max(key) = '')"""
 
 
 class JournalEntry(NamedTuple):
-    """A row of the journal: when [s since 1970], what kind of thing, who the visitor was (empty: unknown), what."""
+    """A row of the journal: when [s since 1970], what kind of thing, who the visitor was (empty: unknown), what.
+
+    `visit` is the same number for all that belongs to one visit, 0 where that is not known.
+    """
 
     time: float
     robot: str
@@ -39,6 +39,19 @@ class JournalEntry(NamedTuple):
     kind: str
     text: str
     data: Mapping[str, Any] = {}
+    visit: int = 0
+
+
+class Forgotten(NamedTuple):
+    """What was deleted of somebody: visitors, entries of the journal, and of which visits those were.
+
+    `others` are the names of visitors that hold the name, as `Ana Maria` does `Ana`, and are somebody else's.
+    """
+
+    visitors: int
+    entries: int
+    visits: frozenset[int] = frozenset()
+    others: tuple[str, ...] = ()
 
 
 class Store:
@@ -57,10 +70,14 @@ class Store:
     def add(self, entries: Sequence[JournalEntry]) -> None:
         """Write all of them, or (ModuleError) none."""
         rows = [
-            (e.time, _date(e.time), e.robot, _sound(e.visitor), _sound(e.kind), _sound(e.text), _json(e.data))
+            (
+                *(e.time, _date(e.time), e.robot, _sound(e.visitor), _sound(e.kind), _sound(e.text), _json(e.data)),
+                *(name_key(e.visitor), e.visit),
+            )
             for e in entries
         ]
-        sql = "INSERT INTO journal (time, date, robot, visitor, kind, text, data) VALUES (?, ?, ?, ?, ?, ?, ?)"
+        sql = """INSERT INTO journal (time, date, robot, visitor, kind, text, data, key, visit)
+            VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"""
         self._do(lambda db: db.executemany(sql, rows))
 
     def met(self, name: str, now: float, data: Mapping[str, Any] | None = None) -> None:
@@ -68,47 +85,43 @@ class Store:
         name = _sound(name)
         known = self.visitor(name)
         known_data = _json({**(known["data"] if known else {}), **(data or {})})
-        sql = """INSERT INTO visitors VALUES (?, ?, ?, 1, ?)
-            ON CONFLICT (name) DO UPDATE SET last = excluded.last, visits = visits + 1, data = excluded.data"""
-        self._do(lambda db: db.execute(sql, (name, now, now, known_data)))
+        sql = """INSERT INTO visitors (key, name, first, last, visits, data) VALUES (?, ?, ?, ?, 1, ?)
+            ON CONFLICT (key) DO UPDATE SET last = excluded.last, visits = visits + 1, data = excluded.data"""
+        self._do(lambda db: db.execute(sql, (name_key(name), name, now, now, known_data)))
 
     def visitor(self, name: str) -> dict[str, Any] | None:
         """What is known of somebody, None where nothing is."""
-        sql = "SELECT * FROM visitors WHERE name = ?"
-        rows = self._do(lambda db: db.execute(sql, (_sound(name),)).fetchall())
+        sql = f"SELECT {_VISITOR} FROM visitors WHERE key = ?"
+        rows = self._do(lambda db: db.execute(sql, (name_key(name),)).fetchall())
         return _visitor(rows[0]) if rows else None
 
     def visitors(self) -> list[dict[str, Any]]:
         """Everybody, who came last first."""
-        sql = "SELECT * FROM visitors ORDER BY last DESC, name LIMIT ?"
+        sql = f"SELECT {_VISITOR} FROM visitors ORDER BY last DESC, name LIMIT ?"
         return [_visitor(row) for row in self._do(lambda db: db.execute(sql, (MAX_ROWS,)).fetchall())]
 
     def journal(self, *, since: float = 0.0, visitor: str = "", limit: int = 100) -> list[dict[str, Any]]:
-        """The newest entries, the oldest of them first."""
-        sql = "SELECT * FROM journal WHERE time >= ? AND (? = '' OR visitor = ?) ORDER BY time DESC, id DESC LIMIT ?"
-        found = self._do(
-            lambda db: db.execute(
-                sql, (float(since), _sound(visitor), _sound(visitor), min(limit, MAX_ROWS))
-            ).fetchall()
-        )
+        """The newest entries, the oldest of them first; of a visitor all that belongs to their visits."""
+        sql = f"""SELECT {_ENTRY} FROM journal WHERE time >= :since AND (:key = '' OR key = :key OR visit IN
+            (SELECT visit FROM journal WHERE key = :key AND visit > 0)) ORDER BY time DESC, id DESC LIMIT :limit"""
+        given = {"since": float(since), "key": name_key(visitor), "limit": min(limit, MAX_ROWS)}
+        found = self._do(lambda db: db.execute(sql, given).fetchall())
         return [{**dict(row), "data": json.loads(row["data"])} for row in reversed(found)]
 
-    def forget(self, name: str) -> tuple[int, int]:
-        """Delete all that is known of somebody; how many visitors and journal entries that were.
+    def end(self) -> JournalEnd:
+        """Where the journal stops."""
+        sql = "SELECT visit, time, visitor FROM journal WHERE visit > 0 ORDER BY id DESC LIMIT 1"
+        rows = self._do(lambda db: db.execute(sql).fetchall())
+        return JournalEnd(*rows[0]) if rows else JournalEnd()
 
-        Of the journal: what was noted while they were there, and whatever names them. Raises ModuleError also where
-        that is deleted and can still be read in the file, because another program looks at it as it was.
+    def forget(self, name: str) -> Forgotten:
+        """Delete all that is known of somebody: their row, their visits as a whole, and whatever else names them.
+
+        A visit is theirs where the behaviour knew their name in it, or the eyes theirs and nobody else's. Raises
+        ModuleError also where that is deleted and can still be read in the file, because another program looks at it
+        as it was.
         """
-        name = _sound(name)
-        word = re.compile(rf"(?<!\w){re.escape(name.strip())}(?!\w)", re.IGNORECASE)
-
-        def delete(db: sqlite3.Connection) -> tuple[int, int]:
-            db.create_function("names", 1, lambda text: bool(word.search(text)))
-            gone = db.execute("DELETE FROM visitors WHERE name = ? OR names(data)", (name.strip(),)).rowcount
-            sql = "DELETE FROM journal WHERE visitor = ? OR names(visitor) OR names(text) OR names(data)"
-            return gone, db.execute(sql, (name.strip(),)).rowcount
-
-        found: tuple[int, int] = self._do(delete)
+        found: Forgotten = self._do(lambda db: _delete(db, name_key(name)))
         self._unclean = True
         self._clean()
         return found
@@ -156,7 +169,7 @@ class Store:
         db.row_factory = sqlite3.Row
         db.execute("PRAGMA secure_delete = ON")
         db.execute("PRAGMA journal_mode = WAL")
-        db.executescript(_TABLES)
+        prepare(db)
         return db
 
     def _why(self, error: Exception) -> str:
@@ -174,6 +187,24 @@ class Store:
         ):
             return f"{file} is a database of something else: move it away, and a new one is begun"
         return f"{file} can't be written: {getattr(error, 'strerror', None) or text}"
+
+
+def _delete(db: sqlite3.Connection, key: str) -> Forgotten:
+    """What `Store.forget` deletes of the person with that key."""
+    known = {row["key"]: row["name"] for row in db.execute("SELECT key, name FROM visitors").fetchall()}
+    alone = PersonName(key)
+    others = {other: known[other] for other in known if other != key and alone.is_named_in(other)}
+    person = PersonName(key, others)
+    db.create_function("names", 1, person.is_named_in)
+    db.create_function("holds", 1, lambda data: person.is_in(json.loads(data)))
+    db.create_function("same", 1, lambda text: name_key(text) == key)
+    gone = db.execute("DELETE FROM visitors WHERE key = ?", (key,)).rowcount
+    for row in db.execute("SELECT key, data FROM visitors WHERE holds(data)").fetchall():
+        data = _json(person.scrubbed(json.loads(row["data"])))
+        db.execute("UPDATE visitors SET data = ? WHERE key = ?", (data, row["key"]))
+    rows = db.execute(_THEIRS, {"key": key}).fetchall()
+    db.executemany("DELETE FROM journal WHERE id = ?", [(row["id"],) for row in rows])
+    return Forgotten(gone, len(rows), frozenset(int(row["visit"]) for row in rows), tuple(others.values()))
 
 
 def _date(time: float) -> str:

@@ -1,0 +1,147 @@
+"""The files of an exhibition's home, without somebody."""
+
+import io
+import json
+import time
+import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from lumen.app.forgetting.report import Forgetting, ForgottenPlace
+from lumen.errors import ModuleError
+from lumen.language.people import PersonName, name_key
+from lumen.loading.json_lines import forget_lines, line_names
+from lumen.modules.eyes.eyes import FACES_FILE
+from lumen.modules.memory import Store
+from lumen.modules.memory.memory import DATABASE_FILE
+from lumen.runtime.forgetting import forgetful_data
+from lumen.runtime.home import Home
+from lumen.runtime.snapshot_store import SNAPSHOT_FILE
+
+DRAFT_AGE = 5.0
+"""After how long a draft of a file is one that a crash has left behind [s]."""
+PATIENCE = 5.0
+"""How long a running exhibition has to forget what it remembers [s]."""
+
+
+def forget_in(folder: Path, name: str, found: Forgetting) -> None:
+    """Forget somebody in all files of the home in `folder`, and add to `found` what came of it and what is left.
+
+    What a running exhibition remembers it forgets itself: that is waited for.
+    """
+    _attempt(found, folder / DATABASE_FILE, lambda: _database(folder / DATABASE_FILE, name, found))
+    _attempt(found, folder / FACES_FILE, lambda: _faces(folder / FACES_FILE, name, found))
+    person, home = PersonName(name, map(name_key, found.others)), Home(folder)
+    for file in sorted(folder.glob("*.jsonl*")):
+        _attempt(found, file, lambda file=file: _lines(file, person, found))  # type: ignore[misc]
+    if home.held():
+        _await(lambda: not _names(folder / SNAPSHOT_FILE, person))
+    else:
+        _snapshot(home, person, found)
+    _drafts(folder)
+    found.left += _left(folder, person)
+    found.elsewhere += _own_files(folder, person)
+
+
+def _attempt(found: Forgetting, file: Path, work: Callable[[], None]) -> None:
+    """One file that can't be written keeps no other from being forgotten."""
+    try:
+        if file.exists():
+            work()
+    except ModuleError as error:
+        found.left.append(ForgottenPlace(file.name, str(error)))
+
+
+def _database(file: Path, name: str, found: Forgetting) -> None:
+    store = Store(file)
+    try:
+        gone = store.forget(name)
+    finally:
+        store.close()
+    found.visitors += gone.visitors
+    found.entries += gone.entries
+    found.others = gone.others
+    if gone.visitors or gone.entries:
+        found.deleted.append(
+            ForgottenPlace(file.name, f"visitors: {gone.visitors}, entries of the journal: {gone.entries}")
+        )
+
+
+def _faces(file: Path, name: str, found: Forgetting) -> None:
+    from lumen.modules.eyes.gallery import FaceGallery  # OpenCV takes its time to import
+
+    if gone := FaceGallery(file, time.time).forget(name):
+        found.pictures += gone
+        found.deleted.append(ForgottenPlace(file.name, f"pictures: {gone}"))
+
+
+def _lines(file: Path, person: PersonName, found: Forgetting) -> None:
+    if gone := forget_lines(file, person):
+        found.deleted.append(ForgottenPlace(file.name, f"lines: {gone}"))
+
+
+def _snapshot(home: Home, person: PersonName, found: Forgetting) -> None:
+    """Where the behaviour stood when it ended without notice."""
+    content = home.read(SNAPSHOT_FILE)
+    if content is None or not line_names(content, person):
+        return
+    try:
+        data = json.loads(content)
+        scrubbed = json.dumps({**data, "snapshot": forgetful_data(data["snapshot"], person)}).encode()
+    except (ValueError, TypeError, KeyError, RecursionError):
+        scrubbed = b""
+    if not scrubbed or line_names(scrubbed, person):
+        home.remove(SNAPSHOT_FILE)
+        found.deleted.append(ForgottenPlace(SNAPSHOT_FILE, "the file: nothing is gone on with"))
+    elif why := home.write(SNAPSHOT_FILE, scrubbed):
+        found.left.append(ForgottenPlace(SNAPSHOT_FILE, f"it can't be written: {why}"))
+    else:
+        found.deleted.append(ForgottenPlace(SNAPSHOT_FILE, "the name, in what the behaviour remembers"))
+
+
+def _drafts(folder: Path) -> None:
+    """What a crash left half written may name anybody."""
+    for draft in folder.glob("*.new"):
+        with suppress(OSError):  # whoever writes it has just done so
+            if not Home(folder).held() or time.time() - draft.stat().st_mtime > DRAFT_AGE:
+                draft.unlink()
+
+
+def _left(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
+    """Files that still name the person."""
+    for file in sorted(folder.rglob("*.json*")):
+        if _names(file, person):
+            held = file.name == SNAPSHOT_FILE and Home(folder).held()
+            why = "the exhibition that runs has not forgotten the name" if held else "it still says the name"
+            yield ForgottenPlace(str(file.relative_to(folder)), why)
+
+
+def _own_files(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
+    """Files of the exhibition itself, as they are kept for a start after a crash, that say the name."""
+    for file in sorted(folder.glob("*.zip")):
+        for member in _members(file, person):
+            yield ForgottenPlace(file.name, f"the exhibition's own file {member} says the name")
+
+
+def _names(file: Path, person: PersonName) -> bool:
+    try:
+        return any(line_names(line, person) for line in file.read_bytes().splitlines())
+    except OSError:
+        return False
+
+
+def _members(file: Path, person: PersonName) -> Iterator[str]:
+    try:
+        with zipfile.ZipFile(io.BytesIO(file.read_bytes())) as archive:
+            for member in archive.namelist():
+                if person.is_named_in(archive.read(member).decode("utf-8", "replace")):
+                    yield member
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError):
+        return
+
+
+def _await(condition: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + PATIENCE
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.02)

@@ -1,0 +1,47 @@
+"""What came of forgetting somebody: what was deleted where, what is left, and what can't be looked at from here."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from lumen.buses.queues import SIDE_QUEUES
+from lumen.language.routes import Carried, Direction, Route
+
+
+class ForgottenPlace(NamedTuple):
+    """A file or another place, and what was deleted there, or is left there."""
+
+    where: str
+    what: str
+
+
+@dataclass
+class Forgetting:
+    """What came of it: counts, the places where something was deleted, and those where something is `left`.
+
+    What is `elsewhere` can't be deleted from here. `others` are names of visitors that hold the name and are somebody
+    else's.
+    """
+
+    visitors: int = 0
+    entries: int = 0
+    pictures: int = 0
+    deleted: list[ForgottenPlace] = field(default_factory=list)
+    left: list[ForgottenPlace] = field(default_factory=list)
+    elsewhere: list[ForgottenPlace] = field(default_factory=list)
+    others: tuple[str, ...] = ()
+
+
+FILES_ELSEWHERE = "where a part of the exhibition runs, its files hold what it knows: say it there, too"
+COPIES = "films, sounds and transcripts of runs, copies and backups of these files"
+
+
+def out_of_reach(routes: Iterable[Route], broker: bool) -> Iterator[ForgottenPlace]:
+    """Places that can't be looked at from here; a `broker` keeps messages of these routes for some time."""
+    if broker:
+        for route in routes:
+            if route.carried is Carried.JOURNAL and route.direction is Direction.OUT:
+                yield ForgottenPlace(f"the broker's stream of `{route.name}`", "what was sent, for up to 30 days")
+        yield ForgottenPlace(f"the broker's {SIDE_QUEUES}", "what nobody could use, for up to 7 days and an hour")
+    yield ForgottenPlace("other machines", FILES_ELSEWHERE)
+    yield ForgottenPlace("other files", COPIES)

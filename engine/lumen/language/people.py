@@ -1,0 +1,113 @@
+"""Names of people: whether two texts name the same person, and a text without the name."""
+
+import re
+import unicodedata
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+_SPACELESS = re.compile("[\u0e00-\u0eff\u1000-\u109f\u1780-\u17ff\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
+"""A sign of a script that puts no space between words, or joins endings to names."""
+_CLUSTER = re.compile(r"\s+|.", re.DOTALL)
+
+
+def name_key(name: str) -> str:
+    """The name as it is compared: in NFKC, case folded, without invisible signs, one space between words.
+
+    The Turkish i's are one: who writes `IŞIK` or `ipek` on another keyboard means `Işık` and `İpek`.
+    """
+    return " ".join(_folded(name).split())
+
+
+class PersonName:
+    """Somebody's name, to be found in texts as whole words, however it is written.
+
+    `others` are keys of names that hold it, as `ana maria` holds `ana`: what names those does not name this one. An
+    empty name is in no text.
+    """
+
+    def __init__(self, name: str, others: Iterable[str] = ()) -> None:
+        self.key = name_key(name)
+        longer = sorted((other for other in others if other != self.key), key=len, reverse=True)
+        words = [*(_words(other) for other in longer if other), f"(?P<name>{_words(self.key)})"]
+        self._pattern = re.compile("|".join(words)) if self.key else None
+
+    def is_named_in(self, text: str) -> bool:
+        return bool(self._spans(name_key(text)))
+
+    def taken_from(self, text: str) -> str:
+        """The text without the name; what is left is in NFC where there was something to take."""
+        while self.is_named_in(text):
+            shorter = self._cut(unicodedata.normalize("NFC", text))
+            if shorter == text:
+                return ""  # it is written across signs that no rule takes apart: better nothing than the name
+            text = shorter
+        return text
+
+    def scrubbed(self, data: Any) -> Any:
+        """JSON data without the name; the data itself where it is nowhere in it."""
+        scrubbed: Any
+        match data:
+            case str():
+                return self.taken_from(data) if self.is_named_in(data) else data
+            case Mapping():
+                scrubbed = {self.scrubbed(key): self.scrubbed(value) for key, value in data.items()}
+            case list() | tuple():
+                scrubbed = type(data)(map(self.scrubbed, data))
+            case _:
+                return data
+        return data if scrubbed == data else scrubbed
+
+    def is_in(self, data: Any) -> bool:
+        """Whether JSON data names the person anywhere."""
+        match data:
+            case str():
+                return self.is_named_in(data)
+            case Mapping():
+                return any(self.is_in(key) or self.is_in(value) for key, value in data.items())
+            case list() | tuple():
+                return any(map(self.is_in, data))
+        return False
+
+    def _cut(self, text: str) -> str:
+        folded, places = _mapped(text)
+        kept, at = [], 0
+        for first, last in self._spans(folded):
+            kept.append(text[at : places[first]])
+            at = places[last]
+        return "".join([*kept, text[at:]]).strip() if kept else text
+
+    def _spans(self, folded: str) -> list[tuple[int, int]]:
+        """Where in a folded text it is named."""
+        found = self._pattern.finditer(folded) if self._pattern else ()
+        return [match.span() for match in found if match["name"] is not None]
+
+
+def _folded(text: str) -> str:
+    text = text.encode("utf-8", "replace").decode()  # half characters, which JSON may bring
+    folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", text).casefold())
+    shown = "".join(sign for sign in folded if unicodedata.category(sign) not in ("Cf", "Mn") or _accent(sign))
+    return shown.replace("i\u0307", "i").replace("ı", "i")
+
+
+def _accent(sign: str) -> bool:
+    """Whether a sign that is set on another one tells names apart: all do but those that only choose a glyph."""
+    return unicodedata.category(sign) == "Mn" and not "\ufe00" <= sign <= "\ufe0f"
+
+
+def _mapped(text: str) -> tuple[str, list[int]]:
+    """The text folded as a key is, sign after sign, and where in the text each of its signs begins; and its end."""
+    folded, places = [], []
+    starts = [match.start() for match in _CLUSTER.finditer(text)]
+    starts = [at for at in starts if unicodedata.category(text[at]) not in ("Mn", "Cf", "Mc", "Me")]
+    for start, end in zip(starts, [*starts[1:], len(text)], strict=False):
+        piece = " " if text[start].isspace() else _folded(text[start:end])
+        folded.append(piece)
+        places += [start] * len(piece)
+    return "".join(folded), [*places, len(text)]
+
+
+def _words(key: str) -> str:
+    """A pattern for a key as whole words."""
+    before = "" if not key or _SPACELESS.match(key[0]) else r"(?<!\w)"
+    after = "" if not key or _SPACELESS.match(key[-1]) else r"(?!\w)"
+    return before + re.escape(key) + after

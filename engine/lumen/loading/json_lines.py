@@ -1,0 +1,37 @@
+"""Files of lines of JSON that may name people: what names one of them is taken out."""
+
+import json
+import os
+from pathlib import Path
+
+from lumen.errors import ModuleError
+from lumen.language.people import PersonName
+
+
+def forget_lines(file: Path, person: PersonName) -> int:
+    """Delete the lines of a file that name the person; how many. Raises ModuleError where it can't be written anew.
+
+    The file is replaced as a whole, and only where there is something to delete.
+    """
+    try:
+        lines = file.read_bytes().splitlines(keepends=True)
+        kept = [line for line in lines if not line_names(line, person)]
+        if len(kept) < len(lines):
+            draft = file.with_name(f"{file.name}.new")
+            with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as written:
+                written.write(b"".join(kept))
+            os.replace(draft, file)
+    except FileNotFoundError:
+        return 0
+    except OSError as error:
+        raise ModuleError(f"{file} can't be written: {error.strerror}") from None
+    return len(lines) - len(kept)
+
+
+def line_names(line: bytes, person: PersonName) -> bool:
+    """Whether a line of JSON, or one that was cut short, names the person."""
+    text = line.decode("utf-8", "replace")
+    try:
+        return person.is_in(json.loads(text))
+    except (ValueError, RecursionError):
+        return person.is_named_in(text)

@@ -1,0 +1,50 @@
+"""The tables of the database, and what becomes of those that an earlier version has written."""
+
+import sqlite3
+
+from lumen.language.people import name_key
+
+VERSION = 2
+"""Of the tables: 1 had no keys of names, and did not know which entries are of one visit."""
+
+_TABLES = """
+CREATE TABLE IF NOT EXISTS journal (
+    id INTEGER PRIMARY KEY, time REAL NOT NULL, date TEXT NOT NULL, robot TEXT NOT NULL, visitor TEXT NOT NULL,
+    kind TEXT NOT NULL, text TEXT NOT NULL, data TEXT NOT NULL,
+    key TEXT NOT NULL DEFAULT '', visit INTEGER NOT NULL DEFAULT 0
+);
+CREATE INDEX IF NOT EXISTS journal_time ON journal (time);
+CREATE INDEX IF NOT EXISTS journal_visit ON journal (visit);
+CREATE TABLE IF NOT EXISTS visitors (
+    key TEXT PRIMARY KEY, name TEXT NOT NULL, first REAL NOT NULL, last REAL NOT NULL,
+    visits INTEGER NOT NULL, data TEXT NOT NULL
+);
+"""
+_FIRST_VISITORS = ["name", "first", "last", "visits", "data"]
+
+
+def prepare(db: sqlite3.Connection) -> None:
+    """Make the tables, or bring those of the first version up to date, wholly or (sqlite3.Error) not at all."""
+    if _columns(db, "visitors") == _FIRST_VISITORS and "key" not in _columns(db, "journal"):
+        with db:
+            db.execute("BEGIN IMMEDIATE")
+            _bring_up(db)
+    db.executescript(_TABLES)
+    db.execute(f"PRAGMA user_version = {VERSION}")
+
+
+def _bring_up(db: sqlite3.Connection) -> None:
+    """Visitors whose names are the same by now become one; entries of before are of no known visit."""
+    db.create_function("name_key", 1, name_key)
+    db.execute("ALTER TABLE journal ADD COLUMN key TEXT NOT NULL DEFAULT ''")
+    db.execute("ALTER TABLE journal ADD COLUMN visit INTEGER NOT NULL DEFAULT 0")
+    db.execute("UPDATE journal SET key = name_key(visitor)")
+    db.execute("ALTER TABLE visitors RENAME TO known")
+    db.execute(_TABLES[_TABLES.index("CREATE TABLE IF NOT EXISTS visitors") :].strip().rstrip(";"))
+    db.execute("""INSERT INTO visitors
+        SELECT name_key(name), name, min(first), max(last), sum(visits), data FROM known GROUP BY name_key(name)""")
+    db.execute("DROP TABLE known")
+
+
+def _columns(db: sqlite3.Connection, table: str) -> list[str]:
+    return [row[1] for row in db.execute(f"PRAGMA table_info({table})").fetchall()]

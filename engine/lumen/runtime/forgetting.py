@@ -1,0 +1,51 @@
+"""A snapshot without somebody's name, while it runs and as it was written."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.interpreters.statechart import Snapshot
+from lumen.interpreters.statechart.type_checks import fits, type_checks
+from lumen.language.machines import MachineDefinition
+from lumen.language.people import PersonName
+
+
+def forgetful(machine: MachineDefinition, snapshot: Snapshot, person: PersonName) -> Snapshot:
+    """The snapshot without the name, in what is remembered and what timers bring; itself where it is not in there.
+
+    A value that its type does not allow any more is the one that the key has first, which is the author's, and stays.
+    """
+    checks, context = type_checks(machine), dict(snapshot.context)
+    for key, value in snapshot.context.items():
+        scrubbed = person.scrubbed(value)
+        if scrubbed is not value and value != machine.context.get(key):
+            allowed = key not in checks or fits(scrubbed, checks[key])
+            context[key] = scrubbed if allowed else machine.context.get(key)
+    timers = tuple(timer._replace(data=person.scrubbed(timer.data)) for timer in snapshot.timers)
+    invoked = {
+        id: child._replace(
+            snapshot=forgetful(
+                machine.invoked.get(machine.invoked_behavior(child.state, id), machine), child.snapshot, person
+            )
+        )
+        for id, child in snapshot.invoked.items()
+    }
+    found = snapshot._replace(context=context, timers=timers, invoked=invoked)
+    return snapshot if found == snapshot else found
+
+
+def forgetful_data(frozen: Mapping[str, Any], person: PersonName) -> dict[str, Any]:
+    """The same of a snapshot that was frozen (`lumen.interpreters.statechart.serialize`); of what is none, itself."""
+    found = dict(frozen)
+    if "context" in found:
+        found["context"] = _values(found["context"], person)
+    if isinstance(timers := found.get("timers"), list):
+        found["timers"] = [{**t, "data": person.scrubbed(t.get("data"))} if isinstance(t, dict) else t for t in timers]
+    for child in found["invoked"].values() if isinstance(found.get("invoked"), dict) else ():
+        if isinstance(child, dict) and isinstance(child.get("snapshot"), dict):
+            child["snapshot"] = forgetful_data(child["snapshot"], person)
+    return found
+
+
+def _values(context: Any, person: PersonName) -> Any:
+    """The keys are the author's words, and stay."""
+    return {key: person.scrubbed(value) for key, value in context.items()} if isinstance(context, dict) else context
