@@ -14,7 +14,7 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup, set_up
 from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
-from lumen.clocks.real import RealClock
+from lumen.clocks.following import FollowingClock
 from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.presence import BRAIN, ROBOT_PART
@@ -68,7 +68,7 @@ class Member:
         project = replace(lumen.load(folder), robot=name)
         self.run_directory = RunDirectory(folder, guest=BRAIN not in names)
         self.cast: Setup | None = set_up("recording", project, speed) if ROBOT_PART in names else None
-        clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(speed))
+        clock: Clock = self.cast.clock if self.cast else FollowingClock(float(speed))
         played = project.stories[story] if story else None
         bus = validated(connect(url), project)
         narrator = Printed(clock.now, lambda: self.process.project.machine)

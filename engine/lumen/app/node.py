@@ -7,8 +7,10 @@ from contextlib import ExitStack
 from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals
 from lumen.app.garbage import GcScheduler
 from lumen.app.narrator import Narrator
+from lumen.app.pace import PaceWatch
 from lumen.app.parts.part import Part
 from lumen.buses.validated import ValidatedBus
+from lumen.clocks.following import FollowingClock
 from lumen.errors import UsageError
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -29,6 +31,7 @@ class Node:
     With a `presence` it is one of several processes, or a whole exhibition that others on the same bus can see: it
     begins when it has claimed what it is. `speed` is that of its time; those of the others have to be the same.
     What is in `before` is called at each tick with its time [s], before the parts; what is in `closing` when it ends.
+    `paced` is called where it begins and ends to keep less than real time, with how much.
     """
 
     def __init__(
@@ -50,6 +53,8 @@ class Node:
         self.now, self._asked = clock.now(), time.monotonic()
         self._begun: list[Part] = []
         self._threads = ThreadWatch()
+        self.pace = PaceWatch(clock)
+        self.paced: Callable[[float], None] = lambda _: None
         self._waiting = ""
         self._interrupts, self._heeded, self._leaving = 0, False, False
 
@@ -112,6 +117,8 @@ class Node:
         changes: list[Event] = self.presence.tick() if self.presence else []
         if self.presence and not self.presence.settled:
             self._claim(self.presence)
+        if self.presence and isinstance(self._clock, FollowingClock):
+            self._follow(self._clock, self.presence)
         for call in self.before:
             call(self.now)
         if not self.presence or self.presence.settled:
@@ -120,6 +127,7 @@ class Node:
             part.tick(self.now, changes)
         for thread in self._threads.tick():
             self._lose(thread)
+        self._keep_pace()
         self._heed()
         return self.now
 
@@ -142,7 +150,7 @@ class Node:
 
     def summary(self) -> list[str]:
         """What is said of its parts at the end, a line each."""
-        return [line for part in self._begun for line in part.summary()]
+        return [*(line for part in self._begun for line in part.summary()), *self.pace.summary()]
 
     def _claim(self, presence: Presence) -> None:
         refuse_rivals(presence)
@@ -188,6 +196,20 @@ class Node:
         if thread.vital:
             for part in self._begun:
                 part.helpless(thread.lost)
+
+    def _follow(self, clock: FollowingClock, presence: Presence) -> None:
+        """Live in the robot's time, where it says what that is."""
+        robot = presence.find(ROBOT_PART)
+        if robot and isinstance(at := robot.said.get("time"), int | float):
+            clock.follow(robot.session, float(at), robot.heard)
+        clock.tick()
+
+    def _keep_pace(self) -> None:
+        if isinstance(self._clock, FollowingClock):
+            return  # whose time it is says so
+        if line := self.pace.tick():
+            self._narrator.line("time", line)
+            self.paced(self.pace.realtime)
 
     def _heed(self) -> None:
         """What the first interrupt asks for; where nobody has anything to do for it, it ends."""

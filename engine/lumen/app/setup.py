@@ -85,12 +85,17 @@ class _DrivenClock:
     """Somebody's clock, through whose time a world lives."""
 
     def __init__(self, clock: Clock, live: Callable[[float], None]) -> None:
-        self._clock, self._live = clock, live
+        self._clock, self._live, self._lived = clock, live, clock.now()
+
+    @property
+    def realtime(self) -> float:
+        return float(getattr(self._clock, "realtime", 1.0))
 
     def now(self) -> float:
         return self._clock.now()
 
     def wait(self, until: float) -> None:
-        before = self._clock.now()
+        """All that passes is lived through, also what passes while the world lives and nobody waits."""
         self._clock.wait(until)
-        self._live(self._clock.now() - before)
+        lived, self._lived = self._lived, self._clock.now()
+        self._live(self._lived - lived)

@@ -1,6 +1,7 @@
 """All parts of an exhibition in one process: visitor, robot and brain."""
 
 from pathlib import Path
+from typing import Any
 
 from lumen.app.claiming import presence_of
 from lumen.app.live_behavior import LiveBehavior
@@ -48,7 +49,7 @@ class WholeNode(Node):
         self.narrator = narrator or Narrator(setup.clock.now, lambda: self.project.machine)
         here = tuple(name for name, said in project.modules.items() if said.here)
         roles = (ROBOT_PART, BRAIN, MOTION, *here)
-        presence = presence_of(project, bus, roles, lambda: {"bundle": self.project.hash}) if shared else None
+        presence = presence_of(project, bus, roles, self._said) if shared else None
         super().__init__(self.behavior.project, bus, setup.clock, self.narrator, presence=presence)
         self.setup, self.story = setup, story
         self.robot = RobotPart(self.project, bus, setup, presence, silent=silent)
@@ -62,7 +63,12 @@ class WholeNode(Node):
             self.loop.observers.append(self.player)
         self.brain = BrainPart(self.behavior, self.narrator, presence, language)
         self.parts += [self.robot, self.brain]
+        self.paced = self.behavior.trace.pace
         self.behavior.adopt = lambda bundle: self.use(bundle, but=self.brain)
+
+    def _said(self) -> dict[str, Any]:
+        """What others hear of it besides that it is there."""
+        return {"bundle": self.project.hash, "time": round(self.now, 3), "realtime": self.pace.realtime}
 
     @property
     def loop(self) -> BehaviorLoop:

@@ -25,7 +25,7 @@ from lumen.cli.performance import Performance
 from lumen.cli.printing import clock_time
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
-from lumen.clocks.real import RealClock
+from lumen.clocks.following import FollowingClock
 from lumen.errors import BusError, ModuleError, RobotError, UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
@@ -141,7 +141,7 @@ def _processes(
     _check_processes(options, story, parts, url)
     setup = set_up(options.robot, project, options.speed, story, options.robot_url) if ROBOT_PART in parts else None
     speed = float(options.speed)
-    clock: Clock = setup.clock if setup else RealClock(speed=speed)
+    clock: Clock = setup.clock if setup else FollowingClock(speed)
     transcript = Transcript(clock.now, lambda: node.project.machine)
     how = ProcessOptions(url, speed, options.reload, language, options.fresh)
     bus = validated(connect(url), project)

@@ -3,22 +3,43 @@
 import time
 from collections.abc import Callable
 
+from lumen.clocks.bell import Bell
+from lumen.clocks.pace import PaceMeter
+
+MAX_ARREARS = 0.25
+"""How far [s] the clock may be behind and still catch up: a tick that the machine held back costs no time."""
+
 
 class SimulatedClock:
     """A clock whose passing is `live(dt)`: physics, or nothing but counting.
 
     `speed` is how many times real time it runs at most, None as fast as the world can. Where the world is slower than
-    that, the clock falls behind and does not hurry to catch up.
+    that, the clock falls behind and, but for `MAX_ARREARS`, does not hurry to catch up; `realtime` says how slow it is.
     """
 
-    def __init__(self, live: Callable[[float], None], speed: float | None = None) -> None:
-        self._live = live
-        self._speed = speed
+    def __init__(
+        self,
+        live: Callable[[float], None],
+        speed: float | None = None,
+        monotonic: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._live, self._speed, self._monotonic = live, speed, monotonic
+        self._meter = PaceMeter(speed or 1.0, monotonic)
+        self._bell = Bell()
         self._now = 0.0
-        self._due = time.monotonic()
+        self._due = monotonic()
+
+    @property
+    def realtime(self) -> float:
+        """How much of the wanted speed it has kept of late; 1 where it may be as fast as it can."""
+        return self._meter.factor if self._speed else 1.0
 
     def now(self) -> float:
         return self._now
+
+    def hurry(self) -> None:
+        """Let the `wait` that is going on return: something can't wait. From any thread."""
+        self._bell.ring()
 
     def wait(self, until: float) -> None:
         dt = until - self._now
@@ -28,8 +49,9 @@ class SimulatedClock:
         self._now = until
         if self._speed:
             self._due += dt / self._speed
-            ahead = self._due - time.monotonic()
+            ahead = self._due - self._monotonic()
             if ahead > 0:
-                time.sleep(ahead)
+                self._bell.sleep(ahead)
             else:
-                self._due -= ahead
+                self._due += max(0.0, -ahead - MAX_ARREARS)
+            self._meter.note(until)

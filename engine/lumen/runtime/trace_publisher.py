@@ -42,6 +42,10 @@ class TracePublisher(Observer):
         """Tell somebody who has just come where the behaviour stands."""
         self._tell(_standing(snapshot))
 
+    def pace(self, realtime: float) -> None:
+        """Tell how much of real time is kept, where that has become too little, or enough again."""
+        self._tell({"realtime": realtime})
+
     def performing(self, command: Command, now: float) -> None:
         match command:
             case Start(id, wanted):

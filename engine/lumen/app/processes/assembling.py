@@ -56,7 +56,8 @@ def assemble(
 
     def said() -> dict[str, Any]:
         follows = robot.follows if robot else ""
-        return {"bundle": node.project.hash, "speed": options.speed, "follows": follows}
+        body = {"bundle": node.project.hash, "speed": options.speed, "follows": follows}
+        return {**body, "time": round(node.now, 3), "realtime": node.pace.realtime} if robot else body
 
     presence = presence_of(project, bus, tuple(names), said)
     node = Node(project, bus, clock, narrator, presence=presence, speed=options.speed)
