@@ -13,6 +13,8 @@ from lumen.loading.controllers import build_controller
 from lumen.loading.derived import derived
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.files import MAX_FILE_BYTES
+from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
 
@@ -30,7 +32,7 @@ class Controller(ControllerDefinition):
     def load(cls, path: str | Path) -> Self:
         """The controller in a file; raises UsageError where it can't be read, ProjectError for what it says."""
         try:
-            content = Path(path).read_bytes()
+            content = read_regular(Path(path), MAX_FILE_BYTES)
         except OSError as error:
             raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
         document, diagnostics = parse(str(path), content)

@@ -15,10 +15,11 @@ from lumen.loading.derived import derived
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import read_files
+from lumen.loading.files import MAX_FILE_BYTES, read_files
 from lumen.loading.motions import build_motion, countable
 from lumen.loading.packaged import MAIN_FILE, find_project, shipped_root
 from lumen.loading.project import draft
+from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
 
@@ -37,7 +38,7 @@ class Motion(motions.MotionDefinition):
         """
         path = Path(path)
         try:
-            content = path.read_bytes()
+            content = read_regular(path, MAX_FILE_BYTES)
         except OSError as error:
             raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
         document, diagnostics = parse(str(path), content)

@@ -1,9 +1,9 @@
 """One mistake, or several, in a small project: exactly these findings, at the very word, with the right hint.
 
 Each YAML file beside this one is a table of cases. A case changes the project in base/: `edit` maps a file to [old,
-new, …], `write` to its whole content, `delete` lists the beginnings of paths. `find` lists what lint has to say, as
-"file:line:column code | part of the hint", and " @ file:line:column" where another place is shown first; it must say
-nothing else.
+new, …], `write` to its whole content, `nest` to a word in it and the [before, after, times] that take its place;
+`delete` lists the beginnings of paths. `find` lists what lint has to say, as "file:line:column code | part of the
+hint", and " @ file:line:column" where another place is shown first; it must say nothing else.
 """
 
 from pathlib import Path
@@ -38,7 +38,10 @@ def changed(case: dict[str, Any]) -> dict[str, bytes]:
             text = files[name].decode()
             assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in {name}"
             files[name] = text.replace(old, new).encode()
-    return files | {name: text.encode() for name, text in case.get("write", {}).items()}
+    files |= {name: text.encode() for name, text in case.get("write", {}).items()}
+    for name, (word, before, after, times) in case.get("nest", {}).items():
+        files[name] = files[name].replace(word.encode(), (before * times + after * times).encode())
+    return files
 
 
 def said(diagnostic: Diagnostic) -> str:

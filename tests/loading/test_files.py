@@ -2,14 +2,22 @@
 
 import os
 import shutil
+import socket
 from pathlib import Path
 
 import pytest
 
 import lumen
+import lumen.fuzzy as lumen_fuzzy
+import lumen.motion as lumen_motion
+from lumen import statechart
+from lumen.cli.main import main as run
+from lumen.cli.render import FORMATS
 from lumen.errors import ProjectError, UsageError
+from lumen.loading import files as project_files
 from lumen.loading.files import Unreadable, fingerprint, read_files
 from lumen.loading.packaged import find_project, shipped_root
+from lumen.loading.regular_files import read_regular
 from lumen.loading.yaml_reader import parse
 from lumen.rules import check_files
 
@@ -90,6 +98,104 @@ def test_a_huge_file_is_not_read(project: Path) -> None:
     with (project / "motions/long.yaml").open("wb") as file:
         file.truncate(2_000_000_000)
     assert codes(project) == ["unreadable-file"]
+
+
+SECRET = "TOKEN=tops3cret\nstates: {a: {on: {tops3cret: b}}}\n"
+
+
+@pytest.fixture
+def secret(tmp_path: Path) -> Path:
+    """A file outside of the project, and a folder of such."""
+    folder = tmp_path / "secrets"
+    folder.mkdir()
+    for name in ("s.yaml", "s.schema.json", "s.xml", "tops3cret.yaml"):
+        (folder / name).write_text(SECRET)
+    return folder
+
+
+@pytest.mark.parametrize("link", [
+    "behaviors/s.yaml", "behaviors/stories/s.yaml", "fuzzy/s.yaml", "motions/s.yaml", "models/s.yaml",
+    "models/s.xml", "models/passages/s.yaml", "schemas/messages/s.schema.json", "lumen.yaml",
+])  # fmt: skip
+def test_a_link_that_leads_out_is_refused_and_shows_nothing(
+    project: Path, secret: Path, link: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (project / link).parent.mkdir(exist_ok=True)
+    (project / link).unlink(missing_ok=True)
+    (project / link).symlink_to(secret / f"s{''.join(Path(link).suffixes)}")
+    if link == "models/s.xml":
+        main = (project / "lumen.yaml").read_text()
+        (project / "lumen.yaml").write_text(main + "hall: s.xml\n" if "hall:" not in main else main)
+    assert "unreadable-file" in codes(project) or link == "models/s.xml"
+    for format in FORMATS:
+        run(["lint", str(project), "--format", format])
+    shown = capsys.readouterr()
+    assert "s3cret" not in shown.out + shown.err
+
+
+@pytest.mark.parametrize("folder", ["behaviors", "behaviors/stories", "fuzzy", "motions", "models", "schemas"])
+def test_a_folder_that_leads_out_is_refused_and_shows_no_names(
+    project: Path, secret: Path, folder: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.rmtree(project / folder)
+    (project / folder).symlink_to(secret)
+    [found] = [d for d in lumen.check(project) if d.code == "unreadable-file"]
+    assert found.place.file == folder
+    assert "missing-folder" not in codes(project)
+    run(["lint", str(project)])
+    shown = capsys.readouterr()
+    assert "s3cret" not in shown.out + shown.err
+    assert str(secret) not in shown.out + shown.err
+
+
+def test_links_within_the_project_are_followed(project: Path, tmp_path: Path) -> None:
+    (project / "motions/wave.yaml").rename(project / "wave.yaml")
+    (project / "motions/wave.yaml").symlink_to("../wave.yaml")
+    (project / "fuzzy").rename(project / "controllers")
+    (project / "fuzzy").symlink_to("controllers")
+    assert codes(project) == []
+    (tmp_path / "other").symlink_to(project)
+    assert codes(tmp_path / "other") == []
+
+
+def test_a_project_of_many_large_files_is_not_read_without_end(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for number in range(9):
+        (project / f"motions/long{number}.yaml").write_bytes(b"#" * 1_000)
+    monkeypatch.setattr(project_files, "MAX_FOLDER_FILES", 5)
+    assert sum(file.startswith("motions/") for file in read_files(project)) == 5
+    monkeypatch.setattr(project_files, "MAX_PROJECT_BYTES", 8_000)
+    files = read_files(project)
+    refused = {content for content in files.values() if isinstance(content, Unreadable)}
+    assert refused == {b"the project holds more than 0 MB"}
+    assert sum(len(content) for content in files.values() if not isinstance(content, Unreadable)) <= 8_000
+
+
+@pytest.mark.parametrize("kind", ["pipe", "socket", "folder", "large"])
+def test_what_is_no_plain_file_is_refused_at_once(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "here"
+    if kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "socket":
+        socket.socket(socket.AF_UNIX).bind(str(path))
+    elif kind == "folder":
+        path.mkdir()
+    else:
+        path.write_bytes(b"x" * 101)
+    with pytest.raises(OSError):  # noqa: PT011  each has a reason of its own
+        read_regular(path, 100)
+    for load in (lumen_fuzzy.Controller.load, lumen_motion.Motion.load, statechart.Machine.load):
+        with pytest.raises((UsageError, ProjectError)):
+            load(path)
+
+
+def test_a_device_is_refused_and_a_link_where_none_is_wanted(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="a device or a pipe"):
+        read_regular(Path("/dev/zero"), 100)
+    (tmp_path / "file").write_bytes(b"here")
+    (tmp_path / "link").symlink_to("file")
+    assert read_regular(tmp_path / "link", 4) == b"here"
+    with pytest.raises(OSError, match="symbolic links"):
+        read_regular(tmp_path / "link", 4, follow=False)
 
 
 def test_what_an_editor_leaves_is_not_read(project: Path) -> None:

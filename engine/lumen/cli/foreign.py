@@ -1,25 +1,20 @@
 """Files of other tools, for the verbs that read them."""
 
-import stat
 from pathlib import Path
 
 from lumen.errors import UsageError
 from lumen.formats.conversion_findings import MAX_FILE_BYTES
 from lumen.language.diagnostics import Diagnostic
+from lumen.loading.regular_files import read_regular
 
 
 def foreign_content(path: Path) -> bytes:
     """What the file holds; raises UsageError where it can't be read, or is too large to be one of these."""
     try:
-        if not stat.S_ISREG(path.stat().st_mode) and not path.is_dir():
-            raise UsageError(f"can't read {path}: it is a device or a pipe, not a file")
-        with path.open("rb") as file:
-            content = file.read(MAX_FILE_BYTES + 1)
-    except OSError as error:
-        raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
-    if len(content) > MAX_FILE_BYTES:
-        raise UsageError(f"{path} is larger than {MAX_FILE_BYTES // 1_000_000} MB: too large to be imported")
-    return content
+        return read_regular(path, MAX_FILE_BYTES)
+    except (OSError, ValueError) as error:  # a name with a NUL
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UsageError(f"can't read {path}: {reason[:1].lower()}{reason[1:]}") from None
 
 
 def one_line(diagnostic: Diagnostic) -> str:

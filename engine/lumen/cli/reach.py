@@ -1,7 +1,6 @@
 """The bus of an exhibition that runs somewhere else: a broker, or the door of one on this machine."""
 
 import argparse
-import json
 import os
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -61,17 +60,14 @@ def _running(root: Path) -> dict[str, Any] | None:
 
 
 def _said(home: Home) -> dict[str, Any] | None:
-    try:
-        found = json.loads(home.read(ADDRESS_FILE) or b"")
-    except ValueError:
-        return None
+    found = home.read_json(ADDRESS_FILE)
     return found if isinstance(found, dict) else None
 
 
 def _same_folder(one: object, other: Path) -> bool:
     try:
         return isinstance(one, str) and os.path.samefile(one, other)
-    except OSError:
+    except (OSError, ValueError):
         return False
 
 

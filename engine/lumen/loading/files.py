@@ -2,17 +2,25 @@
 
 import hashlib
 import os
-import stat
 from collections.abc import Iterator, Mapping
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.regular_files import MEGABYTE, read_regular
 
 PROJECT_FOLDERS = ("behaviors", "fuzzy", "motions", "schemas", "models")
 """What belongs to a project beside lumen.yaml."""
 
 MAX_FILE_BYTES = 4_000_000
 """Of one file; a behaviour of ten thousand states is smaller."""
+
+MAX_PROJECT_BYTES = 32_000_000
+"""Of all files together."""
+
+MAX_FOLDER_FILES = 5_000
+"""Files of one folder; of more, those that come first by the alphabet are read."""
+
+LEADS_OUT = b"it is a link that leads out of the project"
 
 _READ: Mapping[str, tuple[str, ...]] = {
     "behaviors": (".yaml", ".yml"),
@@ -24,17 +32,28 @@ _READ: Mapping[str, tuple[str, ...]] = {
     "schemas/messages": (".json",),
 }
 
+FOLDERS = frozenset((*PROJECT_FOLDERS, *_READ))
+"""The folders in which files that count may lie, or that hold such a folder."""
+
 
 class Unreadable(bytes):
     """Stands in place of the content of a file that can't be read; its text is the reason, in words."""
 
 
 def read_files(root: Path) -> dict[str, bytes]:
-    """The content of every file that counts, by its path from the project's root, sorted; nothing here raises."""
-    found = {MAIN_FILE: content} if (content := _read(root / MAIN_FILE)) is not None else {}
+    """The content of every file that counts, by its path from the project's root, sorted; nothing here raises.
+
+    Links within the project are followed. Of what lies outside nothing is read, not even which files a folder holds:
+    that folder itself is `Unreadable`.
+    """
+    read = _Reader(root)
+    found = {MAIN_FILE: content} if (content := read.file(MAIN_FILE)) is not None else {}
     for folder, endings in _READ.items():
+        if outside := next((each for each in _within(folder) if read.leads_out(each)), None):
+            found[outside] = Unreadable(LEADS_OUT)
+            continue
         for name in _names(root / folder, endings):
-            content = _read(root / folder / name)
+            content = read.file(f"{folder}/{name}")
             if content is not None:
                 found[f"{folder}/{os.fsencode(name).decode('utf-8', 'replace')}"] = content
     return dict(sorted(found.items()))
@@ -42,7 +61,7 @@ def read_files(root: Path) -> dict[str, bytes]:
 
 def read_main_file(root: Path) -> bytes:
     """lumen.yaml alone, empty where there is none."""
-    return _read(root / MAIN_FILE) or b""
+    return _Reader(root).file(MAIN_FILE) or b""
 
 
 def belongs(path: str) -> bool:
@@ -65,27 +84,44 @@ def fingerprint(files: Mapping[str, bytes]) -> str:
     return digest.hexdigest()
 
 
-def _names(folder: Path, endings: tuple[str, ...]) -> Iterator[str]:
+def _within(folder: str) -> Iterator[str]:
+    """A folder of the project, after those that it lies in."""
+    yield from (str(each) for each in reversed(PurePosixPath(folder).parents) if each.name)
+    yield folder
+
+
+def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
     """The files of a folder; what begins with a dot belongs to an editor."""
     try:
         listed = os.listdir(folder)
     except OSError:
-        return
-    yield from (name for name in listed if name.endswith(endings) and not name.startswith("."))
+        return []
+    return sorted(name for name in listed if name.endswith(endings) and not name.startswith("."))[:MAX_FOLDER_FILES]
 
 
-def _read(path: Path) -> bytes | None:
-    """The content, None where there is no such file; of anything but a file (a pipe, say) nothing is read."""
-    try:
-        status = path.stat()
-        if stat.S_ISDIR(status.st_mode):
-            return Unreadable(b"it is a folder")
-        if not stat.S_ISREG(status.st_mode):
-            return Unreadable(b"it is not a regular file")
-        if status.st_size > MAX_FILE_BYTES:
-            return Unreadable(f"it is larger than {MAX_FILE_BYTES // 1_000_000} MB".encode())
-        return path.read_bytes()
-    except FileNotFoundError:
-        return Unreadable(b"the file it links to is not there") if path.is_symlink() else None
-    except OSError as error:
-        return Unreadable((error.strerror or "the system refuses").lower().encode())
+class _Reader:
+    """Reads files of a project, and counts what they hold together."""
+
+    def __init__(self, root: Path) -> None:
+        self._root, self._real, self._left = root, os.path.realpath(root), MAX_PROJECT_BYTES
+
+    def leads_out(self, name: str) -> bool:
+        """Whether a file or folder of the project is one that lies somewhere else."""
+        real = os.path.realpath(self._root / name)
+        return real != self._real and not real.startswith(self._real.rstrip(os.sep) + os.sep)
+
+    def file(self, name: str) -> bytes | None:
+        """The content, None where there is no such file."""
+        path = self._root / name
+        try:
+            if path.is_symlink() and self.leads_out(name):
+                return Unreadable(LEADS_OUT)
+            content = read_regular(path, MAX_FILE_BYTES)
+        except FileNotFoundError:
+            return Unreadable(b"the file it links to is not there") if path.is_symlink() else None
+        except OSError as error:
+            return Unreadable((error.strerror or "the system refuses").lower().encode())
+        if len(content) > self._left:
+            return Unreadable(f"the project holds more than {MAX_PROJECT_BYTES // MEGABYTE} MB".encode())
+        self._left -= len(content)
+        return content

@@ -13,7 +13,7 @@ from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import Unreadable, fingerprint, read_main_file
+from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_main_file
 from lumen.loading.linking import link
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
@@ -41,6 +41,7 @@ _KINDS: Mapping[str, str] = {
 def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     """Everything that can be built from these files; it depends on nothing else and never raises for what they say."""
     found = ProjectDraft(files)
+    _folders(found)
     if (content := files.get(MAIN_FILE)) is None:
         found.say(MISSING_FILE, MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
     elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
@@ -119,6 +120,15 @@ def _each(found: ProjectDraft, folder: str, build: Build[T]) -> dict[str, BuiltF
 def _built(files: Mapping[str, BuiltFile[T]]) -> dict[str, T]:
     """What was built of these files; one that holds too little for that is left out."""
     return {name: file.built for name, file in files.items() if file.built is not None}
+
+
+def _folders(found: ProjectDraft) -> None:
+    """Report folders of which nothing may be read; what is missing for that is not told."""
+    for name, content in found.files.items():
+        if isinstance(content, Unreadable) and name in FOLDERS:
+            hint = "put a folder of the project in its place: what lies elsewhere is not read"
+            found.say(UNREADABLE_FILE, name, f"this can't be read: {content.decode()}", hint)
+            found.missing |= {folder for folder in FOLDERS if folder == name or folder.startswith(f"{name}/")}
 
 
 def _read(found: ProjectDraft, file: str, content: bytes, kind: str, build: Build[T]) -> BuiltFile[T] | None:

@@ -12,8 +12,10 @@ from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.context import check_memory
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.files import MAX_FILE_BYTES
 from lumen.loading.linking import link
 from lumen.loading.plain import plain_document
+from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
 
@@ -29,7 +31,7 @@ def machine_from_file(path: Path) -> MachineDefinition:
 
     def read(name: str) -> tuple[Document | None, list[Diagnostic]]:
         try:
-            return parse(str(files[name]), files[name].read_bytes())
+            return parse(str(files[name]), read_regular(files[name], MAX_FILE_BYTES))
         except OSError as error:
             raise UsageError(f"can't read {files[name]}: {(error.strerror or str(error)).lower()}") from None
 

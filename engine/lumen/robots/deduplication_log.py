@@ -47,7 +47,7 @@ class DeduplicationLog:
             with suppress(OSError), self._file.open(encoding="utf-8", errors="replace") as lines:
                 for line in lines:
                     self._lines += 1
-                    with suppress(ValueError, TypeError):
+                    with suppress(ValueError, TypeError, OverflowError, RecursionError):
                         at, id = json.loads(line)
                         found.append((float(at), str(id)))
         return list(found)

@@ -3,28 +3,23 @@
 What MuJoCo thinks of it is told when it is simulated; it is not imported here.
 """
 
-from collections.abc import Mapping
-from pathlib import Path, PurePosixPath
-from typing import NamedTuple
-from xml.parsers import expat
+import os
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
 
 from lumen.language.diagnostics import ERROR, Code, Place, nearest
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import Unreadable
+from lumen.loading.files import MAX_FILE_BYTES, Unreadable
+from lumen.loading.regular_files import read_regular
+from lumen.rules.mjcf_elements import ModelElement, ModelFault, mjcf_elements
+from lumen.rules.model_files import missing, outside
 
 BROKEN_MODEL = Code("broken-model", "robot", ERROR, "a model is no MJCF, or lacks a file or a joint")
+FOREIGN_FILE = Code("foreign-file", "robot", ERROR, "a model names a file that lies outside of models/")
 
-
-_FOLDERS = {"mesh": "meshdir", "skin": "meshdir", "texture": "texturedir", "hfield": "meshdir"}
-
-
-class ModelElement(NamedTuple):
-    """The beginning of an XML element, and where it stands."""
-
-    name: str
-    attributes: Mapping[str, str]
-    line: int
-    column: int
+_FOLDERS = {"mesh": "meshdir", "skin": "meshdir", "hfield": "meshdir", "flexcomp": "meshdir", "texture": "texturedir"}
+_NAMES = ("file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
+"""Attributes that name a file."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -33,71 +28,85 @@ def check(draft: ProjectDraft) -> None:
     if settings is None:
         return
     if settings.hall:
-        _read(draft, settings.hall)
-    robot = _read(draft, draft.body.mjcf) if draft.body else []
+        _ModelReader(draft).read(settings.hall)
+    robot = _ModelReader(draft).read(draft.body.mjcf) if draft.body else []
     if len(robot) > 1 and draft.body:
         _joints(draft, draft.body.mjcf, robot)
 
 
-def _read(draft: ProjectDraft, name: str) -> list[ModelElement]:
-    """The elements of a model, none where it can't be read; what is wrong with it is reported."""
-    file = f"models/{name}"
-    content = draft.files.get(file)
-    if content is None or isinstance(content, Unreadable):
-        return []
-    elements: list[ModelElement] = []
-    parser = expat.ParserCreate()
+@dataclass
+class _ModelReader:
+    """Reads a model and what it includes, each file once, and reports what is wrong with them.
 
-    def begin(name: str, attributes: Mapping[str, str]) -> None:
-        elements.append(ModelElement(name, attributes, parser.CurrentLineNumber, parser.CurrentColumnNumber + 1))
+    Where the project lies in no folder, nobody knows whether what they name is there.
+    """
 
-    parser.StartElementHandler = begin
-    try:
-        parser.Parse(content, True)
-    except ValueError as error:  # an encoding of several bytes
-        _say(draft, file, 1, 1, 1, f"this is not XML: {error}", "save it as UTF-8")
-        return []
-    except expat.ExpatError as error:
-        reason = expat.ErrorString(error.code)
-        hint = "look for a tag or a quote that is not closed, here or above"
-        _say(draft, file, error.lineno, error.offset + 1, 1, f"this is not XML: {reason}", hint)
-        return []
-    if elements[0].name != "mujoco":
-        root = elements[0]
-        message = f"this is not MJCF: it begins with `<{root.name}>`"
-        _say(draft, file, root.line, root.column, len(root.name) + 1, message, "MJCF begins with `<mujoco>`")
-        return []
-    _assets(draft, file, elements)
-    return elements
+    draft: ProjectDraft
+    seen: set[str] = field(default_factory=set)
+    around: list[str] = field(default_factory=list)
 
+    def read(self, name: str) -> list[ModelElement]:
+        """The elements of a model, none where it can't be read."""
+        first, content = not self.seen, self.content(f"models/{name}")
+        self.seen.add(name)
+        if content is None:
+            return []
+        elements, fault = mjcf_elements(content)
+        if not fault and elements[0].name not in ("mujoco", "" if first else "mujocoinclude"):
+            root = elements[0]
+            message = f"this is not MJCF: it begins with `<{root.name}>`"
+            fault = ModelFault(root.line, root.column, len(root.name) + 1, message, "MJCF begins with `<mujoco>`")
+        if fault:
+            _say(self.draft, BROKEN_MODEL, name, *fault)
+            return []
+        self.around.append(name)
+        self.named(name, elements)
+        self.around.pop()
+        return elements
 
-def _assets(draft: ProjectDraft, file: str, elements: list[ModelElement]) -> None:
-    """Files that a model names; where the project lies in no folder, nobody knows whether they are there."""
-    folders: dict[str, str] = {}
-    for element in elements:
-        if element.name == "compiler":
-            folders |= {
-                k: element.attributes.get(k) or element.attributes.get("assetdir", "") for k in _FOLDERS.values()
-            }
-    if draft.root is None or not (models := draft.root / "models").is_dir():
-        return
-    for element in elements:
-        name = element.attributes.get("file")
-        if name and (element.name in _FOLDERS or element.name == "include"):
+    def content(self, file: str) -> bytes | None:
+        """What a file holds; one in a folder within models/, too."""
+        content = self.draft.files.get(file)
+        if content is None and self.draft.root:
+            try:
+                return read_regular(self.draft.root / file, MAX_FILE_BYTES)
+            except OSError:
+                return None
+        return None if isinstance(content, Unreadable) else content
+
+    def named(self, model: str, elements: list[ModelElement]) -> None:
+        """Look for the files that a model names, and into those that it includes."""
+        folders: dict[str, str] = {}
+        for element in elements:
+            if element.name == "compiler":
+                folders |= {
+                    k: element.attributes.get(k) or element.attributes.get("assetdir", "") for k in _FOLDERS.values()
+                }
+        for element in elements:
             folder = folders.get(_FOLDERS.get(element.name, ""), "")
-            if not _there(models / folder / name):
-                there = [p.name for p in (models / folder).glob("*")] if (models / folder).is_dir() else []
-                near = nearest(PurePosixPath(name).name, there)
-                hint = f"did you mean `{near}`?" if near else "put it there, or delete what names it"
-                path = PurePosixPath("models", folder, name)
-                _say(draft, file, element.line, element.column, len(element.name) + 1, f"there is no file {path}", hint)
+            for name in filter(None, map(element.attributes.get, _NAMES)):
+                if self.found(model, element, folder, name) and element.name == "include":
+                    self.include(model, element, os.path.normpath(name).replace(os.sep, "/"))
 
+    def include(self, model: str, element: ModelElement, inner: str) -> None:
+        """Read what a model includes, where that was not done before."""
+        if inner in self.around:
+            place = model, element.line, element.column, len(element.name) + 1
+            _say(self.draft, BROKEN_MODEL, *place, f"the model includes itself: {inner}", "delete this line")
+        elif inner not in self.seen:
+            self.read(inner)
 
-def _there(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
+    def found(self, model: str, element: ModelElement, folder: str, name: str) -> bool:
+        """Whether a file that an element names lies in models/ and is there; reported where not."""
+        place = model, element.line, element.column, len(element.name) + 1
+        if outside(self.draft.root, folder, name):
+            message = "this names a file outside of models/, and nothing that lies elsewhere is read"
+            _say(self.draft, FOREIGN_FILE, *place, message, "put the file into models/, and name it from there")
+            return False
+        if hint := missing(self.draft.root, folder, name):
+            path = PurePosixPath("models", folder, name)
+            _say(self.draft, BROKEN_MODEL, *place, f"there is no file {path}", hint)
+        return not hint
 
 
 def _joints(draft: ProjectDraft, name: str, elements: list[ModelElement]) -> None:
@@ -116,6 +125,8 @@ def _joints(draft: ProjectDraft, name: str, elements: list[ModelElement]) -> Non
             report(BROKEN_MODEL, ("joints", joint), message, hint=hint, key=True, cause=f"joints of {name}")
 
 
-def _say(draft: ProjectDraft, file: str, line: int, column: int, length: int, message: str, hint: str) -> None:
-    place = Place(file, line, column, line, column + length)
-    draft.loose.append(BROKEN_MODEL.at(place, message, hint))
+def _say(
+    draft: ProjectDraft, code: Code, model: str, line: int, column: int, length: int, message: str, hint: str
+) -> None:
+    place = Place(f"models/{model}", line, column, line, column + length)
+    draft.loose.append(code.at(place, message, hint))

@@ -45,9 +45,9 @@ class CrashCounter:
 
     def _counts(self) -> dict[str, int]:
         try:
-            data = json.loads(self._home.read(CRASH_COUNTS_FILE) or b"")
+            data = self._home.read_json(CRASH_COUNTS_FILE)
             return {str(hash): int(count) for hash, count in data["bundles"].items()}
-        except (ValueError, TypeError, KeyError, AttributeError):
+        except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
             return {}
 
     def _write(self, counts: dict[str, int]) -> None:

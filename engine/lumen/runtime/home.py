@@ -1,16 +1,23 @@
 """Where a running exhibition keeps what it needs to be found, and to go on: `.lumen/` of its project."""
 
 import hashlib
+import json
 import os
 import sys
 import tempfile
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from lumen.errors import UsageError
+from lumen.loading.regular_files import read_regular
 
 STATE_FOLDER = ".lumen"
 ADDRESS_FILE = "door.json"
+MAX_RECORD_BYTES = 64_000_000
+"""Of one file of a home; where a behaviour stands takes some thousands."""
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0)
+"""A link in the folder may lead to any file of the user: whoever sent the project may have put it there."""
 
 
 class Home:
@@ -30,7 +37,7 @@ class Home:
         """
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            lock = os.open(self.folder / "lock", os.O_RDWR | os.O_CREAT, 0o600)
+            lock = os.open(self.folder / "lock", os.O_RDWR | os.O_CREAT | _NO_LINK, 0o600)
         except OSError as error:
             raise UsageError(f"{self.folder} can't be written: {error.strerror}") from None
         if not _locked(lock):
@@ -42,7 +49,7 @@ class Home:
     def held(self) -> bool:
         """Whether some process has it now."""
         try:
-            lock = os.open(self.folder / "lock", os.O_RDWR)
+            lock = os.open(self.folder / "lock", os.O_RDWR | _NO_LINK)
         except OSError:
             return False
         free = _locked(lock)
@@ -61,7 +68,8 @@ class Home:
         """
         draft = self.folder / f"{name}.new"
         try:
-            with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb", buffering=0) as file:
+            handle = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | _NO_LINK, 0o600)
+            with open(handle, "wb", buffering=0) as file:
                 file.write(data)
             os.replace(draft, self.folder / name)
         except OSError as error:
@@ -71,8 +79,15 @@ class Home:
     def read(self, name: str) -> bytes | None:
         """What is in a file, None where there is none that can be read."""
         try:
-            return (self.folder / name).read_bytes()
+            return read_regular(self.folder / name, MAX_RECORD_BYTES, follow=False)
         except OSError:
+            return None
+
+    def read_json(self, name: str) -> Any:
+        """The data in a file, None where there is none that can be read."""
+        try:
+            return json.loads(self.read(name) or b"null")
+        except (ValueError, RecursionError):
             return None
 
     def remove(self, name: str) -> None:
@@ -87,7 +102,8 @@ def home_of(root: Path) -> Path:
     among the user's own files, under a name made from the project's path.
     """
     inside = root / STATE_FOLDER
-    if not root.is_symlink() and (os.access(inside, os.W_OK) if inside.is_dir() else os.access(root, os.W_OK)):
+    linked = root.is_symlink() or inside.is_symlink()
+    if not linked and os.access(inside if inside.is_dir() else root, os.W_OK):
         return inside
     digest = hashlib.sha256(os.fsencode(root.absolute())).hexdigest()[:12]
     return _own() / f"{root.name}-{digest}"

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from lumen.errors import LumenError
 from lumen.interpreters.statechart import Snapshot, serialize
 from lumen.language.projects import Project
-from lumen.loading.files import fingerprint
+from lumen.loading.files import MAX_PROJECT_BYTES, fingerprint
 from lumen.runtime.home import Home
 
 SNAPSHOT_FILE = "snapshot.json"
@@ -78,14 +78,14 @@ class SnapshotStore:
     def kept(self) -> StoredSnapshot | None:
         """The snapshot of a run that did not end by itself, None where there is none that can be read."""
         try:
-            data = json.loads(self._home.read(SNAPSHOT_FILE) or b"")
+            data = self._home.read_json(SNAPSHOT_FILE)
             if data["version"] != SNAPSHOT_VERSION:
                 return None
             tracking = tuple(map(str, data["tracking"]))
             return StoredSnapshot(
                 str(data["bundle"]), str(data["behavior"]), float(data["time"]), dict(data["snapshot"]), tracking
             )
-        except (ValueError, TypeError, KeyError):
+        except (ValueError, TypeError, KeyError, OverflowError):
             return None
 
     def forget(self) -> None:
@@ -108,6 +108,8 @@ class SnapshotStore:
         """The files of a bundle that was kept, None where they are not there as they were."""
         try:
             with zipfile.ZipFile(io.BytesIO(self._home.read(_name(hash)) or b"")) as archive:
+                if sum(each.file_size for each in archive.infolist()) > 2 * MAX_PROJECT_BYTES:
+                    return None
                 found = {name: archive.read(name) for name in archive.namelist()}
         except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError):
             return None
@@ -122,8 +124,8 @@ class SnapshotStore:
     def good(self) -> str:
         """The hash of the last good bundle, empty where there is none."""
         try:
-            return str(json.loads(self._home.read(LAST_GOOD_FILE) or b"")["bundle"])
-        except (ValueError, TypeError, KeyError):
+            return str(self._home.read_json(LAST_GOOD_FILE)["bundle"])
+        except (TypeError, KeyError):
             return ""
 
     def prune(self, *hashes: str) -> None:

@@ -99,9 +99,9 @@ class RemoteBrainPart(BrainPart):
     def _before(self) -> str:
         """Under which session the last brain's commands travelled; empty where that is not known."""
         try:
-            data: Any = json.loads((self._home and self._home.read(SESSION)) or b"")
+            data: Any = self._home.read_json(SESSION) if self._home else None
             return str(data["session"])
-        except (ValueError, TypeError, KeyError):
+        except (TypeError, KeyError):
             return ""
 
     def _follow(self) -> None:

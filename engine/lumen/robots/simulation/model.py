@@ -64,11 +64,17 @@ def physics(body: Body, models: Path, hall: str, variation: Variation | None = N
     A second robot of the same body and the same files in `models` is a copy of what was compiled for the first: a few
     milliseconds instead of 300. Raises RobotError as `load` does, and where MuJoCo can't build it.
     """
-    files = {path: path.read_bytes() for path in models.rglob("*") if path.is_file()}
+    files = {path: _version(path) for path in models.rglob("*") if path.is_file()}
     compiled = memoize(
         ("simulation", hall), (body, files, variation), lambda: _compiled(load(body, models, hall, variation))
     )
     return mjcf.Physics.from_model(wrapper.MjModel(copy.copy(compiled)))
+
+
+def _version(path: Path) -> tuple[int, int, int]:
+    """What tells a file from what it was before."""
+    status = path.stat()
+    return status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def _compiled(world: mjcf.RootElement) -> mujoco.MjModel:

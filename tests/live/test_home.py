@@ -1,0 +1,52 @@
+"""A run's home may hold what nobody of us wrote: whoever sends a project may send a `.lumen/` with it."""
+
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+
+from lumen.errors import UsageError
+from lumen.runtime import snapshot_store
+from lumen.runtime.crash_counter import CrashCounter
+from lumen.runtime.home import Home, home_of
+from lumen.runtime.snapshot_store import SnapshotStore
+
+
+@pytest.mark.parametrize("name", ["door.json", "door.json.new", "lock"])
+def test_a_link_in_a_home_leads_nowhere(tmp_path: Path, name: str) -> None:
+    precious, home = tmp_path / "precious", Home(tmp_path / ".lumen")
+    precious.write_text("{}")
+    home.folder.mkdir()
+    (home.folder / name).symlink_to(precious)
+    assert home.read_json("door.json") is None
+    home.write("door.json", b"[1]")
+    with suppress(UsageError):
+        home.hold()
+    home.release()
+    assert precious.read_text() == "{}"
+
+
+def test_a_home_that_is_a_link_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    (tmp_path / "show").mkdir()
+    assert home_of(tmp_path / "show") == tmp_path / "show" / ".lumen"
+    (tmp_path / "show" / ".lumen").symlink_to(tmp_path)
+    assert home_of(tmp_path / "show").is_relative_to(tmp_path / "state")
+
+
+@pytest.mark.parametrize("content", [b"[" * 100_000, b"9" * 5_000, b"\xff", b"", b'{"bundles": {"a": 1e999}}'])
+def test_what_nobody_of_us_wrote_into_a_home_is_as_good_as_nothing(tmp_path: Path, content: bytes) -> None:
+    home = Home(tmp_path)
+    for name in ("snapshot.json", "good.json", "trials.json"):
+        home.write(name, content)
+    assert SnapshotStore(home).kept() is None
+    assert SnapshotStore(home).good() == ""
+    assert CrashCounter(home).count("a") == 0
+
+
+def test_a_bundle_that_unpacks_to_gigabytes_is_not_unpacked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    store, files = SnapshotStore(Home(tmp_path)), {"lumen.yaml": b"#" * 100_000}
+    hash = store.store(files)
+    assert store.files(hash) == files
+    monkeypatch.setattr(snapshot_store, "MAX_PROJECT_BYTES", 10_000)
+    assert store.files(hash) is None
