@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from lumen.app import reaching
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.reload import validation_worker
 from lumen.app.reload.validation_worker import ValidationWorker, load_apart
-from lumen.cli import reach
 from lumen.errors import FatalFilesError
 from lumen.loading import files as project_files
 from lumen.loading.files import read_files
@@ -113,7 +113,7 @@ def test_where_no_process_can_be_begun_nothing_is_read_here(copy: Path, monkeypa
 def test_who_reaches_an_exhibition_reads_no_file_but_the_main_one(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     usual, read = project_files._read, list[str]()
     monkeypatch.setattr(project_files, "_read", lambda path: read.append(path.name) or usual(path))
-    assert reach._command(copy, None) == "avatar.NAO.command"
+    assert reaching._keys(copy, None) == ("avatar.NAO.command", "avatar.NAO.stop")
     assert set(read) == {"lumen.yaml"}
     (copy / "lumen.yaml").write_text("[" * 60_000)
-    assert reach._command(copy, None) == "avatar.NAO.command"
+    assert reaching._keys(copy, None) == ("avatar.NAO.command", "avatar.NAO.stop")

@@ -88,14 +88,14 @@ def test_what_performs_may_fail_too(live: Live, monkeypatch: pytest.MonkeyPatch)
     before = live.show.loop.project.hash
     live.edit(SORRY, PARDON)
     live.until_told("are active")
-    usual = live.show.loop._performer.perform
+    usual = live.show.loop.performer.perform
 
     def perform(project: Any, *rest: Any) -> None:
         if project.hash != before:
             fail()
         usual(project, *rest)
 
-    monkeypatch.setattr(live.show.loop._performer, "perform", perform)
+    monkeypatch.setattr(live.show.loop.performer, "perform", perform)
     live.greet()
     assert live.show.loop.project.hash == before
 

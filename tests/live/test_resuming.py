@@ -20,8 +20,8 @@ from lumen.language.commands import Track
 from lumen.loading.files import read_files
 from lumen.runtime.home import ADDRESS_FILE, Home, home_of
 from lumen.runtime.journal import MAX_JOURNAL_BYTES, Journal
-from lumen.runtime.resuming import LOST_COMMAND_REASON, Resumption, resume
-from lumen.runtime.snapshot_store import SNAPSHOT_FILE, SnapshotStore
+from lumen.runtime.resuming import LOST_COMMAND_REASON, FreshStart, Resumption, resume
+from lumen.runtime.snapshot_store import ALIVE_FILE, SNAPSHOT_FILE, SnapshotStore
 from tests.guarded import PIPE, Guarded
 from tests.live.shows import Live
 from tests.waiting import until
@@ -42,7 +42,7 @@ def crashed(live: Live) -> None:
     live.show.close()
 
 
-def resumed(folder: Path) -> Resumption | str:
+def resumed(folder: Path) -> Resumption | FreshStart:
     run_directory = RunDirectory(folder)
     found = run_directory.resumption(lumen.load(folder))
     run_directory.close(forget=False)
@@ -65,6 +65,31 @@ def test_it_goes_on_where_it_was_and_what_was_under_way_has_failed(copy: Path) -
     assert "offer" in again.states
     assert again.show.loop.tracking.on == ("head",)
     again.show.close()
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("silent")
+@pytest.mark.parametrize("words", [[], ["--fresh"]])
+def test_a_robot_that_was_stopped_long_ago_waits_for_a_person(
+    words: list[str], copy: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    live = Live(copy)
+    assert live.records.keeper
+    live.records.store(read_files(live.folder))
+    live.show.loop.happen(lumen.Event("stop", {}))
+    live.live(1.0)
+    assert "stopped" in live.states
+    live.records.keep(live.show.loop)
+    live.show.close()
+    home = Home(home_of(copy))
+    data = json.loads(home.read(SNAPSHOT_FILE) or b"")
+    home.write(SNAPSHOT_FILE, json.dumps({**data, "time": time.time() - 50 * LATELY}).encode())
+    home.remove(ALIVE_FILE)
+    assert main(["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "10min", *words]) == 0
+    told = capsys.readouterr().out
+    assert "until you say `lumen resume`" in told
+    assert "stopped, paused  (stop" in told
+    assert "watching  (" not in told
 
 
 @pytest.mark.slow
@@ -96,14 +121,18 @@ def test_what_is_too_old_or_damaged_is_begun_anew(copy: Path) -> None:
     home = Home(home_of(copy))
     data = json.loads(home.read(SNAPSHOT_FILE) or b"")
     home.write(SNAPSHOT_FILE, json.dumps({**data, "time": time.time() - LATELY - 60.0}).encode())
+    home.remove(ALIVE_FILE)
     assert "begins anew" in str(resumed(copy))
+    home.write(ALIVE_FILE, json.dumps({"time": time.time() - 1.0}).encode())  # nothing happened before the crash
+    assert isinstance(found := resumed(copy), Resumption)
+    assert found.away == pytest.approx(1.0, abs=0.5)
     home.write(SNAPSHOT_FILE, json.dumps({**data, "bundle": "0" * 64}).encode())
     assert "its files were not kept" in str(resumed(copy))
     home.write(SNAPSHOT_FILE, json.dumps({**data, "snapshot": {"version": 1}}).encode())
     assert "can't be gone on with" in str(resumed(copy))
     for damaged in (b"", b"{", b"[]", b'{"version": 1}', b"\xff"):
         home.write(SNAPSHOT_FILE, damaged)
-        assert resumed(copy) == ""
+        assert resumed(copy) == FreshStart()
 
 
 def test_a_bundle_that_was_changed_is_not_taken(copy: Path) -> None:

@@ -134,6 +134,30 @@ def test_a_robot_rests_when_its_brain_is_gone_and_tells_the_next_one(hall: Hall)
     assert [command for _, command in robot.performed] == [Rest(), Rest()]
 
 
+def test_a_robot_rests_each_time_that_the_same_brain_is_gone(hall: Hall) -> None:
+    robot, presence, brain = RecordingRobot(BODY), hall.presence("robot"), hall.presence("brain")
+    noticed: list[Event] = []
+    guard = BrainGuard(robot, presence, noticed.append, lambda line: None, lambda: hall.time)
+    for one in (presence, brain):
+        one.settle()
+
+    def live(seconds: float, *others: Presence) -> None:
+        for _ in range(round(seconds / 0.1)):
+            hall.live(0.1, presence, *others)
+            robot.advance(0.1)
+            guard.tick(hall.time)
+
+    live(1.0, brain)
+    for outage in range(1, 6):
+        live(6.0)
+        assert [command for _, command in robot.performed] == outage * [Rest()]
+        brain._excuse(hall.time)  # it did not hear us either
+        live(1.0, brain)
+        assert guard.follows == brain.session
+        assert [event.name for event in noticed] == outage * ["brain.lost"]
+        assert noticed[-1].data["seconds"] == pytest.approx(6.0, abs=0.6)
+
+
 def test_a_robot_that_stood_still_rests_first_and_then_follows_its_brain_on(hall: Hall) -> None:
     robot, presence, brain = RecordingRobot(BODY), hall.presence("robot"), hall.presence("brain")
     noticed: list[Event] = []

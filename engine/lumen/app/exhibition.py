@@ -6,6 +6,7 @@ from typing import Any, Self
 
 from lumen.app.narrator import Narrator
 from lumen.app.parts.forgetting import ForgettingPart
+from lumen.app.parts.kept_hold import keep_hold
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
@@ -16,7 +17,7 @@ from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.errors import UsageError
 from lumen.interpreters.statechart import Step
-from lumen.language.commands import Say, Wake
+from lumen.language.commands import Say
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus
@@ -25,6 +26,9 @@ from lumen.runtime.home import home_of
 from lumen.runtime.loop import Observer
 from lumen.runtime.sending import send
 from lumen.runtime.visitor import VisitorActor
+
+PROGRAM = "the program"
+"""Who stops an exhibition that is open in a program."""
 
 
 class Exhibition:
@@ -66,6 +70,9 @@ class Exhibition:
             self.node.brain.recover = lambda: directory.begin_run(behavior, url, self.reloader, fresh=fresh)
             if story is None:
                 self.node.parts.append(RecordsPart(directory.records, behavior))
+                if directory.home:
+                    self.node.robot.foreign.record = directory.records.write
+                    keep_hold(self.node.robot.server.hold, directory.home.folder)
             if shared:
                 log = DeduplicationLog(home_of(directory.root) / DEDUPLICATION_FILE)
                 self.node.robot.server.recall(log)
@@ -127,12 +134,15 @@ class Exhibition:
         self.node.robot.server.begins(said)
 
     def stop(self) -> None:
-        """Let the robot rest, at once, and the behaviour hear of it (`stop`)."""
-        self.node.brain.rest()
+        """Let the robot rest, at once, and the behaviour hear of it (`stop`); nobody moves it until `resume`."""
+        self.node.brain.rest(PROGRAM)
 
     def resume(self) -> None:
-        """Let the robot that rests stand up."""
-        self.node.setup.robot.start("operator", Wake())
+        """Let the robot move again, and the behaviour hear of it (`resume`), which may wake it.
+
+        Where the behaviour knows no such event the robot stands up.
+        """
+        self.node.robot.server.resume(PROGRAM)
 
     def observe(self, handler: Callable[[Step], None]) -> None:
         """Call this with each step from now on, in the order taken."""

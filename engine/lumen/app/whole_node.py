@@ -9,6 +9,7 @@ from lumen.app.narrator import Narrator
 from lumen.app.node import Node
 from lumen.app.parts.brain import BrainPart
 from lumen.app.parts.film import FilmPart
+from lumen.app.parts.foreign_commands import ForeignCommands
 from lumen.app.parts.module import ModulePart
 from lumen.app.parts.module_troubles import ModuleTroublesPart
 from lumen.app.parts.part import Part
@@ -52,7 +53,7 @@ class WholeNode(Node):
         presence = presence_of(project, bus, roles, self._said) if shared else None
         super().__init__(self.behavior.project, bus, setup.clock, self.narrator, presence=presence)
         self.setup, self.story = setup, story
-        self.robot = RobotPart(self.project, bus, setup, presence, silent=silent)
+        self.robot = RobotPart(self.project, bus, setup, ForeignCommands(self.narrator), presence, silent=silent)
         self.loop.observers.append(self.robot)
         self.visitor: VisitorPart | None = None
         if setup.hall:
@@ -61,7 +62,7 @@ class WholeNode(Node):
             self.parts.append(self.visitor)
         if self.player:
             self.loop.observers.append(self.player)
-        self.brain = BrainPart(self.behavior, self.narrator, presence, language)
+        self.brain = BrainPart(self.behavior, self.narrator, presence, language, self.robot.server.hold)
         self.parts += [self.robot, self.brain]
         self.paced = self.behavior.trace.pace
         self.behavior.adopt = lambda bundle: self.use(bundle, but=self.brain)

@@ -27,6 +27,7 @@ VERBS = {
     "run": "run an exhibition",
     "say": "let the robot of a running exhibition say something",
     "stop": "let the robot of a running exhibition rest, at once",
+    "resume": "let a robot that somebody stopped move again",
     "reload": "have a running exhibition take its files, or say how it stands with them",
     "diff": "say what differs between two versions of a project, and where a reload would lead",
     "topic": "list, print, measure and send the messages of a running exhibition",

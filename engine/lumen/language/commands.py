@@ -5,7 +5,7 @@ Lengths in [m], angles in [rad], times in [s]; what a `Start` holds is answered 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 Channel = Literal["all", "walk", "play", "say"]
@@ -88,7 +88,12 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Rest:
-    """Stop, go safely to Crouch, motors off."""
+    """Stop, go safely to Crouch, motors off.
+
+    `by` is the person who wants that, empty where it is nobody's wish; no YAML says it.
+    """
+
+    by: str = field(default="", metadata={"yaml": False})
 
 
 @dataclass(frozen=True, slots=True)

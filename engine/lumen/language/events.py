@@ -23,6 +23,11 @@ def _object(**fields: object) -> dict[str, object]:
     return {"type": "object", "properties": fields, "required": list(fields)}
 
 
+def _said_by() -> dict[str, object]:
+    """`by` whom, where that is known."""
+    return {"type": "object", "properties": {"by": {"type": "string"}}}
+
+
 CUE = "cue"
 """What a robot raises when a motion comes to words or a sound: its `motion`, `kind` (`say`, `sound`) and `value`.
 
@@ -44,7 +49,8 @@ ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "robot.back": _object(seconds={"type": "number"}),
     "motion.lost": _object(seconds={"type": "number"}),
     "motion.back": _object(seconds={"type": "number"}),
-    "stop": _object(),
+    "stop": _said_by(),
+    "resume": _said_by(),
     **{f"{module}.{what}": _object(seconds={"type": "number"}) for module in MODULES for what in ("lost", "back")},
 }
 """Events that every robot raises by itself, with the JSON Schema of their data; no behaviour has to declare them.

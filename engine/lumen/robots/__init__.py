@@ -11,6 +11,7 @@ How a command is performed:
     command_table.py      what every robot knows of each command: a row for each
     body_parts.py         which parts of the body a command owns
     executor.py           a command waits until its parts are free, then runs until it is done
+    person_hold.py        a robot that a person stopped moves for nobody, until a person lets it
     cues.py               the words and sounds of a motion, as their times come
     silent_recording.py   a recording where nobody makes a sound
 

@@ -11,32 +11,34 @@ from itertools import count
 from typing import Any, NamedTuple
 
 from lumen.errors import BusError, RobotError, RobotRefusedError
-from lumen.language.commands import Language, Rest, Say, Stop
+from lumen.language.commands import Language, Rest, Say, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Joints, Message, Perform, Robot, RobotCommand, Sense
 from lumen.robots.command_codec import decode_command, method_of, own_id, stops, stops_all
+from lumen.robots.command_parameters import shown
 from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, UNKNOWN_COMMAND, CommandRecord, CommandReports
 from lumen.robots.deduplication_log import DeduplicationLog
+from lumen.robots.person_hold import PersonHold
 from lumen.robots.robot_routes import (
     AIM_ROUTE,
     COMMAND_ROUTE,
-    DEFAULT_KEYS,
     REPORT_ROUTE,
     STOP_ROUTE,
     key_of,
     publish_on,
 )
 
-KEY, ROUTE = DEFAULT_KEYS[COMMAND_ROUTE], COMMAND_ROUTE
 MAX_WAITING_COMMANDS = 1_000
 MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
 """How old an aim may be [s]: there is a newer one by then."""
 MAX_RUNNING_COMMANDS = 100
 ENDED = "the robot takes no more commands"
+SOMEBODY = "somebody on the bus"
 RESTARTED = "the robot was restarted since it began that"
 QUERY_METHODS = ("cancel", "outcome")
+HOLD_METHODS = ("resume", "stopped")
 
 _log = logging.getLogger(__name__)
 
@@ -55,7 +57,8 @@ class CommandReceiver:
     it. What rests or stops the robot is begun before everything that came with it, and what came before it is not
     begun at all. As many commands wait for `begin` as their route keeps, as long as its time to live; what stops is
     never one too many, nor too late. A command with an `id` is performed once, however often it comes. `clock` [s]
-    measures how long they have waited; `begins` is called for each that begins.
+    measures how long they have waited; `begins` is called for each that begins, `refused` with the method and the
+    reason for each that may not. What moves the robot may not where a person stopped it (`hold`).
     """
 
     def __init__(
@@ -64,9 +67,13 @@ class CommandReceiver:
         robot: Robot,
         bus: Bus,
         clock: Callable[[], float] = time.monotonic,
-        begins: Callable[[RobotCommand], None] = lambda _: None,
+        begins: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
+        refused: Callable[[str, str], None] = lambda _method, _reason: None,
     ) -> None:
-        self._project, self._robot, self._bus, self._clock, self._begins = project, robot, bus, clock, begins
+        self._project, self._robot, self._bus, self._clock = project, robot, bus, clock
+        self._begins, self._tell_refused = begins, refused
+        self.hold = PersonHold()
+        self.is_brains: Callable[[str], bool] = lambda _id: False
         self._came: deque[_Arrival] = deque()
         self._aims: deque[_Arrival] = deque(maxlen=MAX_WAITING_AIMS)
         self._coming = threading.Lock()
@@ -133,6 +140,13 @@ class CommandReceiver:
                 continue
             undo()
 
+    def resume(self, by: str) -> None:
+        """Let a robot move that a person stopped; where the behaviour has nothing to do for that, it stands up."""
+        self.hold.release(by)
+        machine = self._project.machine
+        if not any(t.event == "resume" for state in machine.states.values() for t in state.transitions):
+            self._robot.start(self._number(), Wake())
+
     def close(self) -> None:
         """Take no more commands; who still waits for an answer gets one."""
         for _, undo in self._undo.values():
@@ -186,6 +200,9 @@ class CommandReceiver:
         if record.method in QUERY_METHODS:
             self._ask(message)
             return
+        if record.method in HOLD_METHODS:
+            self._ask_hold(message, record.method)
+            return
         if known := self._reports.find(record.id):
             self._reports.repeat(known, message)
             return
@@ -198,7 +215,20 @@ class CommandReceiver:
                 self._perform(record, decode_command(message.body, self._project, self._angles))
         except RobotError as error:
             _log.warning("a command was refused: %s", error)
+            self._tell_refused(record.method, str(error))
             self._reports.change(record, FAILED, str(error))
+
+    def _ask_hold(self, message: Message, method: str) -> None:
+        """`resume` lets the robot move again, in the name of who is `by` it; `stopped` asks who stopped it."""
+        if method == "resume":
+            parameter = message.body.get("parameter")
+            by = parameter.get("by") if isinstance(parameter, dict) else None
+            self.resume(shown(by) if isinstance(by, str) and by else SOMEBODY)
+            self._reply(message, "command finished")
+            return
+        stopped = self.hold.stopped
+        since = stopped.since.isoformat(timespec="seconds") if stopped else ""
+        self._reply(message, {"stopped_by": stopped.by if stopped else "", "since": since})
 
     def _ask(self, message: Message) -> None:
         """`cancel` or `outcome` of the command whose `id` the parameter names.
@@ -231,6 +261,10 @@ class CommandReceiver:
             self._language = command.language
             self._reports.change(record, FINISHED)
             return
+        if reason := self.hold.admit(command, behavior=self.is_brains(record.id)):
+            raise RobotRefusedError(reason)
+        if isinstance(command, Rest) and command.by:
+            self.hold.stop(command.by)
         if isinstance(command, Say) and not command.language:
             command = replace(command, language=self._language)
         if self._reports.running >= MAX_RUNNING_COMMANDS and not isinstance(command, Rest | Stop):
@@ -246,7 +280,7 @@ class CommandReceiver:
         record.at = self._number()
         self._reports.accept(record)
         self._robot.start(record.at, command)
-        self._begins(command)
+        self._begins(command, record.id)
 
     def _clear(self, command: RobotCommand) -> None:
         """End what is of the same kind: this one is to take its place."""
@@ -264,7 +298,7 @@ class CommandReceiver:
         except RobotError as error:
             _log.debug("an aim was refused: %s", error)
             return
-        if isinstance(command, Aim):
+        if isinstance(command, Aim) and not self.hold.admit(command, behavior=False):
             self._robot.start("", command)
 
     def _number(self) -> str:
@@ -286,8 +320,3 @@ class CommandReceiver:
             send()
         except BusError as error:
             _log.warning("an answer to a command was not sent: %s", error)
-
-
-def command_key(project: Project) -> str:
-    """Under which key a project's robot takes commands."""
-    return key_of(project, COMMAND_ROUTE)

@@ -43,7 +43,8 @@ class CommandRow(Generic[C]):
     `rank` go first. `parts` are those of the body that it owns from its beginning to its end. `duration` is how long
     the recording robot takes [s]. On the bus it is `{type: kind, method, parameter}`, `encode` makes its parameters
     and `decode` reads them; spelt as in 2015 where 2015 had it. `stop: CHANNEL` ends it, as `stop: all` does.
-    `check` raises BadCommandError for one that no robot of that body can perform.
+    `check` raises BadCommandError for one that no robot of that body can perform. One that `moves` is for a robot that
+    nobody has stopped.
     """
 
     command: type[C]
@@ -57,6 +58,7 @@ class CommandRow(Generic[C]):
     duration: Callable[[C], float] = lambda _: USUAL_DURATION
     channel: Channel | None = None
     check: Callable[[C, Body], None] = lambda _command, _body: None
+    moves: bool = True
 
 
 def owns(*parts: str) -> Callable[[object, Body], frozenset[str]]:
@@ -123,6 +125,11 @@ def _stop(p: CommandParameters) -> Stop:
     return Stop(known[what])
 
 
+def _rest(p: CommandParameters) -> Rest:
+    """`by` is ours: the person who stops the robot."""
+    return Rest(shown(p.text("by", "")))
+
+
 def _record(p: CommandParameters) -> Record:
     """`duration` [s] is ours."""
     duration = p.number("duration", RECORDING_DURATION)
@@ -132,8 +139,10 @@ def _record(p: CommandParameters) -> Record:
     return Record(shown(p.text("recordingname", "recording")), duration)
 
 
-_STOP = CommandRow(Stop, "stop", 0, "motion", "stop", lambda c: {"what": c.what}, _stop, owns())
-_REST = CommandRow(Rest, "rest", 0, "motion", "rest", lambda c: {}, lambda p: Rest(), owns(*WHOLE_BODY))
+_STOP = CommandRow(Stop, "stop", 0, "motion", "stop", lambda c: {"what": c.what}, _stop, owns(), moves=False)
+_REST = CommandRow(
+    Rest, "rest", 0, "motion", "rest", lambda c: {"by": c.by} if c.by else {}, _rest, owns(*WHOLE_BODY), moves=False
+)
 _WAKE = CommandRow(Wake, "wake", 1, "motion", "wakeUp", lambda c: {}, lambda p: Wake(), owns(*WHOLE_BODY))
 _POSTURE = CommandRow(
     Posture,
@@ -181,6 +190,7 @@ _SAY = CommandRow(
     owns(VOICE),
     lambda c: speech_duration(c.text),
     channel="say",
+    moves=False,
 )
 _PERFORM = CommandRow(
     Perform,
@@ -204,6 +214,7 @@ _RECORD = CommandRow(
     _record,
     owns(EARS),
     lambda c: c.duration,
+    moves=False,
 )
 _LOOK = CommandRow(
     Look,
@@ -227,6 +238,7 @@ _LEDS = CommandRow(
     lambda c, _body: parts_of_lights(c.colours),
     lambda c: c.duration,
     check=_check_lights,
+    moves=False,
 )
 _AIM = CommandRow(
     Aim,

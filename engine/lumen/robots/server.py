@@ -40,7 +40,8 @@ class RobotServer:
     have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
     one seed says the same things in the same order; `settle` waits until they have. `date` is what images are dated;
     `clock` [s] measures how long a command has waited: time as modules live through it, whatever the robot's clock
-    says. `started` is called with each command that the robot is given from the bus.
+    says. `started` is called with each command that the robot is given from the bus and its id, `refused` with
+    the method and the reason for each that it is not given. Nobody moves a robot that a person stopped (`hold`).
     """
 
     def __init__(
@@ -51,7 +52,8 @@ class RobotServer:
         *,
         date: Callable[[], str] = _date,
         clock: Callable[[], float] = time.monotonic,
-        started: Callable[[RobotCommand], None] = lambda _: None,
+        started: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
+        refused: Callable[[str, str], None] = lambda _method, _reason: None,
     ) -> None:
         self._robot, self._bus, self._started = robot, bus, started
         self._frames, self._date = count(), date
@@ -61,12 +63,21 @@ class RobotServer:
         self._broadcasts: dict[Sense, SensePublisher] = {}
         self._leaving: list[PendingReading] = []
         self._listen(project)
-        self._orders = CommandReceiver(project, robot, bus, clock, self._given)
+        self._orders = CommandReceiver(project, robot, bus, clock, self._given, refused)
+        self.hold = self._orders.hold
         self._closed = False
 
     def recall(self, begun_before: DeduplicationLog) -> None:
         """Perform nothing that the process before had begun, and note what is begun from now on."""
         self._orders.recall(begun_before)
+
+    def resume(self, by: str) -> None:
+        """Let a robot move that a person stopped; where the behaviour has nothing to do for that, it stands up."""
+        self._orders.resume(by)
+
+    def follow(self, is_brains: Callable[[str], bool]) -> None:
+        """Take commands for those of the behaviour where this says so of their ids."""
+        self._orders.is_brains = is_brains
 
     @property
     def counts(self) -> Mapping[str, PublishCounts]:
@@ -112,6 +123,7 @@ class RobotServer:
 
         True where it was about a command that came from the bus.
         """
+        self.hold.feel(event)
         if ".command." in event.name:
             return self._orders.answer(event)
         if event.name == RECORDED:
@@ -137,8 +149,8 @@ class RobotServer:
         if not all(ended):
             _log.warning("a sense still works %g s after it was closed", SENSES_CLOSE_TIMEOUT)
 
-    def _given(self, command: RobotCommand) -> None:
-        self._started(command)
+    def _given(self, command: RobotCommand, id: str) -> None:
+        self._started(command, id)
         self.begins(command)
 
     def _tell(self, route: str, body: dict[str, Any]) -> None:

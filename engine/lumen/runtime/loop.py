@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.statechart import Step
-from lumen.language.commands import Command, Track
+from lumen.language.commands import Command, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot
@@ -39,7 +39,8 @@ class BehaviorLoop:
     At each tick: the clock waits, the `parts` live, what happened becomes events, the behaviour steps, its commands are
     performed; `observers` are called. Where ticks stop for `patience` [s] of the clock the behaviour gets the event
     `brain.lost`. Where a tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
-    `tracking` lets controllers follow what is seen; without one that is done here.
+    `tracking` lets controllers follow what is seen; without one that is done here. `rests` is whether the behaviour has
+    let the robot rest.
     """
 
     def __init__(
@@ -51,11 +52,12 @@ class BehaviorLoop:
         self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
         self.inbox = Inbox(bus)
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
-        self._performer = Performer(robot, bus, self.tracking.switch)
+        self.performer = Performer(robot, bus, self.tracking.switch)
         self._cues = MotionCues()
         self._events: list[Event] = []
         self._last = clock.now()
         self.patience = BRAIN_LOST_AFTER
+        self.rests = False
 
     @property
     def project(self) -> Project:
@@ -140,7 +142,7 @@ class BehaviorLoop:
                 observer.answered(event)
             self._perform(self._cues.answered(event, self.project, self.runtime.snapshot.language), now)
         happened, self._events = self._events, []
-        ended, self._performer.events = self._performer.events, []
+        ended, self.performer.events = self.performer.events, []
         heard = [event for event in answers if _ours(event)]
         return [*ended, *heard, *(e._replace(at=now) for e in happened), *self.inbox.drain(now)]
 
@@ -149,10 +151,18 @@ class BehaviorLoop:
             for observer in self.observers:
                 observer.performing(command, now)
             self._cues.performing(command)
+            self._note_rest(command)
             try:
-                self._performer.perform(project or self.project, command, now)
+                self.performer.perform(project or self.project, command, now)
             except Exception as error:
                 self._recover(error, now)
+
+    def _note_rest(self, command: Command) -> None:
+        match command:
+            case Start(_, Rest()):
+                self.rests = True
+            case Start(_, Wake() | Posture() | Walk() | Move() | Play()):
+                self.rests = False
 
     def _recover(self, error: Exception, now: float) -> None:
         """Go on with another bundle after a fault; raises it where there is none."""

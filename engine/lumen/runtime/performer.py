@@ -6,7 +6,7 @@ from collections.abc import Callable
 from lumen.language.commands import BodyCommand, Cancel, Command, Language, Log, Play, Publish, Start, Track
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.ports import Bus, Perform, Robot
+from lumen.ports import Bus, Perform, Robot, RobotCommand
 from lumen.runtime.sending import send
 
 _log = logging.getLogger(__name__)
@@ -16,12 +16,13 @@ class Performer:
     """Hands commands to the robot and the bus.
 
     `track` switches a controller on or off. `events` are answers for the next tick: of commands that end at once, and
-    of those that can't even begin.
+    of those that can't even begin: `refuse` gives the reason why the robot may not begin one, empty where it may.
     """
 
     def __init__(self, robot: Robot, bus: Bus, track: Callable[[Track], None]) -> None:
         self._robot, self._bus, self._track = robot, bus, track
         self.events: list[Event] = []
+        self.refuse: Callable[[RobotCommand], str] = lambda _: ""
 
     def perform(self, project: Project, command: Command, now: float) -> None:
         match command:
@@ -38,7 +39,7 @@ class Performer:
     def _start(self, project: Project, id: str, wanted: BodyCommand, now: float) -> None:
         match wanted:
             case Play(name) if name in project.motions:
-                self._robot.start(id, Perform(project.motions[name]))
+                self._begin(id, Perform(project.motions[name]), now)
             case Play(name):
                 self._answer("error", id, now, f"there is no motion `{name}`")
             case Track():
@@ -47,7 +48,13 @@ class Performer:
             case Language():
                 self._answer("done", id, now)
             case _:
-                self._robot.start(id, wanted)
+                self._begin(id, wanted, now)
+
+    def _begin(self, id: str, command: RobotCommand, now: float) -> None:
+        if reason := self.refuse(command):
+            self._answer("error", id, now, reason)
+        else:
+            self._robot.start(id, command)
 
     def _answer(self, kind: str, id: str, now: float, reason: str = "") -> None:
         self.events.append(Event(f"{kind}.command.{id}", {"reason": reason} if reason else None, now))

@@ -15,6 +15,16 @@ from lumen.language.projects import Project
 LOST_COMMAND_REASON = "the engine was restarted while it ran"
 
 
+class FreshStart(NamedTuple):
+    """A run that does not go on with the one before, and why, where there is something to say.
+
+    `rests` is whether the robot was at rest then: nobody but a person lets it move.
+    """
+
+    why: str = ""
+    rests: bool = False
+
+
 class Resumption(NamedTuple):
     """How a behaviour goes on: from `snapshot`, with what has to be performed first.
 
@@ -35,13 +45,14 @@ class Resumption(NamedTuple):
 
 
 def resume(
-    old: Project, new: Project, snapshot: Snapshot, away: float, tracking: Iterable[str]
+    old: Project, new: Project, snapshot: Snapshot, away: float, tracking: Iterable[str], unchanged: float = 0.0
 ) -> Resumption | Refusal:
     """How `new` goes on at time 0 of a new clock from a snapshot of `old`, whose timers went on while it was away [s].
 
+    Before it ended it had stood `unchanged` [s] where the snapshot says.
     Newer files are a reload that waits for nothing: what was under way has ended anyway.
     """
-    later = retimed(snapshot._replace(at=snapshot.at + away), 0.0, "remaining")
+    later = retimed(snapshot._replace(at=snapshot.at + unchanged + away), 0.0, "remaining")
     verdict = MigrationPlan(later) if old is new else plan(old, new, later, now=True)
     if not isinstance(verdict, MigrationPlan):
         return verdict if isinstance(verdict, Refusal) else Refusal(verdict.reason)

@@ -13,7 +13,7 @@ from lumen.language.projects import Project
 from lumen.loading.files import MAX_PROJECT_BYTES, fingerprint
 from lumen.runtime.home import Home
 
-SNAPSHOT_FILE = "snapshot.json"
+SNAPSHOT_FILE, ALIVE_FILE = "snapshot.json", "alive.json"
 LAST_GOOD_FILE = "good.json"
 SNAPSHOT_VERSION = 1
 SNAPSHOT_SPACING = 0.02
@@ -23,7 +23,7 @@ SNAPSHOT_SPACING = 0.02
 class StoredSnapshot(NamedTuple):
     """A snapshot as it was written: of which bundle and behaviour, at which time (Unix), frozen.
 
-    `tracking` are the controllers that were on.
+    `tracking` are the controllers that were on, `rests` is whether the robot was at rest. The run lived until `ended`.
     """
 
     bundle: str
@@ -31,6 +31,8 @@ class StoredSnapshot(NamedTuple):
     time: float
     frozen: Mapping[str, Any]
     tracking: tuple[str, ...] = ()
+    rests: bool = False
+    ended: float = 0.0
 
 
 class SnapshotStore:
@@ -53,7 +55,7 @@ class SnapshotStore:
             return False
         return time.perf_counter() - self._written >= SNAPSHOT_SPACING
 
-    def keep(self, project: Project, snapshot: Snapshot, tracking: Sequence[str]) -> None:
+    def keep(self, project: Project, snapshot: Snapshot, tracking: Sequence[str], *, rests: bool = False) -> None:
         """Write where the project's behaviour stands, if that is due."""
         if not self.due(snapshot):
             return
@@ -69,11 +71,16 @@ class SnapshotStore:
             "behavior": project.behavior,
             "time": time.time(),
             "tracking": list(tracking),
+            "rests": rests,
             "snapshot": frozen,
         }
         self._wrote(self._home.write(SNAPSHOT_FILE, json.dumps(data).encode()))
         self._last = snapshot
         self.count += 1
+
+    def beat(self) -> None:
+        """The run lives: where its behaviour stands is as true as when it was written."""
+        self._wrote(self._home.write(ALIVE_FILE, json.dumps({"time": time.time()}).encode()))
 
     def kept(self) -> StoredSnapshot | None:
         """The snapshot of a run that did not end by itself, None where there is none that can be read."""
@@ -82,8 +89,15 @@ class SnapshotStore:
             if data["version"] != SNAPSHOT_VERSION:
                 return None
             tracking = tuple(map(str, data["tracking"]))
+            written = float(data["time"])
             return StoredSnapshot(
-                str(data["bundle"]), str(data["behavior"]), float(data["time"]), dict(data["snapshot"]), tracking
+                str(data["bundle"]),
+                str(data["behavior"]),
+                written,
+                dict(data["snapshot"]),
+                tracking,
+                data.get("rests") is True,
+                max(written, self._alive()),
             )
         except (ValueError, TypeError, KeyError, OverflowError):
             return None
@@ -91,6 +105,7 @@ class SnapshotStore:
     def forget(self) -> None:
         """The run has ended as it should: there is nothing to go on with."""
         self._home.remove(SNAPSHOT_FILE)
+        self._home.remove(ALIVE_FILE)
         self._last = None
 
     def store(self, files: Mapping[str, bytes]) -> str:
@@ -134,6 +149,13 @@ class SnapshotStore:
         for path in self._home.folder.glob("bundle-*.zip"):
             if path.name not in names:
                 self._home.remove(path.name)
+
+    def _alive(self) -> float:
+        """When the run was last known to live (Unix), 0 where that is not known."""
+        try:
+            return float(json.loads(self._home.read(ALIVE_FILE) or b"")["time"])
+        except (ValueError, TypeError, KeyError):
+            return 0.0
 
     def _wrote(self, trouble: str) -> None:
         self.trouble = self.trouble or trouble

@@ -1,6 +1,7 @@
 """The brain: the behaviour, among whoever else is there."""
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 from lumen.app.causes import innermost
 from lumen.app.live_behavior import LiveBehavior
@@ -9,25 +10,37 @@ from lumen.app.parts.part import Part
 from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.robots.person_hold import PersonHold
 from lumen.runtime.presence import BRAIN, Presence
-from lumen.runtime.resuming import Resumption
+from lumen.runtime.resuming import FreshStart, Resumption
+
+RUN_BEFORE, ENGINE = "the run before", "the engine"
 
 
 class BrainPart(Part):
     """Runs the behaviour on a robot of this process.
 
-    `recover` is asked at the beginning how to go on with the run before; it gives a text, empty or why not, where this
-    one begins anew.
+    `recover` is asked at the beginning how to go on with the run before, or to begin. `hold` is that of the robot: what
+    it refuses does not begin, and what it notices the behaviour hears of.
     """
 
     name = BRAIN
 
     def __init__(
-        self, behavior: LiveBehavior, narrator: Narrator, presence: Presence | None = None, language: str = ""
+        self,
+        behavior: LiveBehavior,
+        narrator: Narrator,
+        presence: Presence | None = None,
+        language: str = "",
+        hold: PersonHold | None = None,
     ) -> None:
         self.behavior, self._narrator, self._presence = behavior, narrator, presence
-        self.recover: Callable[[], Resumption | str] = lambda: ""
+        self.recover: Callable[[], Resumption | FreshStart] = FreshStart
         self._language, self._interrupted = language, False
+        self._hold = hold
+        if hold:
+            hold.noticed.append(behavior.loop.happen)
+            behavior.loop.performer.refuse = partial(hold.admit, behavior=True)
         behavior.loop.observers.append(narrator)
 
     @property
@@ -37,11 +50,13 @@ class BrainPart(Part):
 
     def begin(self, now: float) -> None:
         found = self.recover()
-        if not isinstance(found, str):
+        if isinstance(found, Resumption):
             self._resume(found)
             return
-        if found:
-            self._narrator.note(found)
+        if found.why:
+            self._narrator.note(found.why)
+        if found.rests and not (self._hold and self._hold.stopped):
+            self.rest(RUN_BEFORE)
         self.behavior.start(self._language)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
@@ -56,18 +71,21 @@ class BrainPart(Part):
         if self._interrupted:
             return False
         self._interrupted = True
-        self.rest()
+        self.rest("Ctrl-C")
         self._narrator.line("operator", "Ctrl-C: the robot rests; again to end")
         return True
 
     def helpless(self, reason: str) -> None:
-        self.rest()
+        self.rest(ENGINE)
         self._narrator.line("robot", f"rests, for nobody could stop it any more: {reason}")
 
-    def rest(self) -> None:
-        """Let the robot rest, and tell the behaviour to stop."""
-        self.behavior.loop.robot.start("operator", Rest())
-        self.behavior.loop.happen(Event("stop", {}))
+    def rest(self, by: str) -> None:
+        """Let the robot rest, as somebody wants it, and tell the behaviour to stop."""
+        if self._hold:
+            self._hold.stop(by)
+        else:
+            self.behavior.loop.happen(Event("stop", {"by": by}))
+        self.behavior.loop.robot.start("operator", Rest(by))
 
     def summary(self) -> Iterator[str]:
         yield self._narrator.counted()

@@ -45,12 +45,15 @@ class BrainGuard:
         if self._woke and (other := self._presence.find(ROBOT_PART)):
             raise BusRefusedError(f"this robot stood still, and by now {where_it_runs(other)} is it: this one ends")
         followed = self._presence.get(self.follows) if self.follows else None
-        if followed:
+        if followed and not self._resting:
             self._last = followed.heard
         gone = followed is None or followed.state == LEAVES or at - followed.heard > LOST_AFTER
-        if gone and (brain := self._presence.find(BRAIN)) and brain.state == HERE:
+        if followed and not gone:
+            if self._resting:
+                self._follow(followed, now)
+        elif (brain := self._presence.find(BRAIN)) and brain.state == HERE:
             self._follow(brain, now)
-        elif gone and self._last is not None and not self._resting and at - self._last > BRAIN_TIMEOUT:
+        elif self._last is not None and not self._resting and at - self._last > BRAIN_TIMEOUT:
             self._resting = True
             self._tell(f"rests: its brain is gone for {BRAIN_TIMEOUT:g} s")
             self._robot.start("guard", Rest())

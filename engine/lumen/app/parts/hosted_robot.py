@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from lumen.app.narrator import Narrator
+from lumen.app.parts.foreign_commands import ForeignCommands, words
 from lumen.app.parts.guard import BrainGuard
+from lumen.app.parts.kept_hold import forget_hold, keep_hold
 from lumen.app.parts.robot import RobotPart
 from lumen.app.setup import Setup
 from lumen.buses.validated import ValidatedBus
@@ -16,6 +18,7 @@ from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
 from lumen.robots.remote import RobotHost
 from lumen.runtime.home import home_of
+from lumen.runtime.journal import Journal
 from lumen.runtime.presence import BRAIN, Presence
 
 
@@ -25,12 +28,15 @@ class HostedRobotPart(RobotPart):
     def __init__(
         self, project: Project, bus: ValidatedBus, setup: Setup, presence: Presence, narrator: Narrator
     ) -> None:
-        self._host = RobotHost(project, setup.robot, bus, setup.hall, self._given)
-        super().__init__(project, bus, setup, presence, server=self._host.server)
+        foreign = ForeignCommands(narrator)
+        foreign.is_brains = self._is_brains
+        self._host = RobotHost(project, setup.robot, bus, setup.hall, self._given, foreign.refused)
+        super().__init__(project, bus, setup, foreign, presence, server=self._host.server)
         self._narrator, self._others, self._setup = narrator, presence, setup
         self._root = Path(project.root)
         self._guard: BrainGuard | None = None
         self._interrupted = False
+        self.server.follow(self._is_brains)
 
     @property
     def follows(self) -> str:
@@ -39,12 +45,13 @@ class HostedRobotPart(RobotPart):
 
     def begin(self, now: float) -> None:
         self.server.recall(DeduplicationLog(home_of(self._root) / DEDUPLICATION_FILE))
+        self.foreign.record = Journal(home_of(self._root)).write
+        keep_hold(self.server.hold, home_of(self._root))
         self._guard = BrainGuard(self.robot, self._others, self._host.notice, self._say, time.monotonic)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
-        assert self._guard
         self._look(now)
-        self._guard.tick(now)
+        self._follow(now)
         for event in self._host.tick(now):
             kind, separator, _ = event.name.partition(".command.")
             if BRAIN not in self._others.parts and (kind == "error" or not separator):
@@ -59,6 +66,7 @@ class HostedRobotPart(RobotPart):
         if self._interrupted:
             return False
         self._interrupted = True
+        self.server.hold.stop("Ctrl-C")
         self.robot.start("operator", Rest())
         self._say("rests: Ctrl-C; again to end")
         return True
@@ -68,24 +76,34 @@ class HostedRobotPart(RobotPart):
         self._say(f"rests, for nobody could stop it any more: {reason}")
 
     def close(self) -> None:
+        if self._interrupted:
+            forget_hold(home_of(self._root))
         try:
             self._host.close()
         finally:
             self.robot.close()
 
-    def _given(self, command: RobotCommand) -> None:
+    def _follow(self, now: float) -> None:
+        """Look after the brain; one that is new to a robot that a person stopped is told so."""
+        assert self._guard
+        before = self.follows
+        self._guard.tick(now)
+        if self.follows != before and (stopped := self.server.hold.stopped):
+            self._host.notice(Event("stop", {"by": stopped.by}, now))
+
+    def _is_brains(self, id: str) -> bool:
+        session, _, own = id.partition(".")
+        return bool(own) and session == self.follows
+
+    def _given(self, command: RobotCommand, id: str) -> None:
         """A line for each command that it is given, where no brain in this process has told of it."""
-        if BRAIN in self._others.parts:
+        self.foreign.given(command, id)
+        if BRAIN in self._others.parts or isinstance(command, Aim) or not self._is_brains(id):
             return
-        match command:
-            case Perform(motion):
-                self._say(f"plays {motion.name}")
-            case Record(name, duration):
-                self._say(f"listens for {duration:g} s: {name}")
-            case Aim():
-                pass
-            case _:
-                self._narrator.performing(Start("", command), self._setup.clock.now())
+        if isinstance(command, Perform | Record):
+            self._say(words(command))
+        else:
+            self._narrator.performing(Start("", command), self._setup.clock.now())
 
     def _say(self, text: str) -> None:
         self._narrator.line("robot", text)

@@ -10,6 +10,7 @@ from lumen.app.parts.brain import BrainPart
 from lumen.app.setup import Setup
 from lumen.buses.validated import ValidatedBus
 from lumen.errors import BusRefusedError
+from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -84,6 +85,12 @@ class RemoteBrainPart(BrainPart):
         self._lost = any(change.name == "robot.lost" for change in changes)
         self._follow()
         super().tick(now, changes)
+
+    def rest(self, by: str) -> None:
+        """Let the robot rest, which tells the behaviour of it; where there is none, that is told here."""
+        if self._others.find(ROBOT_PART) is None:
+            self.behavior.loop.happen(Event("stop", {"by": by}))
+        self.robot.start("operator", Rest(by))
 
     def close(self) -> None:
         self.robot.close()

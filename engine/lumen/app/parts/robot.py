@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from lumen.app.parts.foreign_commands import ForeignCommands
 from lumen.app.parts.part import Part
 from lumen.app.setup import Setup
 from lumen.language.commands import Command, Say, Start
@@ -20,8 +21,8 @@ from lumen.runtime.presence import ROBOT_PART, Presence
 class RobotPart(Part, Observer):
     """A robot that the brain of this node commands directly; modules command it through `server`.
 
-    It watches the brain's loop: what the robot says and answers is on the bus, too. A `silent` one publishes only those
-    senses that the behaviour hears of as events.
+    What comes from elsewhere is told by `foreign`. It watches the brain's loop: what the robot says and answers is on
+    the bus, too. A `silent` one publishes only those senses that the behaviour hears of as events.
     """
 
     name = ROBOT_PART
@@ -31,6 +32,7 @@ class RobotPart(Part, Observer):
         project: Project,
         bus: Bus,
         setup: Setup,
+        foreign: ForeignCommands,
         presence: Presence | None = None,
         *,
         server: RobotServer | None = None,
@@ -38,7 +40,11 @@ class RobotPart(Part, Observer):
     ) -> None:
         self._silent, self._presence = silent, presence
         self.robot = setup.robot
-        self.server = server or RobotServer(self._sensed(project), setup.robot, bus)
+        self.foreign = foreign
+        self.server = server or RobotServer(
+            self._sensed(project), setup.robot, bus, started=foreign.given, refused=foreign.refused
+        )
+        self.server.hold.noticed.append(foreign.noticed)
         self.faces = FaceDetector(project, setup.hall, bus) if setup.hall else None
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:

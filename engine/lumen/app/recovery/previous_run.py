@@ -14,19 +14,21 @@ from lumen.interpreters.migration import Refusal
 from lumen.interpreters.statechart import deserialize
 from lumen.language.projects import Project
 from lumen.runtime.crash_counter import MAX_CRASHES
-from lumen.runtime.resuming import Resumption, resume
+from lumen.runtime.resuming import FreshStart, Resumption, resume
 from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
 
 LATELY = 600.0
 """How old a snapshot may be to be gone on with [s]: after that, whoever spoke with the robot has left."""
 
+AT_REST = "The robot was at rest: so it is until a hand is on its head, or until you say `lumen resume`."
+
 _UNKNOWN = Refusal("its files were not kept")
 
 
 class Recovery(NamedTuple):
-    """How it is gone on with, else why not, empty where there is nothing to say; and what is news of it."""
+    """How it is gone on with, or begun; and what is news of it."""
 
-    how: Resumption | str
+    how: Resumption | FreshStart
     news: tuple[ReloadReport, ...] = ()
 
 
@@ -35,23 +37,37 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
     keeper = records.keeper
     kept = keeper.kept() if keeper else None
     if keeper is None or kept is None:
-        return Recovery("")
-    away, began = time.time() - kept.time, time.perf_counter()
+        return Recovery(FreshStart())
+    away, began = time.time() - kept.ended, time.perf_counter()
     if not 0.0 <= away <= LATELY:
-        return Recovery(f"The last run ended without notice, but {_ago(away)}: this one begins anew.")
+        return _anew(kept, f"The last run ended without notice, but {_ago(away)}: this one begins anew.")
     if records.died(project.hash) >= MAX_CRASHES:
-        return Recovery("The last runs ended without notice soon after their start: this one begins anew.")
+        return _anew(kept, "The last runs ended without notice soon after their start: this one begins anew.")
     try:
         old = _before(root, keeper, kept, project)
-        how = resume(old, project, deserialize(old.machine, kept.frozen), away, kept.tracking) if old else _UNKNOWN
+        how = _resumed(old, project, kept, away) if old else _UNKNOWN
     except LumenError as error:
-        return Recovery(f"The last run ended without notice and can't be gone on with: {error}")
+        return _anew(kept, f"The last run ended without notice and can't be gone on with: {error}")
     news = () if old is None or old.hash == project.hash else (_news(old, project, how, time.perf_counter() - began),)
     if isinstance(how, Refusal):
-        return Recovery(
-            f"The last run ended without notice, and these files can't go on from there: {how.reason}", news
-        )
+        why = f"The last run ended without notice, and these files can't go on from there: {how.reason}"
+        return _anew(kept, why, news)
     return Recovery(how, news)
+
+
+def rested(records: RunRecords) -> FreshStart:
+    """A beginning that asks for nothing of the run before, but whether the robot was at rest."""
+    kept = records.keeper.kept() if records.keeper else None
+    return FreshStart(AT_REST if kept and kept.rests else "", bool(kept and kept.rests))
+
+
+def _anew(kept: StoredSnapshot, why: str, news: tuple[ReloadReport, ...] = ()) -> Recovery:
+    return Recovery(FreshStart(f"{why}\n{AT_REST}" if kept.rests else why, kept.rests), news)
+
+
+def _resumed(old: Project, new: Project, kept: StoredSnapshot, away: float) -> Resumption | Refusal:
+    snapshot = deserialize(old.machine, kept.frozen)
+    return resume(old, new, snapshot, away, kept.tracking, kept.ended - kept.time)
 
 
 def _before(root: Path, keeper: SnapshotStore, kept: StoredSnapshot, project: Project) -> Project | None:

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
-from lumen.app.recovery.previous_run import recover
+from lumen.app.parts.kept_hold import forget_hold
+from lumen.app.recovery.previous_run import recover, rested
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
@@ -17,9 +18,9 @@ from lumen.buses.local import LocalBusServer
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.ports import Bus
-from lumen.robots.command_receiver import command_key
+from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE, key_of
 from lumen.runtime.home import ADDRESS_FILE, Home, home_of
-from lumen.runtime.resuming import Resumption
+from lumen.runtime.resuming import FreshStart, Resumption
 
 _log = logging.getLogger(__name__)
 
@@ -75,10 +76,13 @@ class RunDirectory:
 
     def begin_run(
         self, behavior: LiveBehavior, url: str, reloader: Reloader | None, *, fresh: bool
-    ) -> Resumption | str:
-        """Let others find this run, and tell what was reloaded; how it goes on with the run before, else why not."""
+    ) -> Resumption | FreshStart:
+        """Let others find this run, and tell what was reloaded; how it goes on with the run before, or begins.
+
+        One that begins `fresh` asks for nothing but whether the robot was at rest.
+        """
         self.open(behavior.loop.bus, url, behavior.project)
-        found = "" if fresh else self.resumption(behavior.project)
+        found = rested(self.records) if fresh else self.resumption(behavior.project)
         if reloader:
             reloader.begin(self.news)
         return found
@@ -103,7 +107,8 @@ class RunDirectory:
             "root": str(self.root.absolute()),
             "process": os.getpid(),
             "bus": self._bus,
-            "command": command_key(project),
+            "command": key_of(project, COMMAND_ROUTE),
+            "stop": key_of(project, STOP_ROUTE),
             "path": address.path if address else "",
             "port": address.port if address else 0,
             "key": address.key if address else "",
@@ -121,6 +126,7 @@ class RunDirectory:
         home.remove(ADDRESS_FILE)
         if forget and self.records.keeper:
             self.records.keeper.forget()
+            forget_hold(home.folder)
         home.release()
 
     def last_good(self) -> Project | None:
@@ -132,8 +138,8 @@ class RunDirectory:
         files = keeper.files(keeper.good()) if keeper else None
         return load_apart(self.root, files)[0] if files else None
 
-    def resumption(self, project: Project) -> Resumption | str:
-        """How the run before is gone on with under this project; else why not, empty where there is nothing to say."""
+    def resumption(self, project: Project) -> Resumption | FreshStart:
+        """How the run before is gone on with under this project, or why it is not."""
         found = recover(self.root, self.records, project)
         self.news += found.news
         return found.how

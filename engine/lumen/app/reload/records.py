@@ -1,8 +1,10 @@
 """What a running exhibition writes into its home: journal, bundles, and where its behaviour stands."""
 
 import logging
+import time
 from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
 from typing import Any
 
 from lumen.language.people import PersonName
@@ -12,6 +14,9 @@ from lumen.runtime.home import Home
 from lumen.runtime.journal import Journal
 from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.snapshot_store import SnapshotStore
+
+HEARTBEAT_PERIOD = 1.0
+"""How often it is noted that the run lives, where nothing else is [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -27,6 +32,7 @@ class RunRecords:
         self._told, self._failed, self._trial = False, False, ""
         self._desk = ThreadPoolExecutor(1, "records")
         self._keeping: Future[None] | None = None
+        self._beaten = 0.0
         self.keeper = SnapshotStore(home) if home else None
         self.trials = CrashCounter(home) if home else None
         self.journal = Journal(home.folder if home else None)
@@ -75,10 +81,14 @@ class RunRecords:
     def keep(self, exhibition: BehaviorLoop) -> None:
         """Have it written where the behaviour stands, where that is news and what was to be written before is."""
         snapshot = exhibition.runtime.snapshot
-        if self.keeper is None or not self._settled() or not self.keeper.due(snapshot):
+        if self.keeper is None or not self._settled():
             return
-        on = tuple(exhibition.tracking.on)
-        self._keeping = self._desk.submit(self.keeper.keep, exhibition.project, snapshot, on)
+        if self.keeper.due(snapshot):
+            on, keep = tuple(exhibition.tracking.on), partial(self.keeper.keep, rests=exhibition.rests)
+            self._keeping = self._desk.submit(keep, exhibition.project, snapshot, on)
+        elif time.monotonic() - self._beaten >= HEARTBEAT_PERIOD:
+            self._beaten = time.monotonic()
+            self._keeping = self._desk.submit(self.keeper.beat)
 
     def forget(self, person: PersonName) -> None:
         """Have what names somebody taken out of the journal; where they stand is written anew by `keep`."""

@@ -26,7 +26,7 @@ class RobotHost:
     """Lumen Server for a robot, and for the hall around it where it is simulated.
 
     Whoever owns the clock calls `tick`; what the robot answered and noticed since is published, and returned.
-    `started` is called with each command that the robot is given.
+    `started` and `refused` are called as by the server.
     """
 
     def __init__(
@@ -35,9 +35,11 @@ class RobotHost:
         robot: Robot,
         bus: Bus,
         hall: Hall | None = None,
-        started: Callable[[RobotCommand], None] = lambda _: None,
+        started: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
+        refused: Callable[[str, str], None] = lambda _method, _reason: None,
     ) -> None:
-        self.server = RobotServer(project, robot, bus, started=started)
+        self.server = RobotServer(project, robot, bus, started=started, refused=refused)
+        self.server.hold.noticed.append(self.notice)
         self._robot, self._bus, self._hall, self._project = robot, bus, hall, project
         self._visitor_messages: deque[Message] = deque(maxlen=1_000)
         self._seen: object = ()

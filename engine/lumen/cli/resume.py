@@ -1,0 +1,42 @@
+"""`lumen resume`: a robot that a person stopped may move again."""
+
+import argparse
+import sys
+from typing import Any
+
+from lumen.cli.commanding import answered, told
+from lumen.cli.person import person
+from lumen.cli.reach import configure_reach, reach
+from lumen.errors import UsageError
+
+RESUME_TIMEOUT = 10.0
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("-y", "--yes", action="store_true", help="do not ask whether there is room around the robot")
+    configure_reach(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 once it may move, 1 where it could not or nobody wants it."""
+    reached = reach(options)
+    try:
+        ask = {"type": "motion", "method": "stopped"}
+        stopped = answered(reached.bus, reached.stop, ask, RESUME_TIMEOUT)
+        if not options.yes and not _sure(stopped):
+            print("it stays as it is")
+            return 1
+        resume = {"type": "motion", "method": "resume", "parameter": {"by": person()}}
+        answer = answered(reached.bus, reached.stop, resume, RESUME_TIMEOUT)
+    finally:
+        reached.bus.close()
+    return told(options.verb, answer, "the robot may move again")
+
+
+def _sure(stopped: Any) -> bool:
+    """Whether whoever is asked says yes; who stopped it is said before."""
+    by, since = (stopped.get(key) for key in ("stopped_by", "since")) if isinstance(stopped, dict) else ("", "")
+    print(f"{by} stopped the robot at {since}." if by else "Nobody has stopped the robot.")
+    if not sys.stdin.isatty():
+        raise UsageError("nobody is here to be asked: say --yes where there is room around the robot")
+    return input("It may stand up at once. Is there room around it? [y/N] ").strip().lower() in ("y", "yes", "ya")

@@ -1,0 +1,83 @@
+"""A robot that a person stopped moves for nobody, until a person lets it."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from typing import NamedTuple
+
+from lumen.language.commands import Look, Rest
+from lumen.language.events import Event
+from lumen.ports import Aim, RobotCommand
+from lumen.robots.command_table import row_of
+
+HEAD_SENSORS = ("FrontTactil", "MiddleTactil", "RearTactil")
+"""Where a hand on the head is felt."""
+
+
+class StoppedBy(NamedTuple):
+    """Who stopped a robot, and when (UTC)."""
+
+    by: str
+    since: datetime
+
+
+class PersonHold:
+    """Who stopped the robot (`stopped`), None where nobody has.
+
+    A command that moves it is refused then, whoever sends it. It ends by `release`, or where the behaviour moves the
+    robot after a hand was on its head. While the behaviour lets the robot rest, others do not move it either. Those in
+    `changed` are called with each change, those in `noticed` with what it is for the behaviour: the event `stop` or
+    `resume`, `by` whom.
+    """
+
+    def __init__(self) -> None:
+        self.stopped: StoppedBy | None = None
+        self.changed: list[Callable[[StoppedBy | None], None]] = []
+        self.noticed: list[Callable[[Event], None]] = []
+        self._touched, self._rests = False, False
+
+    def stop(self, by: str, since: datetime | None = None) -> None:
+        """Nobody moves it from now on; the behaviour is told, each time."""
+        self._touched = False
+        if self.stopped is None:
+            self._change(StoppedBy(by, since or datetime.now(UTC)))
+        self._notice(Event("stop", {"by": by}))
+
+    def release(self, by: str) -> None:
+        """A person lets it move; the behaviour, which may wake it, is told."""
+        self._release()
+        self._notice(Event("resume", {"by": by}))
+
+    def feel(self, event: Event) -> None:
+        """Hear what the robot noticed: a hand on its head lets the behaviour wake it."""
+        if event.name == "touched" and isinstance(event.data, dict) and event.data.get("sensor") in HEAD_SENSORS:
+            self._touched = True
+
+    def admit(self, command: RobotCommand, *, behavior: bool) -> str:
+        """Let a command begin: empty, else why it may not; `behavior` is whether that of the exhibition asks."""
+        if not row_of(command).moves:
+            self._rests = self._rests or (behavior and isinstance(command, Rest))
+            return ""
+        if behavior and (self.stopped is None or self._touched):
+            self._release()
+            self._rests = self._rests and isinstance(command, Look | Aim)
+            return ""
+        if self.stopped:
+            return f"{self.stopped.by} stopped the robot: hold its head, or say `lumen resume`"
+        return (
+            ""
+            if behavior or not self._rests
+            else "the behaviour lets the robot rest: hold its head, or say `lumen resume`"
+        )
+
+    def _notice(self, event: Event) -> None:
+        for call in self.noticed:
+            call(event)
+
+    def _release(self) -> None:
+        if self.stopped:
+            self._change(None)
+
+    def _change(self, stopped: StoppedBy | None) -> None:
+        self.stopped, self._touched = stopped, False
+        for call in self.changed:
+            call(stopped)
