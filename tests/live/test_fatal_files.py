@@ -111,8 +111,13 @@ def test_where_no_process_can_be_begun_nothing_is_read_here(copy: Path, monkeypa
 
 
 def test_who_reaches_an_exhibition_reads_no_file_but_the_main_one(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    usual, read = project_files._read, list[str]()
-    monkeypatch.setattr(project_files, "_read", lambda path: read.append(path.name) or usual(path))
+    usual, read = project_files.read_regular, list[str]()
+
+    def noted(path: Path, most: int, *, follow: bool = True) -> bytes:
+        read.append(path.name)
+        return usual(path, most, follow=follow)
+
+    monkeypatch.setattr(project_files, "read_regular", noted)
     assert reaching._keys(copy, None) == ("avatar.NAO.command", "avatar.NAO.stop")
     assert set(read) == {"lumen.yaml"}
     (copy / "lumen.yaml").write_text("[" * 60_000)

@@ -153,7 +153,7 @@ class SnapshotStore:
     def _alive(self) -> float:
         """When the run was last known to live (Unix), 0 where that is not known."""
         try:
-            return float(json.loads(self._home.read(ALIVE_FILE) or b"")["time"])
+            return float(self._home.read_json(ALIVE_FILE)["time"])
         except (ValueError, TypeError, KeyError):
             return 0.0
 
