@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import lumen
+from lumen.app.garbage import gc_paused
 from lumen.app.lint.findings import Findings
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.render import FORMATS, render
@@ -66,12 +67,15 @@ def run(options: argparse.Namespace) -> int:
     fuzzy = CONTROLLERS.get(options.file.suffix.lower())
     kind = "motion" if body else "controller" if fuzzy else "behavior"
     read = partial(_gesture, body, options.timeline) if body else fuzzy or _chart(options.file, content)
-    try:
-        data, diagnostics = read(str(options.file), content, title)
-    except ForeignFileError as error:
-        raise UsageError(one_line(error.diagnostic)) from None
-    text = document_yaml(data, kind)
-    diagnostics += _faults(str(options.output or "the result"), text, kind, body)
+    with gc_paused():  # else it looks through a large chart again and again
+        try:
+            data, diagnostics = read(str(options.file), content, title)
+        except ForeignFileError as error:
+            raise UsageError(one_line(error.diagnostic)) from None
+        except RecursionError:
+            raise UsageError(f"{options.file} nests too deeply to be read: use fewer levels") from None
+        text = document_yaml(data, kind)
+        diagnostics += _faults(str(options.output or "the result"), text, kind, body)
     write_result(text, options.output)
     if diagnostics or options.format != "text":
         files = {str(options.file): content}

@@ -13,6 +13,7 @@ from lumen.formats.fll.controller_draft import ControllerDraft, operators, range
 from lumen.formats.fll.fuzzylite_names import SHAPES, plain
 from lumen.language.controllers import TERM_PARAMETERS, WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
+from lumen.loading.line_index import LineIndex
 from lumen.loading.rule_parser import RuleWord
 
 _COMMENT = re.compile(r"(?P<open>\(\*|/\*)|//[^\n]*")
@@ -101,13 +102,12 @@ def _statements(text: str, begin: int, stop: int) -> Iterator[FclStatement]:
 
 class _FclReader:
     def __init__(self, file: str, text: str, findings: ConversionFindings) -> None:
-        self.file, self.text, self.findings = file, text, findings
+        self.file, self.lines, self.findings = file, LineIndex(text), findings
         self.draft = ControllerDraft(file, findings)
         self.accu: dict[str, str] = {}
 
     def place(self, offset: int, length: int = 1) -> Place:
-        row = self.text.count("\n", 0, offset) + 1
-        column = offset - (self.text.rfind("\n", 0, offset) + 1) + 1
+        row, column = self.lines.line(offset), self.lines.column(offset)
         return Place(self.file, row, column, row, column + max(length, 1))
 
     def at(self, statement: FclStatement) -> Place:

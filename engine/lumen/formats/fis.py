@@ -98,6 +98,7 @@ class _FisReader:
     def __init__(self, file: str, findings: ConversionFindings) -> None:
         self.findings, self.draft = findings, ControllerDraft(file, findings)
         self.order: dict[str, list[tuple[str, list[str]]]] = {"input": [], "output": []}
+        self.shown: set[str] = set()
 
     def system(self, sections: list[FisSection]) -> dict[str, Any]:
         head = next((section for section in sections if section.kind == "system"), None)
@@ -204,8 +205,10 @@ class _FisReader:
     def known(self, name: str, terms: list[str]) -> str:
         """Our name of a variable; the draft has it, and its terms, as the file's too: MATLAB's may hold blanks."""
         ours = self.draft.names[name]
-        self.draft.names.setdefault(ours, ours)
-        self.draft.terms[ours] = {term: term for term in terms if term}
+        if name not in self.shown:
+            self.shown.add(name)
+            self.draft.names.setdefault(ours, ours)
+            self.draft.terms[ours] = {term: term for term in terms if term}
         return ours
 
 

@@ -14,6 +14,7 @@ from lumen.language.diagnostics import did_you_mean
 
 KEYWORDS = frozenset(("if", "then", "is", "and", "or", "with", *HEDGES))
 MAX_RULE_DEPTH = 50
+MAX_PROPOSITIONS = 200
 
 _TOKEN = re.compile(r"[(),]|[^\s(),]+")
 
@@ -116,6 +117,8 @@ class _Parser:
     ) -> Antecedent:
         left = operand()
         while self.accept(key):
+            if len(self.mentions) >= MAX_PROPOSITIONS:
+                raise RuleSyntaxError(f"the rule has more than {MAX_PROPOSITIONS} conditions", self.word, "split it")
             left = join(left, operand())
         return left
 

@@ -1,7 +1,6 @@
 """Transitions of a behaviour: `on`, `always`, `after`, `onDone` and `onError`, their targets resolved."""
 
 from collections.abc import Iterator, Mapping
-from itertools import combinations
 from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath
@@ -112,30 +111,33 @@ class TransitionReader:
         return Transition(entry.path, event, paths, guard, actions, row.get("reenter", False))
 
     def _together(self, states: list[OutlinedState], where: NodePath) -> bool:
-        for one, other in combinations(states, 2):
-            if not _fit(one, other):
-                message = f"`{one.path}` and `{other.path}` can't be active together"
-                hint = "the targets of a list have to lie in different regions of a parallel state"
-                self.report(CONFLICTING_TARGETS, where, message, hint=hint)
-                return False
-        return True
+        if (rivals := _rivals(states)) is None:
+            return True
+        message = f"`{rivals[0].path}` and `{rivals[1].path}` can't be active together"
+        hint = "the targets of a list have to lie in different regions of a parallel state"
+        self.report(CONFLICTING_TARGETS, where, message, hint=hint)
+        return False
 
 
-def _fit(one: OutlinedState, other: OutlinedState) -> bool:
-    """Whether two states can be targets together; a history speaks for all that is in its parent."""
-    for history, state in ((one, other), (other, one)):
-        home = history.parent
-        if history.kind is StateKind.HISTORY and home and state not in (history, home) and state.lies_in(home):
-            return False
-    return one.lies_in(other) or other.lies_in(one) or _meeting(one, other).kind is StateKind.PARALLEL
+def _rivals(states: list[OutlinedState]) -> tuple[OutlinedState, OutlinedState] | None:
+    """Two states that can't be targets together, None where all can.
 
-
-def _meeting(one: OutlinedState, other: OutlinedState) -> OutlinedState:
-    """The nearest state that holds both."""
-    while not one.lies_in(other):
-        assert other.parent is not None  # every state lies in the root
-        other = other.parent
-    return other
+    From each one goes up: where two come to a state that is not parallel from different children, they are rivals. A
+    history speaks for all that is in its parent.
+    """
+    came: dict[int, tuple[OutlinedState, OutlinedState]] = {}
+    spoken = {id(state.parent): state for state in states if state.kind is StateKind.HISTORY and state.parent}
+    for state in states:
+        child = state
+        while (parent := child.parent) is not None:
+            history = spoken.get(id(parent), state)
+            via, first = came.setdefault(id(parent), (child, state))
+            if history is not state:
+                return history, state
+            if via is not child and parent.kind is not StateKind.PARALLEL:
+                return first, state
+            child = parent
+    return None
 
 
 def _rows(body: Any, where: NodePath) -> list[PlacedValue]:

@@ -8,6 +8,7 @@ from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.line_index import LineIndex
 from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 
@@ -43,7 +44,9 @@ def check(draft: ProjectDraft) -> None:
 
 def _lines(text: str, pattern: re.Pattern[str]) -> set[int]:
     """The numbers of the lines in which a pattern is found."""
-    return {text.count("\n", 0, found.start()) + 1 for found in pattern.finditer(text)}
+    found = [match.start() for match in pattern.finditer(text)]
+    index = LineIndex(text) if found else None
+    return set(map(index.line, found)) if index else set()
 
 
 def _plain(report: DocumentReport, wanted: set[int]) -> Iterator[tuple[NodePath, str, object]]:

@@ -2,8 +2,8 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
-from lumen.formats.event_descriptors import overlap
 from lumen.language.actions import If, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
 
@@ -67,8 +67,9 @@ def longest_first(descriptors: Sequence[str]) -> list[str]:
 
 
 def _rivals(descriptors: Sequence[str]) -> bool:
-    """Whether an event could match two of them."""
-    return any(overlap(bare(a), bare(b)) for i, a in enumerate(descriptors) for b in descriptors[:i])
+    """Whether an event could match two of them: in alphabetical order one that begins another stands right before."""
+    names = sorted(f"{bare(descriptor)}." for descriptor in descriptors)
+    return ("*." in names and len(names) > 1) or any(b.startswith(a) for a, b in pairwise(names))
 
 
 def _covers(transition: Transition, event: str) -> bool:

@@ -1,0 +1,68 @@
+"""Files of thousands of states or targets are imported in a time that grows as they do.
+
+A state with 8,000 events took a quarter of a minute once, a transition of 8,000 targets half of one.
+"""
+
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from lumen.cli.main import main
+
+SMALL, TIMES, SLACK = 400, 5, 2.0
+"""A file of five times as many may take ten times as long; what is quadratic takes 25 times."""
+
+
+def scxml(*parts: str) -> str:
+    return f'<scxml xmlns="http://www.w3.org/2005/07/scxml" version="1.0">{"".join(parts)}</scxml>'
+
+
+def targets(count: int) -> str:
+    regions = "".join(f'<state id="p{i}"/>' for i in range(count))
+    names = " ".join(f"p{i}" for i in range(count))
+    return scxml(f'<parallel id="p">{regions}</parallel><state id="z"><transition event="q" target="{names}"/></state>')
+
+
+def events(count: int) -> str:
+    return json.dumps({"id": "m", "states": {"a": {"on": {f"e{i}": "a" for i in range(count)}}}})
+
+
+def states(count: int) -> str:
+    return json.dumps({"id": "m", "states": {f"s{i}": {"on": {"e": f"s{(i + 1) % count}"}} for i in range(count)}})
+
+
+SHAPES: dict[str, tuple[str, Callable[[int], str]]] = {
+    "a transition of many targets": ("scxml", targets),
+    "a state of many events": ("json", events),
+    "many states": ("json", states),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", SHAPES)
+def test_five_times_as_large_is_not_twenty_five_times_as_slow(shape: str, tmp_path: Path) -> None:
+    ending, make = SHAPES[shape]
+
+    def imported(count: int) -> float:
+        file = tmp_path / f"large.{ending}"
+        file.write_text(make(count))
+        began = time.process_time()
+        assert main(["import", str(file), "-o", str(tmp_path / "out.yaml")]) in (0, 1)
+        return time.process_time() - began
+
+    imported(10)
+    small, large = imported(SMALL), imported(TIMES * SMALL)
+    assert large < SLACK * TIMES * small
+
+
+def test_a_rule_of_thousands_of_conditions_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "long.fll"
+    rule = " and ".join(["a is t"] * 5_000)
+    head = "Engine: e\nInputVariable: a\n  range: 0 1\n  term: t Triangle 0 0.5 1\nOutputVariable: o\n  range: 0 1\n"
+    output = "  defuzzifier: Centroid 100\n  term: y Triangle 0 0.5 1\n"
+    file.write_text(f"{head}{output}RuleBlock: r\n  rule: if {rule} then o is y\n")
+    assert main(["import", str(file)]) == 1
+    assert "this rule is left out: the rule has more than 200 conditions" in capsys.readouterr().err
