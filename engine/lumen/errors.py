@@ -22,7 +22,8 @@ LumenError
  │    ├── BusFullError            too much waits to be sent already
  │    └── BadMessageError         the body or the key can't be sent
  ├── Refused           a subscriber's word for a message that it can't use
- └── ModuleError       a module (memory, eyes, ears, voice, social) can't do its work
+ ├── ModuleError       a module (memory, eyes, ears, voice, social) can't do its work
+ └── UndeliveredError  an alert did not reach who was to be told
 
 A fault in somebody's YAML is a `Diagnostic`, collected and returned; a fault in the world is one of these, and
 becomes an `Event` while an exhibition runs. A fault in Lumen itself is none of them and is allowed to crash.
@@ -160,3 +161,11 @@ class Refused(LumenError):  # noqa: N818  a word to the bus, not an error of who
 
 class ModuleError(LumenError):
     """A module lacks what it works with, or can't use what it was sent; the tour goes on without it."""
+
+
+class UndeliveredError(LumenError):
+    """An alert did not arrive; `final` is whether trying again would change nothing."""
+
+    def __init__(self, message: str, *, final: bool = False) -> None:
+        super().__init__(message)
+        self.final = final

@@ -101,6 +101,7 @@ def live_through_a_power_cut(broker: RabbitMQ) -> None:
     broker.kill()
     links = [link for bus in (reader, sender) for link in links_of(bus)]
     until(lambda: all(link.connection is None for link in links))
+    assert reader.away, "who tells people of it asks this"
     began = time.monotonic()
     reader.subscribe("lumen.fault.later", later)
     sender.publish("lumen.fault.later", "stale", ttl=0.001)
@@ -111,7 +112,7 @@ def live_through_a_power_cut(broker: RabbitMQ) -> None:
     sent = sending.sent
     until(lambda: len(effects) > 2 * sent, 60)
     arrive_once(effects, sending.end(), 60)
-    until(lambda: all(link.connection for link in links))
+    until(lambda: all(link.connection for link in links) and not reader.away)
     sender.publish("lumen.fault.later", "bound since")
     assert later.wait(1) == ["bound since"]
     sender.close()

@@ -1,20 +1,25 @@
 """An exhibition in this process: opened, stepped or run, observed, reloaded, asked to stop, and closed."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from lumen.app.alerts.desk import AlertDesk
 from lumen.app.narrator import Narrator
+from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
 from lumen.app.parts.kept_hold import keep_hold
 from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.reload.alerting import RefusalPart
+from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
 from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.setup import Setup
 from lumen.app.whole_node import WholeNode
 from lumen.bus import connect
-from lumen.buses.validated import validated
+from lumen.buses.validated import ValidatedBus, validated
 from lumen.errors import UsageError
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Say
@@ -24,6 +29,8 @@ from lumen.ports import Bus
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
 from lumen.runtime.home import home_of
 from lumen.runtime.loop import Observer
+from lumen.runtime.presence import BRAIN, ROBOT_PART
+from lumen.runtime.resuming import FreshStart, Resumption
 from lumen.runtime.sending import send
 from lumen.runtime.visitor import VisitorActor
 
@@ -36,8 +43,8 @@ class Exhibition:
 
     With a story, its visitor plays it. `narrator` is called with what happens. Its files can be reloaded where `reload`
     says how saved ones are taken (`auto`, `manual`, `off`). With a `run_directory` other terminals reach it, and it
-    goes on where the run before ended without notice, unless it is to begin `fresh`. Raises BusError where the bus
-    can't be reached.
+    goes on where the run before ended without notice, unless it is to begin `fresh`. `alerts` has people told of what
+    goes wrong, and is closed with it. Raises BusError where the bus can't be reached.
     """
 
     def __init__(
@@ -52,6 +59,7 @@ class Exhibition:
         reload: str = "",
         language: str = "",
         fresh: bool = True,
+        alerts: AlertDesk | None = None,
     ) -> None:
         url = bus if isinstance(bus, str) else "memory://"
         shared = not url.startswith("memory:")
@@ -59,15 +67,21 @@ class Exhibition:
         self.node = WholeNode(project, setup, opened, story, narrator, language=language, shared=shared)
         behavior, directory = self.node.behavior, run_directory
         self.reloader: Reloader | None = None
-        forget = directory.records.forget if directory else lambda _: None
-        self.node.add(ForgettingPart(project, opened, behavior, forget))
+        written = [directory.records.forget] if directory else []
+        self.node.add(ForgettingPart(project, opened, behavior.forget, *written))
         if reload:
             taken_by = directory.reloader if directory else Reloader
             self.reloader = taken_by(behavior, self.node.narrator, mode=reload)
             self.node.add(ReloadPart(self.reloader))
+        watch = self._alert(alerts, opened, directory) if alerts else None
         if directory:
             fresh = fresh or story is not None
-            self.node.brain.recover = lambda: directory.begin_run(behavior, url, self.reloader, fresh=fresh)
+
+            def recover() -> Resumption | FreshStart:
+                found = directory.begin_run(behavior, url, self.reloader, fresh=fresh)
+                return watch.recovered(found) if watch else found
+
+            self.node.brain.recover = recover
             if story is None:
                 self.node.parts.append(RecordsPart(directory.records, behavior))
                 if directory.home:
@@ -76,6 +90,16 @@ class Exhibition:
             if shared:
                 log = DeduplicationLog(home_of(directory.root) / DEDUPLICATION_FILE)
                 self.node.robot.server.recall(log)
+
+    def _alert(self, desk: AlertDesk, bus: ValidatedBus, directory: RunDirectory | None) -> AlertPart:
+        """Have people told of what goes wrong."""
+        records = directory.records if directory else RunRecords(None)
+        root = Path(self.node.project.root)
+        parts, presence = (ROBOT_PART, BRAIN), self.node.presence
+        watch = AlertPart(desk, bus, home_of(root), parts, presence, lambda: records.trouble)
+        self.node.loop.observers.append(watch)
+        self.node.add(watch, *([RefusalPart(self.reloader, desk)] if self.reloader else []))
+        return watch
 
     @property
     def project(self) -> Project:

@@ -52,6 +52,11 @@ class AmqpBus:
             self._end(time.monotonic() + CLOSE_TIMEOUT)
             raise
 
+    @property
+    def away(self) -> bool:
+        """Whether the broker can't be reached now."""
+        return self._outage.going_on
+
     def carry(self, routes: Mapping[str, Route]) -> None:
         self._routes = dict(routes)
         self._open_stop(routes)

@@ -37,6 +37,11 @@ class OutageLog:
         self._logged: set[str] = set()
         self._changing = threading.Lock()
 
+    @property
+    def going_on(self) -> bool:
+        """Whether any of the connections is away."""
+        return bool(self._away)
+
     def lost(self, connection: str, what: str, error: BaseException) -> None:
         with self._changing:
             new = not self._away or what not in self._logged

@@ -36,6 +36,11 @@ class ValidatedBus:
         self._checks: dict[str, BodyCheck] = {}
         self.use(project)
 
+    @property
+    def away(self) -> bool:
+        """Whether the broker can't be reached now; a bus without one is always there."""
+        return bool(getattr(self._bus, "away", False))
+
     def use(self, project: Project) -> None:
         """Check against the routes and schemas of this project from now on."""
         self._checks = body_checks(project)

@@ -32,6 +32,7 @@ VERBS = {
     "diff": "say what differs between two versions of a project, and where a reload would lead",
     "topic": "list, print, measure and send the messages of a running exhibition",
     "doctor": "say whether an exhibition's bus can be used, and what is missing on it",
+    "alerts": "try whether those are reached who are told of what goes wrong",
     "lint": "say what is wrong in a project, and where",
     "explain": "say what a code of lint means, and show an example",
     "lsp": "answer an editor (Language Server Protocol)",

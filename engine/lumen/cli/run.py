@@ -5,13 +5,18 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 
+from lumen.app.alerts.alert import Origin
+from lumen.app.alerts.desk import AlertDesk
 from lumen.app.exhibition import Exhibition
+from lumen.app.narrator import Narrator
 from lumen.app.node import Node
 from lumen.app.parts.visitor import VisitorPart
 from lumen.app.processes.assembling import ProcessOptions, assemble
 from lumen.app.processes.choosing import parts_of
+from lumen.app.recovery.failing import failures_told
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.app.reload.reloader import MODES
@@ -35,6 +40,9 @@ from lumen.loading.units import seconds
 from lumen.ports import Clock
 from lumen.runtime.home import home_of as home_of_run
 from lumen.runtime.presence import BRAIN, ROBOT_PART
+
+WHOLE = (ROBOT_PART, BRAIN)
+"""The parts that an exhibition in one process has in any case."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -65,8 +73,10 @@ def run(options: argparse.Namespace) -> int:
     root = find_project(options.project or home_of(named))
     parts = parts_of(options.only, options.robot)
     run_directory = RunDirectory(root, guest=bool(parts) and "brain" not in parts)
+    told = nullcontext() if options.story else failures_told(root, run_directory, parts or WHOLE, _warn)
     try:
-        return _run(options, root, run_directory, parts)
+        with told:
+            return _run(options, root, run_directory, parts)
     except (BusError, RobotError, ModuleError):
         run_directory.records.annul()
         raise
@@ -106,6 +116,7 @@ def _whole(
         exhibition = Exhibition(
             project, setup, url, story, performance.transcript,
             run_directory=run_directory, reload=options.reload, language=language, fresh=options.fresh,
+            alerts=_alerts(project, WHOLE, performance.transcript, story),
         )  # fmt: skip
         node = exhibition.node
         _heed_signals(node)
@@ -145,7 +156,8 @@ def _processes(
     transcript = Transcript(clock.now, lambda: node.project.machine)
     how = ProcessOptions(url, speed, options.reload, language, options.fresh)
     bus = validated(connect(url), project)
-    node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story)
+    alerts = _alerts(project, parts, transcript, story)
+    node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts)
     visitor = next((part for part in node.parts if isinstance(part, VisitorPart)), None)
     if visitor and story is None:
         greeting = "You are the visitor: type what you say. Ctrl-D walks away, Ctrl-C ends.\n"
@@ -166,6 +178,14 @@ def _processes(
         run_directory.ended(node.project)
         run_directory.close(forget=not node.leaving)
     return 1 if node.failed and not node.interrupted else 0
+
+
+def _alerts(project: Project, parts: Sequence[str], narrator: Narrator, story: Story | None) -> AlertDesk | None:
+    """Who is told of what goes wrong; what a story plays is no trouble."""
+    if story:
+        return None
+    origin = Origin(project.name, project.robot, tuple(parts))
+    return AlertDesk(project.alerts, origin, Path(project.root), lambda line: narrator.line("alerts", line))
 
 
 def _heed_signals(node: Node) -> None:

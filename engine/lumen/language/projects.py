@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from lumen.language.alerts import Alerts
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.machines import MachineDefinition
@@ -30,7 +31,8 @@ class Project:
 
     `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has
     the default first; `messages` maps a message's name to its JSON Schema; `documents`
-    know where in each file what stands. `patience` [s] is how long saved files wait for what is under way.
+    know where in each file what stands. `patience` [s] is how long saved files wait for what is under way; `alerts`
+    are told of what goes wrong.
     """
 
     root: str
@@ -51,6 +53,7 @@ class Project:
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
+    alerts: Alerts = field(default_factory=Alerts)
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

@@ -94,6 +94,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         bus=settings.bus,
         patience=settings.patience,
         modules=settings.modules,
+        alerts=settings.alerts,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )

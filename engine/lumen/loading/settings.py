@@ -5,10 +5,12 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
+from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import ERROR, Code
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
+from lumen.loading.alerts import build_alerts
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.routes import build_routes, duration
 from lumen.loading.units import LENGTHS
@@ -32,6 +34,7 @@ class Settings:
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
+    alerts: Alerts = field(default_factory=Alerts)
 
 
 def build_settings(data: Any, report: DocumentReport) -> Settings:
@@ -52,6 +55,7 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         bus=data.get("bus", Settings.bus),
         patience=_patience(data, report),
         modules={name: _module(row) for name, row in data.get("modules", {}).items()},
+        alerts=build_alerts(data.get("alerts", {}), report),
     )
 
 

@@ -3,6 +3,7 @@
 from types import ModuleType
 
 from lumen.rules import (
+    alerts,
     controllers,
     dead_ends,
     effects,
@@ -32,6 +33,7 @@ CHECKS: tuple[ModuleType, ...] = (
     expressions,
     events,
     routes,
+    alerts,
     speech,
     controllers,
     motions,

@@ -49,7 +49,7 @@ HELPERS = (aims, controller_shapes, ignores, lookups, on_request, rulebooks, sur
 
 FAMILY_ORDER = (
     "text", "shape", "references", "statecharts", "reload", "expressions", "speech", "controllers", "motions",
-    "physics", "robot", "routes", "comments",
+    "physics", "robot", "routes", "alerts", "comments",
 )  # fmt: skip
 """The families as they are listed: what is wrong with a file first."""
 

@@ -33,9 +33,7 @@ LOSSY_JOURNAL = Code(
     "lossy-journal", "routes", ERROR, "a route of which nothing may be lost is told to throw messages away"
 )
 BEYOND_CAMERA = Code("beyond-camera", "routes", ERROR, "images are asked for that the robot's camera does not take")
-PASSWORD_IN_FILE = Code(
-    "password-in-file", "routes", ERROR, "a name and a password for the broker stand in the project"
-)
+PASSWORD_IN_FILE = Code("password-in-file", "routes", ERROR, "a name and a password stand in the project")
 ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has a form that no message could have")
 UNUSED_ROUTE = Code("unused-route", "routes", WARNING, "the messages of a route become an event that nothing waits for")
 

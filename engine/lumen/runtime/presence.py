@@ -95,6 +95,11 @@ class Presence:
         """Whether it was heard of lately."""
         return self._clock() - peer.heard <= LOST_AFTER and peer.state != LEAVES
 
+    def left(self, part: str) -> bool:
+        """Whether the process that was this part last has said that it ends."""
+        peers = [peer for peer in self._peers.values() if part in peer.parts]
+        return bool(peers) and max(peers, key=lambda peer: peer.heard).state == LEAVES
+
     def peers(self) -> list[Peer]:
         """All others that were heard of lately."""
         return [peer for peer in self._peers.values() if self.alive(peer)]

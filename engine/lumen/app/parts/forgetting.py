@@ -1,9 +1,8 @@
-"""The behaviour forgets whom the memory has forgotten, also while they stand there."""
+"""Whom the memory has forgotten all others forget, also while they stand there."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from lumen.app.live_behavior import LiveBehavior
 from lumen.app.parts.part import Part
 from lumen.language.events import Event
 from lumen.language.people import PersonName, name_key
@@ -16,20 +15,15 @@ MAX_PENDING_NAMES = 100
 
 
 class ForgettingPart(Part):
-    """Takes the name out of what the behaviour remembers; it stands before the brain, whose `needs` it has.
+    """Has what this process remembers and has written down forget somebody: each of `forget` is called with the name.
 
-    `forget` does the same for what is written down of the run.
+    It stands before the brain, whose `needs` it has where there is one.
     """
 
     def __init__(
-        self,
-        project: Project,
-        bus: Bus,
-        behavior: LiveBehavior,
-        forget: Callable[[PersonName], None] = lambda _: None,
-        needs: Sequence[str] = (),
+        self, project: Project, bus: Bus, *forget: Callable[[PersonName], None], needs: Sequence[str] = ()
     ) -> None:
-        self.needs, self._behavior, self._forget = needs, behavior, forget
+        self.needs, self._forget = needs, forget
         self._messages: deque[Message] = deque(maxlen=MAX_PENDING_NAMES)
         row = project.routes.get(ROUTE)
         key = row.key_for(project.robot) if row else DEFAULT_KEYS[ROUTE].replace("{robot}", project.robot)
@@ -39,9 +33,8 @@ class ForgettingPart(Part):
         while self._messages:
             match self._messages.popleft().body:
                 case {"name": str(name)} if name_key(name):
-                    person = PersonName(name)
-                    self._behavior.forget(person)
-                    self._forget(person)
+                    for forget in self._forget:
+                        forget(PersonName(name))
 
     def close(self) -> None:
         self._unsubscribe()

@@ -1,7 +1,8 @@
 """A robot that is hosted on the bus, for the brain that comes first."""
 
+import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from lumen.app.narrator import Narrator
@@ -13,6 +14,7 @@ from lumen.app.setup import Setup
 from lumen.buses.validated import ValidatedBus
 from lumen.language.commands import Rest, Start
 from lumen.language.events import Event
+from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
@@ -23,7 +25,10 @@ from lumen.runtime.presence import BRAIN, Presence
 
 
 class HostedRobotPart(RobotPart):
-    """A robot whose brain is in another process; it rests where that one is gone for long."""
+    """A robot whose brain is in another process; it rests where that one is gone for long.
+
+    `noticed` is called with what it notices and answers.
+    """
 
     def __init__(
         self, project: Project, bus: ValidatedBus, setup: Setup, presence: Presence, narrator: Narrator
@@ -37,15 +42,26 @@ class HostedRobotPart(RobotPart):
         self._guard: BrainGuard | None = None
         self._interrupted = False
         self.server.follow(self._is_brains)
+        self.noticed: Callable[[Event], None] = lambda _: None
+        self._journal = Journal(None)
 
     @property
     def follows(self) -> str:
         """The session of the brain that it obeys."""
         return self._guard.follows if self._guard else ""
 
+    def stopped(self) -> bool:
+        """Whether a person stopped it."""
+        return self.server.hold.stopped is not None
+
+    def forget(self, person: PersonName) -> None:
+        """Have what names somebody taken out of the journal, by a thread that no tick waits for."""
+        threading.Thread(target=self._journal.forget, args=(person,), name="lumen-forgetting", daemon=True).start()
+
     def begin(self, now: float) -> None:
         self.server.recall(DeduplicationLog(home_of(self._root) / DEDUPLICATION_FILE))
-        self.foreign.record = Journal(home_of(self._root)).write
+        self._journal = Journal(home_of(self._root))
+        self.foreign.record = self._journal.write
         keep_hold(self.server.hold, home_of(self._root))
         self._guard = BrainGuard(self.robot, self._others, self._host.notice, self._say, time.monotonic)
 
@@ -53,6 +69,7 @@ class HostedRobotPart(RobotPart):
         self._look(now)
         self._follow(now)
         for event in self._host.tick(now):
+            self.noticed(event)
             kind, separator, _ = event.name.partition(".command.")
             if BRAIN not in self._others.parts and (kind == "error" or not separator):
                 self._narrator.answered(event)

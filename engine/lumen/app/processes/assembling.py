@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from lumen.app.alerts.desk import AlertDesk
 from lumen.app.claiming import presence_of
 from lumen.app.narrator import Narrator
 from lumen.app.node import Node
+from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
 from lumen.app.parts.hosted_robot import HostedRobotPart
 from lumen.app.parts.module import ModulePart
@@ -17,6 +19,7 @@ from lumen.app.parts.remote_brain import RemoteBody, RemoteBrainPart
 from lumen.app.parts.visitor import RemoteVisitorPart
 from lumen.app.processes.bundles import BundleFollower
 from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.reload.alerting import RefusalPart
 from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.setup import Setup
 from lumen.buses.validated import ValidatedBus
@@ -26,6 +29,7 @@ from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.runtime.home import home_of
 from lumen.runtime.presence import BRAIN, MOTION, VISITOR
+from lumen.runtime.resuming import FreshStart, Resumption
 from lumen.runtime.story import staged
 
 
@@ -50,8 +54,12 @@ def assemble(
     options: ProcessOptions,
     setup: Setup | None = None,
     story: Story | None = None,
+    alerts: AlertDesk | None = None,
 ) -> Node:
-    """The process that is these parts of an exhibition; `setup` is its robot, where it has one."""
+    """The process that is these parts of an exhibition; `setup` is its robot, where it has one.
+
+    `alerts` has people told of what goes wrong, and is closed with it.
+    """
     robot: HostedRobotPart | None = None
 
     def said() -> dict[str, Any]:
@@ -61,9 +69,17 @@ def assemble(
 
     presence = presence_of(project, bus, tuple(names), said)
     node = Node(project, bus, clock, narrator, presence=presence, speed=options.speed)
+    folder, records = home_of(run_directory.root), run_directory.records
+    watch = AlertPart(alerts, bus, folder, names, presence, lambda: records.trouble) if alerts else None
+    if watch:
+        node.parts.append(watch)
     if setup:
         robot = HostedRobotPart(project, bus, setup, presence, narrator)
         node.parts.append(robot)
+        if BRAIN not in names:
+            node.parts.append(ForgettingPart(project, bus, robot.forget))
+        if watch and BRAIN not in names:
+            robot.noticed, watch.stopped = watch.noticed, robot.stopped
     if MOTION in names:
         node.parts.append(MotionPart(project, bus, clock, presence, narrator))
     if BRAIN in names:
@@ -72,22 +88,29 @@ def assemble(
         behavior = body.behavior(project, bus, story, options.speed)
         reloader = run_directory.reloader(behavior, narrator, mode=options.reload)
         brain = RemoteBrainPart(behavior, body, narrator, presence, run_directory.home, options.language)
-        brain.recover = lambda: run_directory.begin_run(behavior, options.url, reloader, fresh=options.fresh)
+
+        def recover() -> Resumption | FreshStart:
+            found = run_directory.begin_run(behavior, options.url, reloader, fresh=options.fresh)
+            return watch.recovered(found) if watch else found
+
+        brain.recover = recover
 
         def adopt(bundle: Project) -> None:
             body.robot.use(bundle)
             node.use(bundle, but=brain)
 
         behavior.adopt = adopt
+        if watch and alerts:
+            behavior.loop.observers.append(watch)
+            node.parts.append(RefusalPart(reloader, alerts))
         node.parts += [
             ReloadPart(reloader, brain.needs),
-            ForgettingPart(project, bus, behavior, run_directory.records.forget, brain.needs),
+            ForgettingPart(project, bus, behavior.forget, records.forget, needs=brain.needs),
             brain,
             RecordsPart(run_directory.records, behavior, brain.needs),
         ]
     if VISITOR in names:
         node.parts.append(RemoteVisitorPart(project, bus, narrator, story, telling=BRAIN not in names))
-    folder = home_of(run_directory.root)
     node.parts += [ModulePart(name, project, bus, narrator.line, folder) for name in names if name in MODULES]
     if BRAIN not in names:
         follower = BundleFollower(Path(project.root), bus, node.use, lambda line: narrator.line("reload", line))

@@ -37,6 +37,12 @@ class RunRecords:
         self.trials = CrashCounter(home) if home else None
         self.journal = Journal(home.folder if home else None)
 
+    @property
+    def trouble(self) -> str:
+        """Why where the behaviour stands can't be written, empty where it can."""
+        why = self.keeper.trouble if self.keeper else ""
+        return f"where the behaviour stands can't be written: {why}" if why else ""
+
     def write(self, entry: Mapping[str, Any]) -> None:
         self.journal.write(entry)
 

@@ -17,7 +17,7 @@ MAX_SUMMARY_CHANGES = 4
 
 T = TypeVar("T")
 
-_PARTS = ("behaviors", "controllers", "motions", "routes", "messages", "stories", "languages")
+_PARTS = ("behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts")
 _SELF = ("root", "hash", "documents")
 
 
@@ -74,6 +74,8 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
             yield Change("language", language, f"language `{language}` {how}", Risk.BEHAVIOR, "lumen.yaml")
     if old.languages[:1] != new.languages[:1]:
         yield Change("language", "", f"`{new.languages[0]}` is spoken first now", Risk.BEHAVIOR, "lumen.yaml")
+    if old.alerts != new.alerts:
+        yield Change("alerts", "", "who is told of troubles (`alerts`) changed", Risk.WIRING, "lumen.yaml")
     for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_PARTS, *_SELF)):
         before, after = getattr(old, field), getattr(new, field)
         if before != after:

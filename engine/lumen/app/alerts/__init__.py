@@ -1,0 +1,1 @@
+"""Somebody is told: of what, how it reaches them, and how often."""

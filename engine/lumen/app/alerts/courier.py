@@ -1,0 +1,123 @@
+"""Tells one recipient, on a thread of its own: rationed, quiet when that is wanted, tried again where it fails."""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from datetime import datetime
+from datetime import time as TimeOfDay  # noqa: N812
+
+from lumen.app.alerts.alert import Alert
+from lumen.app.alerts.ration import Ration
+from lumen.errors import UndeliveredError
+from lumen.language.alerts import Recipient
+from lumen.upkeep.threads import WatchedThread
+
+MAX_PENDING_ALERTS = 100
+"""Alerts that wait for the thread; then the oldest are dropped."""
+FIRST_RETRY, LONGEST_RETRY = 1.0, 300.0
+"""How long it is waited before it is tried again [s]: at first, then twice as long each time, at most."""
+RETRY_FOR = 3_600.0
+"""How long an alert is tried to be delivered [s]."""
+
+Deliver = Callable[[Alert], None]
+"""Tells it, and waits for that; raises UndeliveredError."""
+
+
+def time_of_day() -> TimeOfDay:
+    return datetime.now().time()
+
+
+class Courier:
+    """Takes alerts without waiting for anybody (`put`), and delivers them one at a time.
+
+    `tell` hears, a line for each outage, why somebody could not be reached. `clock` is monotonic [s].
+    """
+
+    def __init__(
+        self,
+        recipient: Recipient,
+        interval: float,
+        deliver: Deliver,
+        tell: Callable[[str], None],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        day: Callable[[], TimeOfDay] = time_of_day,
+    ) -> None:
+        self.recipient = recipient
+        self._deliver, self._tell, self._clock, self._day = deliver, tell, clock, day
+        self._ration = Ration(interval)
+        self._came: deque[Alert] = deque(maxlen=MAX_PENDING_ALERTS)
+        self._changed = threading.Condition()
+        self._ending = self._failing = False
+        self._until = 0.0
+        self._thread = WatchedThread("lumen-alerts", self._run)
+        self._thread.start()
+
+    def put(self, alert: Alert) -> None:
+        """Have it told, where it is of a kind that is wanted."""
+        if alert.kind in self.recipient.kinds:
+            with self._changed:
+                self._came.append(alert)
+                self._changed.notify_all()
+
+    def end(self, until: float) -> None:
+        """Tell what waits, also what was held back, by that time at the latest [s, monotonic]; waits for nothing."""
+        with self._changed:
+            self._ending, self._until = True, until
+            self._changed.notify_all()
+
+    def join(self) -> None:
+        """Wait for the end."""
+        self._thread.join(max(0.0, self._until - self._clock()))
+
+    def _run(self) -> None:
+        while not self._ended():
+            for alert in self._due():
+                self._tell_until_told(alert)
+
+    def _ended(self) -> bool:
+        """Wait until there is something to do; whether that is to end."""
+        with self._changed:
+            if not (self._came or self._ending):
+                self._changed.wait(self._ration.wait(self._clock()))
+            return self._ending and not self._came and self._ration.wait(self._clock()) is None
+
+    def _due(self) -> list[Alert]:
+        with self._changed:
+            came = list(self._came)
+            self._came.clear()
+        for alert in came:
+            self._ration.take(alert)
+        quiet = self.recipient.quiet is not None and self.recipient.quiet.hold(self._day())
+        if self._ending:
+            rest = list(self._ration.rest())
+            return [] if quiet else rest
+        return list(self._ration.due(self._clock(), quiet=quiet))
+
+    def _tell_until_told(self, alert: Alert) -> None:
+        began, pause = self._clock(), FIRST_RETRY
+        while True:
+            try:
+                self._deliver(alert)
+            except UndeliveredError as error:
+                if not self._failing:
+                    self._failing = True
+                    self._tell(str(error))
+                if error.final or self._clock() - began > RETRY_FOR or not self._paused(pause):
+                    return
+                pause = min(2 * pause, LONGEST_RETRY)
+            else:
+                self._failing = False
+                return
+
+    def _paused(self, seconds: float) -> bool:
+        """Wait before the next attempt; false where it would be after the end."""
+        with self._changed:
+            deadline = self._clock() + seconds
+            while not self._ending and self._clock() < deadline:
+                self._changed.wait(deadline - self._clock())
+            if not self._ending:
+                return True
+            self._changed.wait_for(lambda: False, max(0.0, min(deadline, self._until) - self._clock()))
+            return self._clock() < self._until

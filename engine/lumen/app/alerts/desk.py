@@ -1,0 +1,74 @@
+"""Who is told of what: each alert goes to all who want its kind."""
+
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+
+from lumen.app.alerts.alert import TEST, Alert, Origin, one_line
+from lumen.app.alerts.courier import Courier
+from lumen.app.alerts.delivery import address, deliver
+from lumen.errors import UndeliveredError
+from lumen.language.alerts import Alerts, Recipient
+
+CLOSE_TIMEOUT = 10.0
+"""How long the end of a process waits for alerts to arrive [s]."""
+
+
+class AlertDesk:
+    """Has people told who are not there; nothing here waits but `close`, and `test`.
+
+    `tell` hears who could not be reached, and why. `root` is the project's folder. Texts are made of our own words: no
+    name of a visitor and nothing of what they said is in them.
+    """
+
+    def __init__(self, alerts: Alerts, origin: Origin, root: Path, tell: Callable[[str], None]) -> None:
+        self._origin, self._root, self._tell = origin, root, tell
+        self._alerts, self._couriers = Alerts(), list[Courier]()
+        self.use(alerts)
+
+    def __call__(self, kind: str, text: str, about: str = "") -> None:
+        """Tell that this happened now; `about` tells apart what else is of the same kind."""
+        now = time.time()
+        alert = Alert(kind, one_line(text), about, now, now)
+        for courier in self._couriers:
+            courier.put(alert)
+
+    def use(self, alerts: Alerts) -> None:
+        """Tell these from now on; what others are being told they are told."""
+        if alerts == self._alerts:
+            return
+        old, self._alerts = self._couriers, alerts
+        self._couriers = [
+            Courier(recipient, alerts.interval, partial(self._deliver, recipient), partial(self._failed, recipient))
+            for recipient in alerts.to
+        ]
+        for courier in old:
+            courier.end(time.monotonic() + CLOSE_TIMEOUT)
+
+    def test(self) -> Iterator[tuple[str, str]]:
+        """Tell each of them something, whatever the hour, and wait: whom, and why it did not arrive, else empty."""
+        now = time.time()
+        alert = Alert(TEST, "this is a test: whoever reads it is told of troubles", "", now, now)
+        for recipient in self._alerts.to:
+            try:
+                self._deliver(recipient, alert)
+                yield address(recipient.channel), ""
+            except UndeliveredError as error:
+                yield address(recipient.channel), one_line(str(error))
+
+    def close(self) -> None:
+        """Have told what waits, for ten seconds at most; harmless when repeated."""
+        until = time.monotonic() + CLOSE_TIMEOUT
+        couriers, self._couriers = self._couriers, []
+        self._alerts = Alerts()
+        for courier in couriers:
+            courier.end(until)
+        for courier in couriers:
+            courier.join()
+
+    def _deliver(self, recipient: Recipient, alert: Alert) -> None:
+        deliver(recipient.channel, alert, self._origin, self._root)
+
+    def _failed(self, recipient: Recipient, why: str) -> None:
+        self._tell(f"{address(recipient.channel)} is not told: {one_line(why)}")

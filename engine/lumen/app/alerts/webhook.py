@@ -1,0 +1,57 @@
+"""An alert as a POST with JSON."""
+
+import json
+import os
+import urllib.error
+import urllib.request
+from http.client import HTTPException
+from typing import Any
+
+from lumen.errors import UndeliveredError
+
+POST_TIMEOUT = 10.0
+"""How long the server may be silent [s]."""
+PASSING = (408, 425, 429, *range(500, 600))
+"""The statuses of HTTP after which it may be taken the next time."""
+TOKEN = "LUMEN_ALERT_TOKEN"
+"""The environment variable whose content goes with each webhook, as `Authorization: Bearer`."""
+
+
+class _Stay(urllib.request.HTTPRedirectHandler):
+    """Nothing is sent to where a server points: it may be anywhere, and a POST would become a GET."""
+
+    def redirect_request(self, *arguments: Any) -> None:
+        return None
+
+
+def post(url: str, body: dict[str, Any]) -> None:
+    """Send it, and be content with any status of 200 to 299. Raises UndeliveredError."""
+    if url.startswith("$"):
+        url = _of_variable(url[1:])
+    head = {"Content-Type": "application/json", "User-Agent": "lumen"}
+    if token := os.environ.get(TOKEN):
+        head["Authorization"] = f"Bearer {token}"
+    try:
+        request = urllib.request.Request(url, json.dumps(body).encode(), head, method="POST")
+        with urllib.request.build_opener(_Stay).open(request, timeout=POST_TIMEOUT):
+            pass
+    except urllib.error.HTTPError as error:
+        error.close()
+        raise UndeliveredError(f"it answers {error.code} {error.reason}", final=error.code not in PASSING) from None
+    except urllib.error.URLError as error:
+        raise UndeliveredError(f"it can't be reached: {error.reason}") from None
+    except (TimeoutError, ConnectionError) as error:
+        raise UndeliveredError(f"it can't be reached: {error}") from None
+    except (OSError, ValueError, HTTPException) as error:  # whose text may hold the address, which may be a secret
+        raise UndeliveredError(f"it can't be used: {type(error).__name__}") from None
+
+
+def _of_variable(name: str) -> str:
+    """The URL in an environment variable; what it holds is not said, for it may be a secret."""
+    url = os.environ.get(name, "").strip()
+    if not url:
+        raise UndeliveredError(f"the environment variable {name} is not set", final=True)
+    if not url.startswith(("https://", "http://")):
+        why = f"what the environment variable {name} holds begins with neither https:// nor http://"
+        raise UndeliveredError(why, final=True)
+    return url

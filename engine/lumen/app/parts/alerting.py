@@ -1,0 +1,164 @@
+"""What of an exhibition people have to know who are not there."""
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from lumen.app.alerts.desk import AlertDesk
+from lumen.app.alerts.disk import DiskWatch
+from lumen.app.alerts.falls import FallWatch
+from lumen.app.parts.brain import ENGINE, RUN_BEFORE
+from lumen.app.parts.part import Part
+from lumen.buses.validated import ValidatedBus
+from lumen.interpreters.statechart import Step
+from lumen.language.commands import Command
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.runtime.loop import Observer
+from lumen.runtime.presence import BRAIN, ROBOT_PART, Presence
+from lumen.runtime.resuming import FreshStart, Resumption
+
+BROKER_PATIENCE = 5.0
+"""How long a broker may be away before that is told [s]: it comes back from a restart within that."""
+AFTER_CRASH = "ended without notice"
+"""What is said of a run that did not end as it should."""
+BRAIN_PATIENCE = 5.0
+"""How long a robot's brain may be [s]."""
+
+
+class AlertPart(Part, Observer):
+    """Has people told by a desk, which it owns: what robot, brain, broker and disk do that they should not.
+
+    It watches the loop of the brain, where that is here. A robot whose brain is somewhere else tells of itself only
+    where there is none. `kept` says why the records of the run can't be written, `stopped` whether a person stopped the
+    robot.
+    """
+
+    def __init__(
+        self,
+        desk: AlertDesk,
+        bus: ValidatedBus,
+        folder: Path,
+        parts: Sequence[str],
+        presence: Presence | None = None,
+        kept: Callable[[], str] = lambda: "",
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._desk, self._bus, self._parts, self._presence = desk, bus, parts, presence
+        self._kept, self._clock = kept, clock
+        self._falls, self._disk = FallWatch(), DiskWatch(folder)
+        self.stopped: Callable[[], bool] = lambda: False
+        self._now = 0.0
+        self._away: float | None = None
+        self._brain: float | None = None
+        self._missed = False
+        self._troubles: dict[str, str] = {}
+        self._stopped: bool | None = None
+
+    def recovered(self, found: Resumption | FreshStart) -> Resumption | FreshStart:
+        """How this run begins, which tells how the last one ended; the same again."""
+        if isinstance(found, Resumption):
+            self._desk("crashed", f"it ended without notice, and goes on after {found.away:.0f} s")
+        elif AFTER_CRASH in found.why:
+            self._desk("crashed", "it ended without notice, and begins anew")
+        return found
+
+    def stepped(self, step: Step) -> None:
+        if step.event and step.event.name == "stop" and _by_person(step.event):
+            self._desk("stopped", "somebody stopped it")
+
+    def performing(self, command: Command, now: float) -> None:
+        self._falls.performing(command)
+
+    def answered(self, event: Event) -> None:
+        self._falls.answered(event, self._now)
+        self._notice(event)
+
+    def noticed(self, event: Event) -> None:
+        """What a robot notices whose brain is somewhere else, or nowhere."""
+        if self._presence and self._presence.find(BRAIN) is None:
+            self._notice(event)
+            if event.name == "fallen":
+                self._desk("fallen", "it fell, and there is no brain to get it up")
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self._now = now
+        if why := self._falls.tick(now):
+            self._desk("fallen", why)
+        for event in changes if BRAIN in self._parts else ():
+            if not self._left(event.name.removesuffix(".lost")):
+                self._notice(event)
+        self._look_for_broker()
+        self._look_for_brain()
+        self._look_for_stop()
+        self._look_at_disk("room", self._disk.trouble)
+        self._look_at_disk("records", self._kept())
+
+    def use(self, project: Project) -> None:
+        self._desk.use(project.alerts)
+
+    def helpless(self, reason: str) -> None:
+        self._desk("crashed", "a part of it gave up, and nobody can reach it: the robot rests")
+
+    def close(self) -> None:
+        self._disk.close()
+        self._desk.close()
+
+    def _notice(self, event: Event) -> None:
+        part, _, what = event.name.partition(".")
+        data = event.data if isinstance(event.data, dict) else {}
+        match part, what:
+            case _, "lost":
+                self._desk("lost", f"the {part} is gone", part)
+            case _, "back":
+                self._desk("lost", f"the {part} is back after {data.get('seconds', 0.0):.0f} s", event.name)
+            case "battery", "low":
+                self._desk("battery", f"its battery is at {data.get('percentage', 0)} %")
+            case "motors", "hot":
+                self._desk("hot", f"its motor {data.get('joint', '')} is at {data.get('temperature', 0.0):.0f} degrees")
+
+    def _look_for_broker(self) -> None:
+        """Robot and brain tell of the broker; the others need not all say the same."""
+        if not self._bus.away or not {ROBOT_PART, BRAIN} & set(self._parts):
+            self._away = None
+        elif self._away is None:
+            self._away = self._clock()
+        elif self._clock() - self._away > BROKER_PATIENCE:
+            self._desk("broker", "the message broker can't be reached")
+            self._away = float("inf")
+
+    def _look_for_brain(self) -> None:
+        """A robot misses its brain, but for one that has ended as it should."""
+        if self._presence is None or BRAIN in self._parts or ROBOT_PART not in self._parts:
+            return
+        if self._presence.find(BRAIN):
+            if self._missed:
+                self._desk("lost", "the brain is back", "brain.back")
+            self._brain, self._missed = self._clock(), False
+        elif self._left(BRAIN):
+            self._brain = None
+        elif self._brain is not None and self._clock() - self._brain > BRAIN_PATIENCE and not self._missed:
+            self._missed = True
+            self._desk("lost", "the brain is gone, and the robot rests", BRAIN)
+
+    def _look_for_stop(self) -> None:
+        """A robot that is stopped without a brain, which else tells of it."""
+        before, self._stopped = self._stopped, self.stopped()
+        if self._stopped and before is False and self._presence and self._presence.find(BRAIN) is None:
+            self._desk("stopped", "somebody stopped it")
+
+    def _left(self, part: str) -> bool:
+        """Whether who was that part has ended as it should."""
+        return self._presence is not None and self._presence.left(part)
+
+    def _look_at_disk(self, about: str, trouble: str) -> None:
+        """A trouble is told when it begins."""
+        if trouble and not self._troubles.get(about):
+            self._desk("disk", trouble, about)
+        self._troubles[about] = trouble
+
+
+def _by_person(stop: Event) -> bool:
+    """Whether somebody stopped it; what else does is told as what it is."""
+    by = stop.data.get("by") if isinstance(stop.data, dict) else None
+    return by not in (ENGINE, RUN_BEFORE)

@@ -1,0 +1,40 @@
+"""People are told that files were refused, who are not there to read it."""
+
+from collections.abc import Callable, Sequence
+
+from lumen.app.parts.part import Part
+from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.report import START, ReloadReport
+from lumen.language.diagnostics import Severity
+from lumen.language.events import Event
+
+
+class RefusalPart(Part):
+    """Tells of each report of a reloader that files were refused, or taken back.
+
+    `tell` takes the kind of an alert and its text: places and codes, no more of what is in the files.
+    """
+
+    def __init__(self, reloader: Reloader, tell: Callable[[str, str], None]) -> None:
+        self._reloader, self._tell = reloader, tell
+        self._last: ReloadReport | None = None
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        report = self._reloader.last
+        if report is not None and report is not self._last:
+            self._last = report
+            if text := refusal(report):
+                self._tell("refused", text)
+
+
+def refusal(report: ReloadReport) -> str:
+    """What is told of a report, empty where that is nothing."""
+    if report.verdict == "rolled back":
+        return "the saved files failed while they ran: the ones before run again"
+    if report.verdict != "refused":
+        return ""
+    errors = [found for found in report.diagnostics if found.severity is Severity.ERROR]
+    first = f": {errors[0].place} {errors[0].code}" if errors else ""
+    more = f" and {len(errors) - 1} more" if len(errors) > 1 else ""
+    what = "the last good files run" if report.who == START else "the exhibition goes on as it was"
+    return f"the saved files were refused{first}{more}; {what}"

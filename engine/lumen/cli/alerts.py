@@ -1,0 +1,35 @@
+"""`lumen alerts test`: whether those who are told of troubles can be reached."""
+
+import argparse
+import json
+
+from lumen.app.alerts.alert import Origin
+from lumen.app.alerts.desk import AlertDesk
+from lumen.errors import UsageError
+from lumen.loading.packaged import find_project
+from lumen.loading.project import main_settings
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("what", choices=("test",), help="tell each of those in `alerts:` of lumen.yaml something, whatever the hour")
+    add("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
+    add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 where all were reached; raises UsageError where nobody is to be told."""
+    root = find_project(options.project)
+    settings = main_settings(root)
+    if settings is None or not settings.alerts.to:
+        raise UsageError(f"nobody is to be told: there is no `alerts:` in {root / 'lumen.yaml'} that names somebody")
+    desk = AlertDesk(settings.alerts, Origin(settings.name or root.name, settings.robot), root, lambda _: None)
+    told = []
+    for whom, why in desk.test():
+        told.append({"to": whom, "arrived": not why, "reason": why})
+        if options.format == "text":
+            print(f"{'!!' if why else 'ok'} {whom}{': ' * bool(why)}{why}", flush=True)
+    desk.close()
+    if options.format == "json":
+        print(json.dumps({"ok": all(one["arrived"] for one in told), "told": told}, ensure_ascii=False))
+    return 0 if all(one["arrived"] for one in told) else 1

@@ -1,0 +1,67 @@
+"""What stands under `alerts:` of lumen.yaml, from its plain data to `Alerts`."""
+
+from collections.abc import Mapping
+from datetime import time
+from typing import Any
+
+from lumen.language.alerts import (
+    DEFAULT_INTERVAL,
+    KINDS,
+    SMTP_PORTS,
+    AlertChannel,
+    Alerts,
+    Mail,
+    Program,
+    QuietHours,
+    Recipient,
+    Webhook,
+)
+from lumen.language.diagnostics import NodePath
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.routes import duration
+
+WHERE: NodePath = ("alerts",)
+
+
+def build_alerts(data: Mapping[str, Any], report: DocumentReport) -> Alerts:
+    """Whom to tell, from data in the shape of the schema; a recipient whose way was refused is left out."""
+    interval = duration(data, "interval", report, WHERE, positive=True)
+    usual = _quiet(data)
+    found = [_recipient(row, usual, (*WHERE, "to", i)) for i, row in enumerate(data.get("to", ()))]
+    known = tuple(recipient for recipient in found if recipient is not None)
+    return Alerts(known, DEFAULT_INTERVAL if interval is None else interval)
+
+
+def _recipient(row: Mapping[str, Any], usual: QuietHours | None, where: NodePath) -> Recipient | None:
+    channel = _channel(row)
+    if channel is None:
+        return None
+    quiet = _quiet(row) if "quiet" in row else usual
+    return Recipient(channel, tuple(row.get("kinds", KINDS)), quiet, where)
+
+
+def _channel(row: Mapping[str, Any]) -> AlertChannel | None:
+    match row:
+        case {"webhook": str(url)}:
+            return Webhook(url)
+        case {"mail": {"host": str(host), "from": str(sender), "to": str() | list() as to, **more}}:
+            security = str(more.get("security", "starttls"))
+            port = more.get("port", SMTP_PORTS[security])
+            return Mail(host, int(str(port)), security, sender, (to,) if isinstance(to, str) else tuple(map(str, to)))
+        case {"command": list(words)}:
+            return Program(tuple(words))
+    return None
+
+
+def _quiet(data: Mapping[str, Any]) -> QuietHours | None:
+    """`22:00-07:00`; `never` and nothing are none."""
+    text = data.get("quiet", "never")
+    if text == "never":
+        return None
+    begin, _, end = text.partition("-")
+    return QuietHours(_time(begin), _time(end))
+
+
+def _time(text: str) -> time:
+    hours, minutes = map(int, text.split(":"))
+    return time(hours, minutes)

@@ -1,0 +1,102 @@
+"""Who is told of troubles: whether they can be reached, and nobody else reads along."""
+
+import re
+from collections.abc import Mapping
+from ipaddress import ip_address
+from typing import Any
+from urllib.parse import urlsplit
+
+from lumen.language.alerts import Mail, Recipient, Webhook
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
+from lumen.loading.alerts import WHERE
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.routes import PASSWORD_IN_FILE
+
+ALERT_ADDRESS = Code("alert-address", "alerts", ERROR, "a webhook is no address on the web")
+ALERT_IN_CLEAR = Code("alert-in-clear", "alerts", WARNING, "anybody on the way can read what is told")
+ALERT_QUIET = Code("alert-quiet", "alerts", ERROR, "quiet hours begin when they end")
+ALERT_TO_NOBODY = Code("alert-to-nobody", "alerts", WARNING, "nobody is told of what goes wrong")
+ALERT_WAY = Code("alert-way", "alerts", ERROR, "it does not say how somebody is told, or says it twice")
+
+WAYS = ("webhook", "mail", "command")
+_VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report what is wrong with each of those who are told."""
+    settings, report = draft.settings, draft.main
+    data = report.document.data.get("alerts") if report and isinstance(report.document.data, Mapping) else None
+    if settings is None or report is None or not isinstance(data, Mapping):
+        return
+    _quiet(report, data, WHERE)
+    rows = data.get("to")
+    if rows == []:
+        report(ALERT_TO_NOBODY, (*WHERE, "to"), "the list is empty", "write who is told, or take `alerts` out")
+    for i, row in enumerate(rows if isinstance(rows, list) else ()):
+        if isinstance(row, Mapping):
+            _way(report, row, (*WHERE, "to", i))
+            _quiet(report, row, (*WHERE, "to", i))
+    for recipient in settings.alerts.to:
+        _reached(report, recipient)
+
+
+def _way(report: DocumentReport, row: Mapping[str, Any], where: NodePath) -> None:
+    """One of the three ways, where none of them was refused already."""
+    said = [way for way in WAYS if way in row]
+    if len(said) == 1 or any(path[: len(where)] == where for path in report.pruned):
+        return
+    hint = "write one of `webhook: URL`, `mail: {host, from, to}` and `command: [PROGRAM, …]`"
+    if said:
+        report(
+            ALERT_WAY,
+            (*where, said[1]),
+            f"`{said[0]}` and `{said[1]}` stand in one item",
+            "make it two items",
+            key=True,
+        )
+    else:
+        report(ALERT_WAY, where, "it does not say how they are told", hint)
+
+
+def _quiet(report: DocumentReport, row: Mapping[str, Any], where: NodePath) -> None:
+    begin, _, end = str(row.get("quiet", "")).partition("-")
+    if end and begin.zfill(5) == end.zfill(5):
+        hint = "write two times of day, as in `22:00-07:00`, or `never`"
+        report(ALERT_QUIET, (*where, "quiet"), f"it is quiet from {begin} to {end}: never, or always", hint)
+
+
+def _reached(report: DocumentReport, recipient: Recipient) -> None:
+    match recipient.channel:
+        case Webhook(url) if url.startswith("$"):
+            if not _VARIABLE.fullmatch(url):
+                hint = "write the name of an environment variable, as in $LUMEN_ALERT_URL"
+                report(ALERT_ADDRESS, (*recipient.where, "webhook"), f"`{url}` names no variable", hint)
+        case Webhook(url):
+            _web(report, url, (*recipient.where, "webhook"))
+        case Mail(host=host, security="none") if not _loopback(host):
+            hint = "write `starttls` or `tls`; name and password are never sent without it"
+            report(ALERT_IN_CLEAR, (*recipient.where, "mail", "security"), f"mails to {host} are not encrypted", hint)
+
+
+def _web(report: DocumentReport, url: str, where: NodePath) -> None:
+    try:
+        parts = urlsplit(url)
+        port_or_none = parts.port
+    except ValueError:
+        parts, port_or_none = urlsplit(""), None
+    if parts.scheme not in ("http", "https") or not parts.hostname or port_or_none == 0 or re.search(r"\s", url):
+        hint = "write an address such as https://chat.museum.example/hooks/lumen, or $NAME of a variable that holds it"
+        report(ALERT_ADDRESS, where, f"`{url}` is no address on the web", hint)
+    elif parts.username is not None:
+        hint = "write `webhook: $LUMEN_ALERT_URL`, and the address into that environment variable"
+        report(PASSWORD_IN_FILE, where, "a name and a password stand in a file that everybody reads", hint)
+    elif parts.scheme == "http" and not _loopback(parts.hostname):
+        report(ALERT_IN_CLEAR, where, f"what is sent to {parts.hostname} is not encrypted", "write https://")
+
+
+def _loopback(host: str) -> bool:
+    try:
+        return host == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False

@@ -1,0 +1,141 @@
+"""A small exhibition that tells a server on loopback, whole or in parts on one bus, as fast as it can."""
+
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import lumen
+from lumen.app.alerts.alert import Origin
+from lumen.app.alerts.desk import AlertDesk
+from lumen.app.exhibition import Exhibition
+from lumen.app.node import Node
+from lumen.app.processes.assembling import ProcessOptions, assemble
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.recovery.startup import startup_project
+from lumen.app.setup import Setup
+from lumen.buses.memory import MemoryBus
+from lumen.buses.validated import validated
+from lumen.clocks.real import RealClock
+from lumen.clocks.simulated import SimulatedClock
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.ports import Clock
+from lumen.robots.recording import RecordingRobot
+from tests.alerts.servers import Web
+from tests.nodes import Printed
+
+BASE = Path(__file__).parents[1] / "lint/pages/base"
+TOUR = """id: tour
+initial: idle
+states:
+  idle:
+    on: {fallen: rises}
+  rises:
+    do: [{posture: Stand}]
+    onDone: idle
+    onError: idle
+"""
+DEADLINE = 30.0
+
+
+def files(folder: Path, web: Web) -> Path:
+    """The files of the exhibition; people are told of the same each time."""
+    shutil.copytree(BASE, folder, dirs_exist_ok=True)
+    main = folder / "lumen.yaml"
+    kept = "".join(line for line in main.read_text("utf-8").splitlines(keepends=True))
+    main.write_text(f"alerts: {{interval: 1ms, to: [{{webhook: '{web.url}'}}]}}\n{kept}", "utf-8")
+    for stale in (*folder.glob("behaviors/**/*.yaml"), *folder.glob("fuzzy/*.yaml")):
+        stale.unlink()
+    (folder / "behaviors/tour.yaml").write_text(TOUR, "utf-8")
+    return folder
+
+
+class NearBus(MemoryBus):
+    """A bus in memory whose broker can be said to be away, and that many processes share."""
+
+    away = False
+
+    def close(self) -> None:
+        """It ends with the test."""
+
+
+class Hall:
+    """Exhibitions and parts of them that live while somebody waits."""
+
+    def __init__(self, folder: Path, web: Web) -> None:
+        self.folder, self.web, self.bus = files(folder, web), web, NearBus()
+        self.robot = RecordingRobot(lumen.load(folder).body)
+        self.nodes: list[Node] = []
+        self.closing: list[Callable[[], None]] = []
+
+    def whole(self, *, last_good: bool = False, **behaves: str) -> Exhibition:
+        """`lumen run`, or `lumen run --last-good`."""
+        directory = RunDirectory(self.folder)
+        if last_good:
+            project = startup_project(self.folder, directory, last_good=True)
+        else:
+            project = lumen.load(self.folder)
+            directory.begin(project, read_files(self.folder))
+        self.robot = RecordingRobot(project.body, behaves)
+        setup = Setup(self.robot, SimulatedClock(self.robot.advance), None)
+        exhibition = Exhibition(
+            project, setup, self.bus, run_directory=directory, reload="auto", fresh=False, alerts=self._desk(project)
+        )
+        exhibition.start()
+        self.nodes.append(exhibition.node)
+        self.closing += [exhibition.close, lambda: directory.close(forget=False)]
+        return exhibition
+
+    def part(self, *names: str) -> Node:
+        """`lumen run --only NAMES`."""
+        directory = RunDirectory(self.folder, guest="brain" not in names)
+        project = lumen.load(self.folder)
+        clock: Clock = RealClock()
+        setup: Setup | None = None
+        if "robot" in names:
+            self.robot = RecordingRobot(project.body)
+            setup = Setup(self.robot, SimulatedClock(self.robot.advance, 1.0), None)
+        narrator = Printed(clock.now, lambda: node.project.machine)
+        bus, how = validated(self.bus, project), ProcessOptions("memory://", reload="manual")
+        desk = self._desk(project, *names)
+        clock = setup.clock if setup else clock
+        node = assemble(project, names, bus, clock, narrator, directory, how, setup, None, desk)
+        self.nodes.append(node)
+        self.closing += [node.close, lambda: directory.close(forget=False)]
+        return node
+
+    def _desk(self, project: Project, *parts: str) -> AlertDesk:
+        return AlertDesk(project.alerts, Origin(project.name, project.robot, parts), self.folder, print)
+
+    def happen(self, name: str, **data: Any) -> None:
+        """The robot notices something."""
+        self.robot._notice(Event(name, data, self.robot.time))
+
+    def until(self, condition: Callable[[], object]) -> None:
+        deadline = time.monotonic() + DEADLINE
+        while not condition():
+            for node in self.nodes:
+                node.tick()
+            assert time.monotonic() < deadline, [body["text"] for body in self.web.bodies]
+
+    def told(self, kind: str) -> str:
+        """What was told first of that kind, once it was."""
+        self.until(lambda: self.web.of(kind))
+        text: str = self.web.of(kind)[0]["text"]
+        return text.partition(": ")[2]
+
+    def live(self, ticks: int) -> None:
+        for _ in range(ticks):
+            for node in self.nodes:
+                node.tick()
+
+    def kill(self, node: Node) -> None:
+        """It lives no more, and tells nobody."""
+        self.nodes.remove(node)
+
+    def close(self) -> None:
+        for close in reversed(self.closing):
+            close()
