@@ -9,7 +9,7 @@ import pytest
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import schema_folder
-from lumen.loading.schema import FILE_KINDS, check_schema, load_schema
+from lumen.loading.schema import FILE_KINDS, check_schema, faults, load_schema
 from lumen.loading.yaml_reader import parse
 
 
@@ -107,3 +107,8 @@ def test_the_editors_line_of_every_file_leads_to_its_schema() -> None:
         assert first.startswith("# yaml-language-server: $schema="), file
         schema = (file.parent / first.rpartition("=")[2]).resolve()
         assert json.loads(schema.read_text())["$id"], file
+
+
+def test_a_key_with_an_apostrophe_that_is_missing_is_named() -> None:
+    [found] = faults({"a": 1}, {"type": "object", "required": ["a", "it's"]})
+    assert found.message.endswith("needs the key `it's`")

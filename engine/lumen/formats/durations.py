@@ -2,16 +2,19 @@
 
 import re
 
+MAX_DELAY = 1e15
+"""[ms]"""
 _DELAY = re.compile(r"\+?(\d*\.?\d+)(ms|s|min|m|h)?")
 _FACTORS = {"": 1.0, "ms": 1.0, "s": 1e3, "min": 60e3, "m": 60e3, "h": 3600e3}
 
 
 def milliseconds(text: str) -> float | None:
-    """[ms], None where the text is no delay; a bare number counts them, as several tools write it."""
+    """[ms], None where the text is no delay, or longer than any; a bare number counts them, as several tools do."""
     match = _DELAY.fullmatch(text.strip()) if text.strip() else None
     if match is None:
         return None if text.strip() else 0.0
-    return float(match[1]) * _FACTORS[match[2] or ""]
+    length = float(match[1]) * _FACTORS[match[2] or ""]
+    return length if length <= MAX_DELAY else None
 
 
 def duration(length: float) -> str:

@@ -10,6 +10,9 @@ from typing import Any, NamedTuple, Protocol, Self
 MIN_FINDINGS_FOR_ROOT = 8
 """Findings from which on what they have in common is wrong, and not each of them."""
 
+MAX_TEXT_CHARACTERS = 1_000
+"""Of a message, and of a hint; of a longer one both ends are told."""
+
 MAX_RELATED = 5
 """How many places of one cause are shown beside the first."""
 
@@ -73,6 +76,11 @@ class Diagnostic:
     related: tuple[Related, ...] = ()
     cause: str = field(default="", compare=False, repr=False)
     root: str = field(default="", compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for name, text in (("message", self.message), ("hint", self.hint)):
+            if len(text) > MAX_TEXT_CHARACTERS:  # it quotes a file, and a word there may be as long as the file
+                object.__setattr__(self, name, f"{text[:400]} … {text[-200:]}")
 
     def __str__(self) -> str:
         hint = f" ({self.hint})" if self.hint else ""

@@ -68,7 +68,8 @@ def _spared(path: NodePath) -> NodePath | None:
 
 def _missing(error: Error, path: NodePath, schema: Any) -> Complaint:
     """A key that is not there, told in the words of that schema, which describes it."""
-    missing = next(key for key in error.validator_value if key not in error.instance and f"'{key}'" in error.message)
+    absent = [key for key in error.validator_value if key not in error.instance]
+    missing = next((key for key in absent if error.message.startswith(repr(key))), absent[0])
     hint = describe(_property(schema, missing)) or f"write `{missing}:` here"
     message = f"{node(path)} needs the key `{missing}`"
     return Complaint(MISSING_KEY, (*path, missing), message, hint, path, _spared(path), missing=missing)

@@ -1,9 +1,11 @@
 """The tokens of an ECMAScript expression."""
 
 import re
+from math import isinf
 
 from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH
 from lumen.interpreters.expressions.tokens import Token
+from lumen.loading.yaml_scalars import MAX_DIGITS
 
 _TOKEN = re.compile(
     r"""(?P<blank>(?:\s|//[^\n]*|/\*.*?\*/)+)
@@ -38,10 +40,18 @@ def tokenize_script(source: str) -> list[Token]:
 
 def _value(kind: str, text: str) -> int | float | str | None:
     if kind == "number":
-        if text[:2] in ("0x", "0X"):
-            return int(text, 16)
-        return int(text) if text.isdecimal() else float(text)
+        return _number(text)
     return _ESCAPE.sub(_unescaped, text[1:-1]) if kind == "text" else None
+
+
+def _number(text: str) -> float:
+    if len(text) < MAX_DIGITS and text[:2] in ("0x", "0X"):
+        return int(text, 16)
+    if len(text) < MAX_DIGITS and text.isdecimal():
+        return int(text)
+    if text[:2] in ("0x", "0X") or isinf(value := float(text)):
+        raise ScriptError(f"`{text[:40]}` is too large a number")
+    return value
 
 
 def _unescaped(match: re.Match[str]) -> str:

@@ -3,6 +3,7 @@
 FuzzyLite 6 to 8 (fuzzylite.com): an engine is its head, then input variables, output variables and rule blocks.
 """
 
+import re
 from math import inf, isfinite, nan
 from typing import Any
 
@@ -106,7 +107,7 @@ class _FllReader(FllLineReader):
         if method != "centroid":
             spec["defuzzifier"] = method
         for word in words[1:]:
-            if word.isdigit() and 10 <= int(word) <= 100_000 and method not in WEIGHTED_DEFUZZIFIERS:
+            if _WHOLE.fullmatch(word) and 10 <= int(word) <= 100_000 and method not in WEIGHTED_DEFUZZIFIERS:
                 spec.update({} if int(word) == 1000 else {"resolution": int(word)})
             elif word == "Tsukamoto" and method in WEIGHTED_DEFUZZIFIERS:
                 continue  # our terms imply it
@@ -213,6 +214,7 @@ _KNOWN = {
         "aggregation",
     ),
 }
+_WHOLE = re.compile(r"[0-9]{1,6}")
 _PLAIN_SETTINGS = {"rules": 1, "threshold": 0, "comparison": ">="}
 
 

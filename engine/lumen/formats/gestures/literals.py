@@ -6,6 +6,9 @@ from collections.abc import Callable, Mapping
 from operator import add, mul, sub, truediv
 from typing import Any
 
+MAX_NUMBER = 1e12
+"""No time and no angle of a motion is as large."""
+
 _SIGNS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: add,
     ast.Sub: sub,
@@ -20,8 +23,16 @@ class NotWrittenOutError(ValueError):
     """A value can't be known without running the file; `node` is the part that is computed."""
 
     def __init__(self, node: ast.AST) -> None:
-        super().__init__(ast.unparse(node)[:60])
+        super().__init__(written(node)[:60])
         self.node = node
+
+
+def written(node: ast.AST) -> str:
+    """The node as Python's text; empty for what Python does not write, as `0x` and thousands of digits."""
+    try:
+        return ast.unparse(node)
+    except (ValueError, RecursionError):
+        return ""
 
 
 def value_of(node: ast.expr, names: Mapping[str, Any]) -> Any:
@@ -51,6 +62,6 @@ def value_of(node: ast.expr, names: Mapping[str, Any]) -> Any:
 
 def _number(node: ast.expr, names: Mapping[str, Any]) -> float:
     value = value_of(node, names)
-    if isinstance(value, int | float) and abs(value) < 1e12:
+    if isinstance(value, int | float) and abs(value) < MAX_NUMBER:
         return float(value)
     raise NotWrittenOutError(node)

@@ -8,12 +8,11 @@ import ast
 import re
 from collections.abc import Iterator
 from itertools import zip_longest
-from math import isfinite
 from typing import Any
 
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.gestures.joint_curves import BezierHandle, CurvePoint, JointCurves
-from lumen.formats.gestures.literals import NotWrittenOutError, value_of
+from lumen.formats.gestures.literals import MAX_NUMBER, NotWrittenOutError, value_of, written
 from lumen.language.diagnostics import Place
 
 ALMOTION_CALLS = {
@@ -102,7 +101,7 @@ class _Reading:
             for point in self._points(self.named.get(joint, node), joint, moments, rows):
                 self.curves.setdefault(joint, []).append(point._replace(time=begin + point.time))
                 end = max(end, begin + point.time)
-        self.begin = begin if ".post." in ast.unparse(node) else end
+        self.begin = begin if ".post." in written(node) else end
 
     def _assign(self, name: str, value: ast.expr) -> None:
         try:
@@ -157,4 +156,4 @@ def _handle(handle: Any) -> tuple[int, BezierHandle]:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < MAX_NUMBER

@@ -16,7 +16,7 @@ FIRST_CELL = "#WEBOTS_MOTION"
 
 WEBOTS_VERSION = "V1.0"
 
-_TIME = re.compile(r"(\d+):(\d\d?):(\d{1,3})")
+_TIME = re.compile(r"(\d{1,6}):(\d\d?):(\d{1,3})")
 _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
 
 Cell = tuple[str, Place]

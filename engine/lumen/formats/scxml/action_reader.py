@@ -1,6 +1,5 @@
 """Executable content of SCXML (section 4) as our actions."""
 
-import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -9,6 +8,7 @@ from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.durations import duration, milliseconds
 from lumen.formats.ecmascript import ScriptError, parse_script, read_condition, read_value
 from lumen.formats.ecmascript.constants import constant
+from lumen.formats.foreign_json import foreign_json
 from lumen.formats.scxml.assignments import assignments
 from lumen.formats.scxml.data_model import ScxmlDataModel, written
 from lumen.formats.scxml.log_templates import plain_template, template_of
@@ -188,6 +188,6 @@ class ScxmlActionReader:
 def own(element: XmlElement) -> Any:
     """What only Lumen has, as JSON in an element of its namespace."""
     try:
-        return json.loads(element.text)
+        return foreign_json(element.text)
     except (ValueError, RecursionError):
         raise LeftOutError("this is not the JSON that Lumen writes") from None

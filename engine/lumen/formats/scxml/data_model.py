@@ -1,6 +1,5 @@
 """The data model of an SCXML document as our context."""
 
-import json
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -9,6 +8,7 @@ from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.ecmascript import ScriptError, ScriptNames, parse_script, read_value
 from lumen.formats.ecmascript.constants import constant
 from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND, kind
+from lumen.formats.foreign_json import foreign_json
 from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree
 from lumen.formats.unused_names import unused_name
 from lumen.formats.xml_elements import XmlElement
@@ -128,17 +128,13 @@ def written(text: str) -> Any:
 
 def _constant(text: str) -> Any:
     try:
-        return json.loads(text, parse_constant=_refuse)
+        return foreign_json(text)
     except (ValueError, RecursionError):
         pass
     try:
         return constant(parse_script(text), _NOTHING) if text[0] in "[{" else _NOTHING
     except ScriptError:
         return _NOTHING
-
-
-def _refuse(name: str) -> Any:
-    raise ValueError(name)
 
 
 def _top_data(scxml: XmlElement) -> Iterator[XmlElement]:

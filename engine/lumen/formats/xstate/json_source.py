@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.formats.conversion_findings import broken, check_size
+from lumen.formats.foreign_json import foreign_json
 from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.document import Document
 from lumen.loading.yaml_reader import parse
@@ -29,7 +30,7 @@ def parse_json(file: str, content: bytes) -> JsonSource:
     """The file; raises ForeignFileError for what is no JSON, or too large."""
     check_size(file, content)
     try:
-        data = json.loads(content, parse_constant=_refuse)
+        data = foreign_json(content)
     except UnicodeDecodeError:
         raise broken(Place(file), "not-json", "the file's encoding is unknown", "save it as UTF-8") from None
     except json.JSONDecodeError as error:
@@ -42,10 +43,6 @@ def parse_json(file: str, content: bytes) -> JsonSource:
     if _depth(data) > MAX_JSON_LEVELS:
         raise broken(Place(file), "too-large", f"the file is nested deeper than {MAX_JSON_LEVELS} levels")
     return JsonSource(data, _placed(file, content, data))
-
-
-def _refuse(name: str) -> Any:
-    raise ValueError(f"`{name}` is no number")
 
 
 def _depth(data: Any) -> int:
