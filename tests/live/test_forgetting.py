@@ -19,6 +19,9 @@ from lumen.bus import Bus
 from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.cli.main import main
 from lumen.errors import BusError
+from lumen.runtime.journal import Journal
+from tests.alerts.halls import Hall
+from tests.alerts.servers import Web
 from tests.guarded import PIPE, STDOUT, Guarded
 from tests.waiting import until
 
@@ -179,3 +182,18 @@ def test_who_stands_there_is_forgotten_by_an_exhibition_that_runs(
     assert found(copy, "and I am still here") == []
     assert main(["memory", "forget", "ipek", "--project", str(copy)]) == 1
     assert "nothing of ipek is in" in capsys.readouterr().out
+
+
+def test_a_robot_without_its_brain_forgets_what_it_was_told_to_say(tmp_path: Path) -> None:
+    web = Web()
+    hall = Hall(tmp_path, web)
+    robot = hall.part("robot")
+    hall.until(lambda: robot.presence and robot.presence.settled)
+    (tmp_path / ".lumen").mkdir(exist_ok=True)
+    journal = Journal(tmp_path / ".lumen")
+    journal.write({"command": "says “Hello Ünal”"})
+    journal.write({"command": "says “Hello Ünalan”"})
+    hall.bus.publish("lumen.TINY.persistence.forgotten", {"name": "ünal"})
+    hall.until(lambda: [entry["command"] for entry in journal.entries()] == ["says “Hello Ünalan”"])
+    hall.close()
+    web.close()

@@ -39,9 +39,11 @@ COPIES = "films, sounds and transcripts of runs, copies and backups of these fil
 def out_of_reach(routes: Iterable[Route], broker: bool) -> Iterator[ForgottenPlace]:
     """Places that can't be looked at from here; a `broker` keeps messages of these routes for some time."""
     if broker:
-        for route in routes:
-            if route.carried is Carried.JOURNAL and route.direction is Direction.OUT:
+        for route in (route for route in routes if route.carried is Carried.JOURNAL):
+            if route.direction is Direction.OUT:
                 yield ForgottenPlace(f"the broker's stream of `{route.name}`", "what was sent, for up to 30 days")
+            else:
+                yield ForgottenPlace(f"the broker's queue of `{route.name}`", "what nobody has taken yet")
         yield ForgottenPlace(f"the broker's {SIDE_QUEUES}", "what nobody could use, for up to 7 days and an hour")
     yield ForgottenPlace("other machines", FILES_ELSEWHERE)
     yield ForgottenPlace("other files", COPIES)

@@ -13,13 +13,16 @@ from lumen.buses.validated import ValidatedBus
 from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command
 from lumen.language.events import Event
+from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.runtime.loop import Observer
-from lumen.runtime.presence import BRAIN, ROBOT_PART, Presence
+from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
 from lumen.runtime.resuming import FreshStart, Resumption
 
 BROKER_PATIENCE = 5.0
 """How long a broker may be away before that is told [s]: it comes back from a restart within that."""
+PARTS = (ROBOT_PART, BRAIN, MOTION, *MODULES)
+"""What can be lost."""
 AFTER_CRASH = "ended without notice"
 """What is said of a run that did not end as it should."""
 BRAIN_PATIENCE = 5.0
@@ -105,17 +108,8 @@ class AlertPart(Part, Observer):
         self._desk.close()
 
     def _notice(self, event: Event) -> None:
-        part, _, what = event.name.partition(".")
-        data = event.data if isinstance(event.data, dict) else {}
-        match part, what:
-            case _, "lost":
-                self._desk("lost", f"the {part} is gone", part)
-            case _, "back":
-                self._desk("lost", f"the {part} is back after {data.get('seconds', 0.0):.0f} s", event.name)
-            case "battery", "low":
-                self._desk("battery", f"its battery is at {data.get('percentage', 0)} %")
-            case "motors", "hot":
-                self._desk("hot", f"its motor {data.get('joint', '')} is at {data.get('temperature', 0.0):.0f} degrees")
+        if found := told_of(event):
+            self._desk(*found)
 
     def _look_for_broker(self) -> None:
         """Robot and brain tell of the broker; the others need not all say the same."""
@@ -156,6 +150,29 @@ class AlertPart(Part, Observer):
         if trouble and not self._troubles.get(about):
             self._desk("disk", trouble, about)
         self._troubles[about] = trouble
+
+
+def told_of(event: Event) -> tuple[str, str, str] | None:
+    """The kind, text and subject of what is told of an event, None where that is nothing.
+
+    An event may come from anywhere on the bus: of its data no texts are told, and only what numbers should be there.
+    """
+    part, _, what = event.name.partition(".")
+    match part, what:
+        case _, "lost" if part in PARTS:
+            return "lost", f"the {part} is gone", part
+        case _, "back" if part in PARTS:
+            return "lost", f"the {part} is back after {_number(event, 'seconds')} s", event.name
+        case "battery", "low":
+            return "battery", f"its battery is at {_number(event, 'percentage')} %", ""
+        case "motors", "hot":
+            return "hot", f"a motor is at {_number(event, 'temperature')} degrees", ""
+    return None
+
+
+def _number(event: Event, key: str) -> str:
+    value = event.data.get(key) if isinstance(event.data, dict) else None
+    return f"{value:.0f}" if isinstance(value, int | float) and abs(value) < 1e6 else "?"
 
 
 def _by_person(stop: Event) -> bool:
