@@ -1,6 +1,7 @@
 """The published schemas complete and explain in an editor: every property says what it is and shows a value."""
 
 import json
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -106,3 +107,10 @@ def test_settings_that_can_not_be_read_stay(text: str, tmp_path: Path, capsys: p
     assert file.read_text() == text
     assert "can't add to" in capsys.readouterr().err
     assert main(["schema", "--vscode", "motion"]) == 2
+
+
+def test_settings_that_are_a_pipe_are_not_waited_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / ".vscode").mkdir()
+    os.mkfifo(tmp_path / ".vscode" / "settings.json")
+    assert main(["schema", "--vscode", "-o", str(tmp_path / ".vscode" / "settings.json")]) == 2
+    assert "it is a device or a pipe" in capsys.readouterr().err

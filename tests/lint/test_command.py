@@ -157,6 +157,14 @@ def test_what_is_typed_stands_in_place_of_the_file(
     assert "unknown-state" in capsys.readouterr().out
 
 
+def test_what_is_typed_without_end_is_a_line(
+    project: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"#" * 5_000_000)))
+    assert main(["lint", "-", "--stdin-filename", str(project / "behaviors/tour.yaml")]) == 2
+    assert capsys.readouterr().err == "lumen lint: standard input holds more than 4 MB: no file of a project does\n"
+
+
 @pytest.mark.parametrize(
     ("arguments", "part"),
     [

@@ -1,5 +1,6 @@
 """A quick yes is never wrong, and the shipped files get one: jsonschema is not even imported for them."""
 
+import json
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -12,6 +13,7 @@ from jsonschema import Draft202012Validator
 from lumen.interpreters.json_schema import MAX_DATA_DEPTH, JsonSchema
 from lumen.loading.document import Document
 from lumen.loading.files import read_files
+from lumen.loading.messages import build_message
 from lumen.loading.schema import FILE_KINDS, load_schema
 from lumen.loading.yaml_reader import parse
 from lumen.lsp.grammar import kind_of
@@ -150,3 +152,9 @@ def test_data_in_which_jsonschema_rs_would_end_the_process_is_not_given_to_it(sc
 
 def test_a_schema_that_nests_too_deep_fits_nothing() -> None:
     assert not JsonSchema({"const": _nested(50_000)}).fits(1)
+
+
+@pytest.mark.parametrize("reference", ["#/anyOf/" + "9" * 5_000, "#/anyOf/\u0663", "#/anyOf/-1", "#/anyOf/0"])
+def test_a_reference_to_a_place_in_a_list(reference: str) -> None:
+    content = json.dumps({"items": {"$ref": reference}, "anyOf": [True]}).encode()
+    assert ([d.code for d in build_message("x.schema.json", content)[1]] == []) == reference.endswith("/0")

@@ -37,7 +37,15 @@ def test_what_is_known_is_kept_and_damage_is_as_good_as_nothing(tmp_path: Path) 
         assert OutcomeCache(project, {}).recall(case) == {}
 
 
-@pytest.mark.parametrize("options", [["--robots", "3"], ["--physics", "--robots", "-1"], ["--physics", "--watch"]])
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--robots", "3"],
+        ["--physics", "--robots", "-1"],
+        ["--physics", "--robots", "9" * 5_000],
+        ["--physics", "--watch"],
+    ],
+)
 def test_options_that_make_no_sense_are_refused(options: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lint", str(ROOT), *options]) == 2
     assert len(capsys.readouterr().err.strip().splitlines()) == 1

@@ -8,7 +8,9 @@ from typing import Any
 
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
+from lumen.loading.files import MAX_FILE_BYTES
 from lumen.loading.packaged import MAIN_FILE, find_project, schema_folder
+from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import FILE_KINDS, load_schema
 
 FILES: Mapping[str, tuple[str, ...]] = {
@@ -83,10 +85,10 @@ def merged(there: dict[str, Any], ours: Mapping[str, Any]) -> dict[str, Any]:
 def _settings(file: Path) -> dict[str, Any]:
     """The settings in a file, none where there is none. Raises UsageError where they can't be read."""
     try:
-        found = json.loads(file.read_text(encoding="utf-8"))
+        found = json.loads(read_regular(file, MAX_FILE_BYTES))
     except FileNotFoundError:
         return {}
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         reason = getattr(error, "strerror", None) or f"it is not plain JSON ({error})"
         raise UsageError(f"can't add to {file}: {reason}; leave out -o and copy what is printed") from None
     if not isinstance(found, dict):

@@ -23,6 +23,9 @@ FOREIGN_REFERENCE = Code("foreign-reference", "routes", ERROR, "a message schema
 
 SCHEMA_SUFFIX = ".schema.json"
 
+MAX_INDEX_DIGITS = 10
+"""Digits of a place in a list, in a reference."""
+
 _IN_PLACE = ("allOf", "anyOf", "oneOf", "not", "if", "then", "else", "$ref")
 """Keywords whose schemas look at the same value as the one they stand in."""
 
@@ -133,7 +136,7 @@ def _target(data: Any, reference: str) -> Any:
         key = step.replace("~1", "/").replace("~0", "~")
         if isinstance(data, dict) and key in data:
             data = data[key]
-        elif isinstance(data, list) and key.isdecimal() and int(key) < len(data):
+        elif isinstance(data, list) and key.isdecimal() and len(key) < MAX_INDEX_DIGITS and int(key) < len(data):
             data = data[int(key)]
         else:
             return None

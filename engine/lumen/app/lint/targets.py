@@ -9,7 +9,7 @@ from typing import Protocol
 from lumen.app.lint.findings import Findings
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.files import counts, read_files
+from lumen.loading.files import MAX_FILE_BYTES, counts, read_files
 from lumen.loading.packaged import MAIN_FILE, find_project
 from lumen.rules import check_files
 
@@ -110,4 +110,7 @@ def _typed(paths: Sequence[str], name: str | None) -> LintTarget:
     file = Path(name).absolute().relative_to(root).as_posix()
     if not counts(file):
         raise UsageError(f"{name} is no file that lint reads: docs/yaml.md lists the files of a project")
-    return LintTarget(root, frozenset((file,)), ((file, sys.stdin.buffer.read()),))
+    content = sys.stdin.buffer.read(MAX_FILE_BYTES + 1)
+    if len(content) > MAX_FILE_BYTES:
+        raise UsageError(f"standard input holds more than {MAX_FILE_BYTES // 1_000_000} MB: no file of a project does")
+    return LintTarget(root, frozenset((file,)), ((file, content),))
