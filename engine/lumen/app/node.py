@@ -1,5 +1,6 @@
 """One process of an exhibition: its parts in one loop, among the processes that have the others, if there are any."""
 
+import sys
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -19,6 +20,7 @@ from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.trace_publisher import TRACE_KEY
+from lumen.runtime.watcher import SWITCH_INTERVAL
 from lumen.upkeep.threads import ThreadWatch, WatchedThread
 
 ROUNDING = 1e-6
@@ -103,11 +105,15 @@ class Node:
     def run(self, period: float | None = None) -> float:
         """Tick until it is over, or has lived for the period [s]; how long it lived [s]."""
         began = self.now
-        scheduler = GcScheduler()
+        scheduler, usual = GcScheduler(), sys.getswitchinterval()
         self.closing.append(scheduler.close)
-        while not self.over and (period is None or self.now - began < period - ROUNDING):
-            self.tick()
-            scheduler()
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        try:
+            while not self.over and (period is None or self.now - began < period - ROUNDING):
+                self.tick()
+                scheduler()
+        finally:
+            sys.setswitchinterval(usual)
         return self.now - began
 
     def tick(self) -> float:
@@ -150,7 +156,12 @@ class Node:
 
     def summary(self) -> list[str]:
         """What is said of its parts at the end, a line each."""
-        return [*(line for part in self._begun for line in part.summary()), *self.pace.summary()]
+        return [*(line for part in self._begun for line in part.summary()), *self.losses()]
+
+    def losses(self) -> list[str]:
+        """What is said at the end of time that was not kept, and of messages that were dropped."""
+        dropped = ", ".join(f"{count:,} on {key}" for key, count in sorted(self.bus.dropped.items()))
+        return [*self.pace.summary(), *([f"dropped messages: {dropped}"] if dropped else [])]
 
     def _claim(self, presence: Presence) -> None:
         refuse_rivals(presence)

@@ -9,6 +9,7 @@ import logging
 import threading
 import time
 import uuid
+from collections import Counter
 from collections.abc import Callable, Mapping
 from itertools import count
 from typing import Any
@@ -56,6 +57,15 @@ class AmqpBus:
     def away(self) -> bool:
         """Whether the broker can't be reached now."""
         return self._outage.going_on
+
+    @property
+    def dropped(self) -> Mapping[str, int]:
+        """How many messages were dropped under each key."""
+        found = Counter[str]()
+        for transport in self._transports():
+            for drops in transport.drops:
+                found.update(drops.counts)
+        return found
 
     def carry(self, routes: Mapping[str, Route]) -> None:
         self._routes = dict(routes)

@@ -12,6 +12,7 @@ from lumen.buses.bodies import MAX_BODY_BYTES, MAX_KEY_BYTES
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.declarer import QueueDeclarer
+from lumen.buses.intake import Intake
 from lumen.buses.properties import MessageProperties
 from lumen.buses.queues import UNROUTED, queue_of
 from lumen.buses.subscriptions import Delivery, Subscription, Subscriptions
@@ -28,6 +29,8 @@ TURN_TIME = 1.0
 """How long the connection is left to itself at a time [s]."""
 STALL_TIME = 0.5
 """By how much a turn may take longer [s] before this process counts as having stood still."""
+FLOOD_PAUSE = 0.02
+"""How long nothing is read after more came than is taken [s]: a tick, at which all that was read is used."""
 UNBOUND_READ_TIME = 2.0
 """How long a queue that nothing comes to any more is read on [s]: what was in it has come by then."""
 
@@ -35,17 +38,22 @@ _log = logging.getLogger(__name__)
 
 
 class Consumer(BrokerConnection):
-    """Hands every delivery to `receive`, which must not block.
+    """Hands every delivery that is not too many to `receive`, what must arrive and is to `refused`; neither may block.
 
     The broker sends `PREFETCH` messages ahead of each subscription and keeps a bounded number more: that bounds the
     memory on both sides. `handled` acknowledges.
     """
 
     def __init__(
-        self, address: BrokerAddress, name: str, outage: OutageLog, receive: Callable[[Delivery], None]
+        self,
+        address: BrokerAddress,
+        name: str,
+        outage: OutageLog,
+        receive: Callable[[Delivery], None],
+        refused: Callable[[Delivery, str], None],
     ) -> None:
         super().__init__(address, name, outage)
-        self._receive = receive
+        self.intake = Intake(receive, refused, lambda seconds, work: self.connection.call_later(seconds, work))
         self._subscriptions = Subscriptions()
         self._declarer = QueueDeclarer()
         self._hurried = False
@@ -57,6 +65,7 @@ class Consumer(BrokerConnection):
     def begin(self) -> None:
         self._epoch += 1
         self._acknowledged = 0
+        self.intake.forget()
         self.channel.add_on_cancel_callback(self._cancelled)
         self.channel.basic_qos(prefetch_count=PREFETCH)
         for subscription in self._subscriptions.all():
@@ -68,6 +77,10 @@ class Consumer(BrokerConnection):
         self._turned = now
         self.process(TURN_TIME)
         self.unreadable.tell()
+        self.intake.drops.tell()
+        if self.intake.flooded:  # what comes meanwhile is read at once: each reading costs as much as many messages
+            self.intake.flooded = False
+            self.ending.wait(FLOOD_PAUSE)
         return not self.ending.is_set()
 
     def subscriptions(self) -> list[Subscription]:
@@ -215,7 +228,7 @@ class Consumer(BrokerConnection):
             key, properties = self._readable(method.routing_key, properties)
             number, again = method.delivery_tag, method.redelivered
             subscription.received += 1
-            self._receive(Delivery(subscription, key, kept, properties, number, self._epoch, again, self._arrival()))
+            self.intake.take(Delivery(subscription, key, kept, properties, number, self._epoch, again, self._arrival()))
 
         return arrived
 

@@ -9,7 +9,6 @@ from collections.abc import Callable
 
 from lumen.buses.bodies import JSON, decode
 from lumen.buses.queues import UNROUTED
-from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import Refused
 from lumen.ports import Message
@@ -37,7 +36,6 @@ class Dispatcher:
         self._marks: set[str] = set()
         self._marked = threading.Event()
         self._done: dict[tuple[int, str], None] = {}
-        self._limiter = RateLimiter()
         self.guard = MessageGuard(_log, "what hands on messages")
         self._thread = WatchedThread("lumen-bus-handlers", self._run, vital=True)
         self._thread.start()
@@ -70,9 +68,10 @@ class Dispatcher:
                     self._take(delivery.subscription, delivery)
             finally:
                 self._handled(delivery)
-        self.guard.drops.tell(all=True)
 
     def _take(self, subscription: Subscription, delivery: Delivery) -> None:
+        if delivery.spent:
+            return
         if delivery.properties.type == FLUSH_MARK:
             self._mark_arrived(delivery.body.decode(errors="replace"))
         elif subscription.active and self._wanted(subscription, delivery):
@@ -94,9 +93,7 @@ class Dispatcher:
             if late:
                 self._drop(delivery, f"it waited for longer than {route.lifetime:g} s")
             return not late and self._new(subscription, delivery)
-        if late or (route.keep and subscription.received - subscription.handled >= route.keep):
-            return False
-        return self._limiter.allows(delivery.key)
+        return not late and not (route.keep and subscription.taken - subscription.handled >= route.keep)
 
     def _new(self, subscription: Subscription, delivery: Delivery) -> bool:
         """Whether it was not handled before; messages of others have no id, and are known by all that they hold."""

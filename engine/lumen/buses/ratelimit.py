@@ -1,36 +1,29 @@
-"""How many messages of telemetry a second are handed on under one key."""
+"""How many messages a second are taken under one key, known before anything of a body is read."""
 
-import logging
 import time
+from collections.abc import Callable
 
-MAX_RATE = 2_000.0
-"""Messages a second; a camera has 30, and a fault in a loop thousands."""
-MAX_BURST = 5_000.0
-"""Messages that may come at once after a silence."""
 MAX_KEYS = 10_000
 """Keys that are counted at a time; beyond that counting begins anew."""
 
-_log = logging.getLogger(__name__)
-
 
 class RateLimiter:
-    """A token bucket for each key, filled with `MAX_RATE` tokens a second; a message takes one, or is not handed on."""
+    """A token bucket for each key: as many messages may come at once as else in a second."""
 
-    def __init__(self) -> None:
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
         self._buckets: dict[str, list[float]] = {}
 
-    def allows(self, key: str) -> bool:
-        """Whether one more is not too much; the first that is, is logged."""
-        now = time.monotonic()
+    def wait(self, key: str, rate: float) -> float:
+        """0 where one more is not too much, and counts; else how long it is until the next is not [s]."""
+        now, most = self._clock(), max(rate, 1.0)
         if len(self._buckets) > MAX_KEYS:
             self._buckets.clear()
-        bucket = self._buckets.setdefault(key, [MAX_BURST, now])
-        before = bucket[0]
-        bucket[0] = min(MAX_BURST, before + MAX_RATE * (now - bucket[1]))
+        bucket = self._buckets.setdefault(key, [most, now])
+        tokens = min(most, bucket[0] + rate * (now - bucket[1]))
         bucket[1] = now
-        if bucket[0] >= 1.0:
-            bucket[0] -= 1.0
-            return True
-        if before >= 1.0:
-            _log.warning("more than %d messages a second come on `%s`: the rest is dropped", MAX_RATE, key)
-        return False
+        if tokens >= 1.0:
+            bucket[0] = tokens - 1.0
+            return 0.0
+        bucket[0] = tokens
+        return (1.0 - tokens) / rate

@@ -15,7 +15,8 @@ from lumen.ports import MessageHandler
 class Subscription:
     """A pattern, its handler, and its queue on the broker; `bound` is set once the broker has answered.
 
-    Until there is a handler (`prepare`) the queue only gathers. `received` and `handled` count the deliveries.
+    Until there is a handler (`prepare`) the queue only gathers. `received` counts the deliveries; of them `taken` were
+    not too many, and `handled` of those are done with; `dropped` were too many.
     """
 
     pattern: str
@@ -29,7 +30,9 @@ class Subscription:
     refusal: str = ""
     epoch: int = 0
     received: int = 0
+    taken: int = 0
     handled: int = 0
+    dropped: int = 0
     bound: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -40,7 +43,7 @@ class Subscription:
 class Delivery(NamedTuple):
     """A message as it came at `at` [s, monotonic], `again` where the broker may have sent it before.
 
-    `number` and `epoch` say what to acknowledge.
+    One that is `spent` is only to be acknowledged, in its turn. `number` and `epoch` say what to acknowledge.
     """
 
     subscription: Subscription
@@ -51,6 +54,7 @@ class Delivery(NamedTuple):
     epoch: int
     again: bool = False
     at: float = 0.0
+    spent: bool = False
 
 
 class Subscriptions:

@@ -13,6 +13,7 @@ from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.publisher import Publisher
 from lumen.buses.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY
 from lumen.buses.subscriptions import Delivery
+from lumen.upkeep.drops import DropLog
 
 REPLY_LIFETIME = 30.0
 """How long an answer waits for a broker that is away [s]."""
@@ -23,8 +24,15 @@ class Transport:
 
     def __init__(self, address: BrokerAddress, outage: OutageLog, name: str = "") -> None:
         self.publisher = Publisher(address, f"{name}out", outage)
-        self.consumer = Consumer(address, f"{name}in", outage, lambda delivery: self.dispatcher.receive(delivery))
+        self.consumer = Consumer(
+            address, f"{name}in", outage, lambda delivery: self.dispatcher.receive(delivery), self._refused
+        )
         self.dispatcher = Dispatcher(self.consumer.handled, self._refused)
+
+    @property
+    def drops(self) -> tuple[DropLog, ...]:
+        """What was dropped: too many came, or a fault of ours met them."""
+        return self.consumer.intake.drops, self.dispatcher.guard.drops
 
     def open(self) -> None:
         """Raises BusError, saying what to do, where the broker can't be used."""
@@ -61,6 +69,8 @@ class Transport:
         """End all threads; whether they have ended until then [s, monotonic]."""
         parts = (self.publisher, self.consumer, self.dispatcher)
         ended = [part.end(deadline - time.monotonic()) for part in parts]
+        for drops in self.drops:
+            drops.tell(all=True)
         return all(ended)
 
     def _refused(self, delivery: Delivery, reason: str) -> None:

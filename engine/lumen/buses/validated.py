@@ -41,6 +41,12 @@ class ValidatedBus:
         """Whether the broker can't be reached now; a bus without one is always there."""
         return bool(getattr(self._bus, "away", False))
 
+    @property
+    def dropped(self) -> Mapping[str, int]:
+        """How many messages were dropped under each key, where the bus counts them."""
+        counts: Mapping[str, int] = getattr(self._bus, "dropped", {})
+        return counts
+
     def use(self, project: Project) -> None:
         """Check against the routes and schemas of this project from now on."""
         self._checks = body_checks(project)

@@ -64,7 +64,7 @@ class Performance:
         print(f"  {self.transcript.counted()}")
         if self.transcript.distance is not None:
             print(f"  the visitor's face ended {self.transcript.distance:.0f} px from the centre of the camera's image")
-        for line in [*exhibition.node.robot.summary(), *exhibition.node.pace.summary()]:
+        for line in [*exhibition.node.robot.summary(), *exhibition.node.losses()]:
             print(f"  {line}")
         if video:
             print(f"  the film is {video}")

@@ -96,6 +96,8 @@ def _carrying(route: Route) -> Iterator[str]:
         yield f"Images of {route.size} pixels."
     if route.keep is not None:
         yield f"At most {route.keep} wait."
+    if route.most is not None:
+        yield f"At most {route.most:g} a second are taken."
     if route.event:
         yield f"Becomes the event `{route.event}`."
 

@@ -50,6 +50,12 @@ LONGEST_COMMAND_TTL = 10.0
 """How long no command should wait [s]: the people around the robot have moved by then."""
 
 
+MAX_RATE = 2_000.0
+"""How many messages a second are taken of what a route does not limit; a fault in a loop sends thousands [1/s]."""
+USUAL_RATE = 50.0
+"""How many a second are taken where a route that comes in does not say [1/s]: as many as the exhibition has ticks."""
+
+
 class Size(NamedTuple):
     """Of a picture [px]."""
 
@@ -73,9 +79,9 @@ class Route:
 
     `key` may hold `{robot}`. `schema` names a file of `schemas/messages/`. `event` is the event that a message
     becomes for the behaviour. `every` [s] is the period of a sense, `size` that of its images, None for the camera's
-    own; `ttl` [s] the time to live, `keep` how many messages wait at most, `latency` [s] how old a body without a
-    `time` is taken to be. `must_arrive`: who sends it keeps it until the broker has it, who takes it gives it back
-    unless it was handled.
+    own; `ttl` [s] the time to live, `keep` how many messages wait at most, `most` how many are taken a second,
+    `latency` [s] how old a body without a `time` is taken to be. `must_arrive`: who sends it keeps it until the
+    broker has it, who takes it gives it back unless it was handled.
     """
 
     name: str
@@ -90,6 +96,7 @@ class Route:
     carried: Carried = Carried.TELEMETRY
     must_arrive: bool = False
     latency: float = 0.15
+    most: float | None = None
     where: NodePath = field(default=(), compare=False)
 
     def key_for(self, robot: str) -> str:
@@ -100,3 +107,10 @@ class Route:
     def lifetime(self) -> float | None:
         """How long a message may wait [s], None for as long as it takes."""
         return DEFAULT_COMMAND_TTL if self.ttl is None and self.carried in (Carried.COMMAND, Carried.STOP) else self.ttl
+
+    @property
+    def rate(self) -> float:
+        """How many messages a second are taken [1/s]; 0 for all of them, as of a journal, of which nothing is lost."""
+        if self.carried is Carried.JOURNAL:
+            return 0.0
+        return self.most or (USUAL_RATE if self.direction is Direction.IN else MAX_RATE)

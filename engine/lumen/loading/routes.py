@@ -12,6 +12,8 @@ DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
 DEFAULT_LATENCY = 0.15
 """How old a body without a `time` is taken to be [s], where its route does not say."""
 
+PERIODS: Mapping[str, float] = {"s": 1.0, "min": 60.0}
+"""In what `most` of a route counts [s]."""
 _USUAL = {COMMAND: Carried.COMMAND, STOP: Carried.STOP}
 """How the routes are carried whose names say it."""
 
@@ -37,6 +39,7 @@ def build_route(name: str, data: Mapping[str, Any], report: DocumentReport, wher
         keep=int(data["keep"]) if "keep" in data else None,
         carried=carried,
         must_arrive=data.get("must_arrive", carried is not Carried.TELEMETRY),
+        most=_rate(data),
         latency=DEFAULT_LATENCY if latency is None else latency,
         where=where,
     )
@@ -44,6 +47,12 @@ def build_route(name: str, data: Mapping[str, Any], report: DocumentReport, wher
 
 def _size(data: Mapping[str, Any]) -> Size | None:
     return Size(*map(int, data["size"].split("x"))) if "size" in data else None
+
+
+def _rate(data: Mapping[str, Any]) -> float | None:
+    """`50/s` or `30/min` [1/s]; the schema knows what that looks like."""
+    number, _, unit = data.get("most", "").partition("/")
+    return float(number) / PERIODS[unit] if number else None
 
 
 def duration(

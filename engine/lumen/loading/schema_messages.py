@@ -121,6 +121,8 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
     if "string" in wanted and isinstance(value, bool | int | float):
         if any(seconds(example) is not None for example in schema.get("examples", ())):
             return "write the unit too, as in `500ms`, `20s` or `2min`"
+        if any(str(example).endswith("/s") for example in schema.get("examples", ())) and not isinstance(value, bool):
+            return f"write the unit too: `{value:g}/s` or `{value:g}/min`"
         written = str(value).lower() if isinstance(value, bool) else f"{value}"
         return f'put it in quotes: "{written}"'
     if "string" in wanted and isinstance(value, dict) and [type(v) for v in value.values()] == [str]:

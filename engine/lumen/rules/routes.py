@@ -90,7 +90,7 @@ def _carried(report: DocumentReport, route: Route) -> None:
         message = f"a {route.carried} may be done {route.ttl:g} s late, when nobody counts on it any more"
         report(LONG_TTL, (*where, "ttl"), message, f"2s to {LONGEST_COMMAND_TTL:g}s outlast a broker's hiccup")
     if route.carried is Carried.JOURNAL:
-        for key, value in (("ttl", route.ttl), ("keep", route.keep)):
+        for key, value in (("ttl", route.ttl), ("keep", route.keep), ("most", route.most)):
             if value is not None:
                 message = f"nothing of a journal is lost, and `{key}` throws messages away"
                 report(LOSSY_JOURNAL, (*where, key), message, f"delete `{key}`, or `carried: journal`", key=True)

@@ -18,7 +18,7 @@ MAX_READ_PERIOD = 1.0
 HINT_DEBOUNCE = 20
 """How long the operating system's notices are gathered [ms]."""
 SWITCH_INTERVAL = 0.001
-"""How long other threads may keep the running exhibition from its work while files are judged [s]."""
+"""How long one thread may keep the others of an exhibition from their work [s]: a stop passes four on its way."""
 
 NESTED_FOLDERS = ("behaviors/stories", "schemas/messages")
 

@@ -48,6 +48,7 @@ _ROUTE: Mapping[str, Callable[[Any], str]] = {
     "carried": _shown,
     "must_arrive": lambda value: "yes" if value else "no",
     "latency": seconds,
+    "most": lambda value: "the usual" if value is None else f"{value:g}/s",
 }
 
 

@@ -1,0 +1,82 @@
+"""What of all that a broker delivers is taken: a flood costs one look at the clock for each message, and no more."""
+
+import logging
+from collections.abc import Callable
+
+from lumen.buses.ratelimit import RateLimiter
+from lumen.buses.subscriptions import Delivery
+from lumen.language.routes import MAX_RATE
+from lumen.upkeep.drops import DropLog
+
+ANSWERED_RATE = 10.0
+"""How many messages a second that must arrive, and are too many, are answered and put aside; the rest is counted."""
+SPENT_BATCH = 32
+"""After how many messages that were dropped the broker is told to send on; no more than half of what it sends ahead."""
+
+_log = logging.getLogger(__name__)
+
+Later = Callable[[float, Callable[[], None]], object]
+"""Calls a function in so many seconds, on the same thread."""
+
+
+class Intake:
+    """Hands on to `receive` as many deliveries a second as their route takes (`Route.rate`); all on one thread.
+
+    Of telemetry that is too much the newest waits until there is room (`later`), for it says how things are now; it
+    gives way to a newer one. What must arrive is dropped, and some of it handed to `refused`, with the reason. What is
+    dropped is counted in `drops`, under its key.
+    """
+
+    def __init__(
+        self, receive: Callable[[Delivery], None], refused: Callable[[Delivery, str], None], later: Later
+    ) -> None:
+        self.drops = DropLog(_log)
+        self.flooded = False
+        self._receive, self._refused, self._later = receive, refused, later
+        self._limiter, self._answers = RateLimiter(), RateLimiter()
+        self._held: dict[tuple[int, str], Delivery] = {}
+
+    def take(self, delivery: Delivery) -> None:
+        """Hand it on, hold it back, or drop it."""
+        route = delivery.subscription.route
+        rate = MAX_RATE if route is None else route.rate
+        wait = self._limiter.wait(delivery.key, rate) if rate else 0.0
+        place = (id(delivery.subscription), delivery.key)
+        if not wait:
+            if older := self._held.pop(place, None):
+                self._drop(older, rate)
+            self._pass(delivery)
+        elif delivery.subscription.must_arrive:
+            self._drop(delivery, rate)
+        else:
+            self._hold(place, delivery, wait, rate)
+
+    def forget(self) -> None:
+        """The connection is another: what was held back comes again, or is gone with its queue."""
+        self._held.clear()
+
+    def _pass(self, delivery: Delivery) -> None:
+        delivery.subscription.taken += 1
+        self._receive(delivery)
+
+    def _hold(self, place: tuple[int, str], delivery: Delivery, wait: float, rate: float) -> None:
+        older, self._held[place] = self._held.get(place), delivery
+        if older:
+            self._drop(older, rate)
+        else:
+            self._later(wait, lambda: self._release(place))
+
+    def _release(self, place: tuple[int, str]) -> None:
+        if delivery := self._held.pop(place, None):
+            self.take(delivery)
+
+    def _drop(self, delivery: Delivery, rate: float) -> None:
+        self.flooded = True
+        subscription = delivery.subscription
+        why = f"more than {rate:g} a second come"
+        self.drops.add(delivery.key, why)
+        if subscription.must_arrive and not self._answers.wait(delivery.key, ANSWERED_RATE):
+            self._refused(delivery, why)
+        subscription.dropped += 1
+        if subscription.dropped % SPENT_BATCH == 0:
+            self._pass(delivery._replace(spent=True))
