@@ -13,6 +13,7 @@ from lumen.language.events import Event
 from lumen.language.motions import MotionDefinition
 from lumen.modules.sound import Sound, sound_of
 from lumen.ports import Aim, Message, Perform
+from lumen.robots.command_table import speech_duration
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.server import RobotServer
 from tests.exhibits import project
@@ -88,7 +89,7 @@ def test_a_flood_of_commands_is_bounded_and_stopping_is_not_part_of_it() -> None
     stand = Stand()
     caller = Caller(stand)
     for i in range(150):
-        caller.order("dance", str(i))
+        caller.order("leds", str(i), colours={"eyes": "red"})
     stand.server.sample(0.0)
     caller.order("rest", "stop")
     stand.server.sample(0.02)
@@ -102,14 +103,42 @@ def test_everybody_in_a_flood_gets_an_answer(caplog: pytest.LogCaptureFixture) -
     stand = Stand()
     caller = Caller(stand)
     for i in range(1500):
-        caller.order("say", str(i), text="hello")
+        caller.order("leds", str(i), colours={"eyes": "red"})
     assert {text for _, text in caller.told} == {"command failed: 1000 commands are waiting already"}
     stand.server.sample(0.0)
     assert caller.told[-1] == ("999", "command failed: 100 commands are waiting already")
     for i in range(1, 101):
         stand.server.answer(Event(f"done.command.m{i}"))
     assert sorted(int(id) for id, _ in caller.told) == list(range(1500))
-    assert caplog.text.count("500 commands were refused: too many came at once") == 1
+    stand.server.close()
+    key = "avatar.NAO.command"
+    assert [record.getMessage() for record in caplog.records] == [
+        f"commands on `{key}` are dropped: 1000 commands are waiting already",
+        "a command was refused: 100 commands are waiting already",
+        f"1398 more commands on `{key}` were dropped in 0 s: 100 commands are waiting already",
+    ]
+
+
+def test_nothing_waits_for_long_behind_a_flood() -> None:
+    """Of texts and motions as many are taken as are over in 20 s, and the one after them; the rest is answered."""
+    stand = Stand()
+    caller = Caller(stand)
+    for i in range(40):
+        caller.order("say", f"say {i}", text="Nice to see you here, all of you!")
+        caller.order("dance", f"dance {i}")
+    stand.server.sample(0.0)
+    said = [command for _, command in stand.robot.started if isinstance(command, Say)]
+    assert 20.0 < sum(speech_duration(text.text) for text in said) < 25.0
+    assert len([command for _, command in stand.robot.started if isinstance(command, Perform)]) == 21
+    assert ("say 39", "command failed: what waits before it takes 21 s already: send it later, or `stop` that") in (
+        caller.told
+    )
+    stand.server.answer(Event("done.command.m1"))
+    caller.order("say", "long", text="la " * 1_000)
+    caller.order("say", "next", text="Hello")
+    stand.server.sample(0.02)
+    assert caller.told[-1] == ("long", "command failed: a text takes at most 60 s to say, and this one 180 s")
+    assert stand.robot.started[-1][1] == Say("Hello")
     stand.server.close()
 
 

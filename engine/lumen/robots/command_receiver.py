@@ -1,6 +1,7 @@
 """Commands that come over the bus: begun at the next tick, reported on until they are over."""
 
 import logging
+import re
 import threading
 import time
 from collections import deque
@@ -8,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from itertools import count
+from math import inf, isfinite
 from typing import Any, NamedTuple
 
 from lumen.errors import BusError, RobotError, RobotRefusedError
@@ -18,6 +20,7 @@ from lumen.ports import Aim, Bus, Joints, Message, Perform, Robot, RobotCommand,
 from lumen.robots.command_codec import decode_command, method_of, own_id, stops, stops_all
 from lumen.robots.command_parameters import shown
 from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, UNKNOWN_COMMAND, CommandRecord, CommandReports
+from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.person_hold import PersonHold
 from lumen.robots.robot_routes import (
@@ -28,18 +31,27 @@ from lumen.robots.robot_routes import (
     key_of,
     publish_on,
 )
+from lumen.upkeep.drops import TELL_PERIOD, DropLog
 
 MAX_WAITING_COMMANDS = 1_000
 MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
 """How old an aim may be [s]: there is a newer one by then."""
 MAX_RUNNING_COMMANDS = 100
+MAX_BACKLOG = 20.0
+"""How long about a command may have to wait for those before it [s]; what comes then is refused."""
+MAX_SPEECH = 60.0
+"""How long about a text may take to say [s]."""
 ENDED = "the robot takes no more commands"
 SOMEBODY = "somebody on the bus"
 RESTARTED = "the robot was restarted since it began that"
 QUERY_METHODS = ("cancel", "outcome")
 HOLD_METHODS = ("resume", "stopped")
 
+MAX_WARNED_REASONS = 1_000
+"""Reasons of refusals that are told apart."""
+
+_DIGITS = re.compile(r"\d+")
 _log = logging.getLogger(__name__)
 
 
@@ -58,7 +70,8 @@ class CommandReceiver:
     begun at all. As many commands wait for `begin` as their route keeps, as long as its time to live; what stops is
     never one too many, nor too late. A command with an `id` is performed once, however often it comes. `clock` [s]
     measures how long they have waited; `begins` is called for each that begins, `refused` with the method and the
-    reason for each that may not. What moves the robot may not where a person stopped it (`hold`).
+    reason for each that may not, `hurry` when `begin` should be called soon, since something came that stops the robot.
+    What moves the robot may not where a person stopped it (`hold`).
     """
 
     def __init__(
@@ -69,15 +82,17 @@ class CommandReceiver:
         clock: Callable[[], float] = time.monotonic,
         begins: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
         refused: Callable[[str, str], None] = lambda _method, _reason: None,
+        hurry: Callable[[], None] = lambda: None,
     ) -> None:
         self._project, self._robot, self._bus, self._clock = project, robot, bus, clock
-        self._begins, self._tell_refused = begins, refused
+        self._begins, self._tell_refused, self._hurry = begins, refused, hurry
         self.hold = PersonHold()
         self.is_brains: Callable[[str], bool] = lambda _id: False
         self._came: deque[_Arrival] = deque()
         self._aims: deque[_Arrival] = deque(maxlen=MAX_WAITING_AIMS)
         self._coming = threading.Lock()
-        self._refused, self._closed = 0, False
+        self._closed = False
+        self.drops, self._warned = DropLog(_log, "commands"), dict[str, float]()
         self._reports = CommandReports(self._tell, self._reply)
         self._numbers = count(1)
         self._language = ""
@@ -113,9 +128,7 @@ class CommandReceiver:
             self._take(arrival)
         for id in self._robot.begun():
             self._reports.begun(id)
-        if self._refused:
-            _log.warning("%d commands were refused: too many came at once", self._refused)
-            self._refused = 0
+        self.drops.tell()
 
     def answer(self, event: Event) -> bool:
         """Report where this is the end of a command of ours; whether it is."""
@@ -156,6 +169,7 @@ class CommandReceiver:
         for arrival in self._taken(self._came):
             self._refuse(arrival.message, ENDED)
         self._reports.end()
+        self.drops.tell(all=True)
 
     def _listen(self, route: str) -> tuple[str, Callable[[], None]]:
         key = key_of(self._project, route)
@@ -169,8 +183,10 @@ class CommandReceiver:
             if not refusal:
                 self._came.append(_Arrival(message, self._clock()))
         if refusal:
-            self._refused += 1
+            self.drops.add(message.key, refusal)
             self._refuse(message, refusal)
+        elif stops(message.body):
+            self._hurry()
 
     def _receive_aim(self, message: Message) -> None:
         self._aims.append(_Arrival(message, self._clock()))
@@ -214,9 +230,18 @@ class CommandReceiver:
             else:
                 self._perform(record, decode_command(message.body, self._project, self._angles))
         except RobotError as error:
-            _log.warning("a command was refused: %s", error)
-            self._tell_refused(record.method, str(error))
+            self._warn(message.key, record.method, str(error))
             self._reports.change(record, FAILED, str(error))
+
+    def _warn(self, key: str, method: str, reason: str) -> None:
+        """A line for each reason, whatever the numbers in it, every ten seconds; the rest is counted."""
+        kind, now = _DIGITS.sub("#", reason), self._clock()
+        if now - self._warned.get(kind, -inf) < TELL_PERIOD or len(self._warned) >= MAX_WARNED_REASONS:
+            self.drops.add(key, reason)
+            return
+        self._warned[kind] = now
+        _log.warning("a command was refused: %s", reason)
+        self._tell_refused(method, reason)
 
     def _ask_hold(self, message: Message, method: str) -> None:
         """`resume` lets the robot move again, in the name of who is `by` it; `stopped` asks who stopped it."""
@@ -277,10 +302,21 @@ class CommandReceiver:
             return
         if record.asker.body.get("replace") is True:
             self._clear(command)
+        elif not isinstance(command, Rest | Stop):
+            self._check_backlog(record, command)
         record.at = self._number()
         self._reports.accept(record)
         self._robot.start(record.at, command)
         self._begins(command, record.id)
+
+    def _check_backlog(self, record: CommandRecord, command: RobotCommand) -> None:
+        """Raises RobotRefusedError where it would wait for too long: nobody wants it any more by then."""
+        takes = row_of(command).duration(command)
+        record.parts, record.takes = parts_of(command, self._project.body), takes if isfinite(takes) else 0.0
+        if isinstance(command, Say) and takes > MAX_SPEECH:
+            raise RobotRefusedError(f"a text takes at most {MAX_SPEECH:g} s to say, and this one {takes:.0f} s")
+        if (ahead := self._reports.ahead(record.parts)) > MAX_BACKLOG:
+            raise RobotRefusedError(f"what waits before it takes {ahead:.0f} s already: send it later, or `stop` that")
 
     def _clear(self, command: RobotCommand) -> None:
         """End what is of the same kind: this one is to take its place."""

@@ -21,7 +21,7 @@ class CommandRecord:
     """A command from the bus, `asker` the message that brought it.
 
     `id` is the one that its sender gave it, empty where it gave none, as the modules of 2015; `at` is what the robot
-    calls it.
+    calls it. It moves these `parts` of the body for about so long (`takes` [s]).
     """
 
     asker: Message
@@ -30,6 +30,8 @@ class CommandRecord:
     at: str = ""
     state: str = ""
     reason: str = ""
+    parts: frozenset[str] = frozenset()
+    takes: float = 0.0
 
     @property
     def over(self) -> bool:
@@ -66,6 +68,10 @@ class CommandReports:
     def running(self) -> int:
         """How many are under way, or wait for the parts they need."""
         return len(self._running)
+
+    def ahead(self, parts: frozenset[str]) -> float:
+        """How long about what is under way or waits keeps these parts of the body [s]."""
+        return sum(record.takes for record in self._running.values() if not parts.isdisjoint(record.parts))
 
     def find(self, id: str) -> CommandRecord | None:
         """The record with that id of its sender's."""

@@ -40,8 +40,9 @@ class RobotServer:
     have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
     one seed says the same things in the same order; `settle` waits until they have. `date` is what images are dated;
     `clock` [s] measures how long a command has waited: time as modules live through it, whatever the robot's clock
-    says. `started` is called with each command that the robot is given from the bus and its id, `refused` with
-    the method and the reason for each that it is not given. Nobody moves a robot that a person stopped (`hold`).
+    says. `started` is called with each command that the robot is given from the bus and its id, `refused` with the method
+    and the reason for each that it is not given, `hurry` when the next sample can't wait: something came that stops the
+    robot. Nobody moves a robot that a person stopped (`hold`).
     """
 
     def __init__(
@@ -54,6 +55,7 @@ class RobotServer:
         clock: Callable[[], float] = time.monotonic,
         started: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
         refused: Callable[[str, str], None] = lambda _method, _reason: None,
+        hurry: Callable[[], None] = lambda: None,
     ) -> None:
         self._robot, self._bus, self._started = robot, bus, started
         self._frames, self._date = count(), date
@@ -63,7 +65,7 @@ class RobotServer:
         self._broadcasts: dict[Sense, SensePublisher] = {}
         self._leaving: list[PendingReading] = []
         self._listen(project)
-        self._orders = CommandReceiver(project, robot, bus, clock, self._given, refused)
+        self._orders = CommandReceiver(project, robot, bus, clock, self._given, refused, hurry)
         self.hold = self._orders.hold
         self._closed = False
 

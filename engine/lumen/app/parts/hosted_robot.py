@@ -35,7 +35,7 @@ class HostedRobotPart(RobotPart):
     ) -> None:
         foreign = ForeignCommands(narrator)
         foreign.is_brains = self._is_brains
-        self._host = RobotHost(project, setup.robot, bus, setup.hall, self._given, foreign.refused)
+        self._host = RobotHost(project, setup.robot, bus, setup.hall, self._given, foreign.refused, setup.hurry)
         super().__init__(project, bus, setup, foreign, presence, server=self._host.server)
         self._narrator, self._others, self._setup = narrator, presence, setup
         self._root = Path(project.root)

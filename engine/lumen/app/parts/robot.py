@@ -22,7 +22,8 @@ class RobotPart(Part, Observer):
     """A robot that the brain of this node commands directly; modules command it through `server`.
 
     What comes from elsewhere is told by `foreign`. It watches the brain's loop: what the robot says and answers is on
-    the bus, too. A `silent` one publishes only those senses that the behaviour hears of as events.
+    the bus, too. Where nobody shares the bus a tick waits until its readings are published, so that a run is the same
+    each time; else it waits for nobody. A `silent` one publishes only those senses that the behaviour hears of as events.
     """
 
     name = ROBOT_PART
@@ -42,14 +43,20 @@ class RobotPart(Part, Observer):
         self.robot = setup.robot
         self.foreign = foreign
         self.server = server or RobotServer(
-            self._sensed(project), setup.robot, bus, started=foreign.given, refused=foreign.refused
+            self._sensed(project),
+            setup.robot,
+            bus,
+            started=foreign.given,
+            refused=foreign.refused,
+            hurry=setup.hurry,
         )
         self.server.hold.noticed.append(foreign.noticed)
         self.faces = FaceDetector(project, setup.hall, bus) if setup.hall else None
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self.server.sample(now)
-        self.server.settle()
+        if self._presence is None:
+            self.server.settle()
         self._look(now)
 
     def use(self, project: Project) -> None:

@@ -26,7 +26,7 @@ class RobotHost:
     """Lumen Server for a robot, and for the hall around it where it is simulated.
 
     Whoever owns the clock calls `tick`; what the robot answered and noticed since is published, and returned.
-    `started` and `refused` are called as by the server.
+    `started`, `refused` and `hurry` are called as by the server.
     """
 
     def __init__(
@@ -37,8 +37,9 @@ class RobotHost:
         hall: Hall | None = None,
         started: Callable[[RobotCommand, str], None] = lambda _command, _id: None,
         refused: Callable[[str, str], None] = lambda _method, _reason: None,
+        hurry: Callable[[], None] = lambda: None,
     ) -> None:
-        self.server = RobotServer(project, robot, bus, started=started, refused=refused)
+        self.server = RobotServer(project, robot, bus, started=started, refused=refused, hurry=hurry)
         self.server.hold.noticed.append(self.notice)
         self._robot, self._bus, self._hall, self._project = robot, bus, hall, project
         self._visitor_messages: deque[Message] = deque(maxlen=1_000)
