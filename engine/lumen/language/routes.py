@@ -56,6 +56,10 @@ USUAL_RATE = 50.0
 """How many a second are taken where a route that comes in does not say [1/s]: as many as the exhibition has ticks."""
 
 
+STOP_RATE = 200.0
+"""How many stops a second are taken where their route does not say [1/s]: nobody's may be lost among others'."""
+
+
 class Size(NamedTuple):
     """Of a picture [px]."""
 
@@ -113,4 +117,5 @@ class Route:
         """How many messages a second are taken [1/s]; 0 for all of them, as of a journal, of which nothing is lost."""
         if self.carried is Carried.JOURNAL:
             return 0.0
-        return self.most or (USUAL_RATE if self.direction is Direction.IN else MAX_RATE)
+        usual = STOP_RATE if self.carried is Carried.STOP else USUAL_RATE
+        return self.most or (usual if self.direction is Direction.IN else MAX_RATE)
