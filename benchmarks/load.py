@@ -250,6 +250,8 @@ def busy() -> Iterator[Guarded[bytes]]:
 def flooding(url: str, kind: str, rate: int) -> Iterator[Guarded[str]]:
     line = [sys.executable, __file__, "--flood", kind, url, "--rate", str(rate)]
     with Guarded(line, stdin=PIPE, stdout=PIPE, text=True) as process:
+        assert process.stdout
+        process.stdout.readline()
         try:
             yield process
         finally:
@@ -267,6 +269,7 @@ def flood(kind: str, url: str, rate: int) -> None:
     channel, messages = connection.channel(), cycle(messages_of(kind, lumen.load(ROOT)))
     ending = threading.Event()
     threading.Thread(target=lambda: (sys.stdin.readline(), ending.set()), daemon=True).start()
+    print("flowing", flush=True)
     began, sent = time.monotonic(), 0
     while not ending.is_set():
         due = int((time.monotonic() - began) * rate) - sent

@@ -20,7 +20,7 @@ from tests.waiting import Collector, until
 
 WAYS = {
     "lumen.fault.command": Route(
-        "command", "lumen.fault.command", Direction.IN, carried=Carried.COMMAND, must_arrive=True, ttl=600.0
+        "command", "lumen.fault.command", Direction.IN, carried=Carried.COMMAND, must_arrive=True, ttl=600.0, most=1e6
     ),
     "lumen.fault.journal": Route(
         "journal", "lumen.fault.journal", Direction.IN, carried=Carried.JOURNAL, must_arrive=True

@@ -5,7 +5,6 @@ from collections.abc import Callable
 
 from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery
-from lumen.language.routes import MAX_RATE
 from lumen.upkeep.drops import DropLog
 
 ANSWERED_RATE = 10.0
@@ -22,9 +21,9 @@ Later = Callable[[float, Callable[[], None]], object]
 class Intake:
     """Hands on to `receive` as many deliveries a second as their route takes (`Route.rate`); all on one thread.
 
-    Of telemetry that is too much the newest waits until there is room (`later`), for it says how things are now; it
-    gives way to a newer one. What must arrive is dropped, and some of it handed to `refused`, with the reason. What is
-    dropped is counted in `drops`, under its key.
+    Of a key without a route all is taken. Of telemetry that is too much the newest waits until there is room (`later`),
+    for it says how things are now; it gives way to a newer one. What must arrive is dropped, and some of it handed to
+    `refused`, with the reason. What is dropped is counted in `drops`, under its key.
     """
 
     def __init__(
@@ -39,7 +38,7 @@ class Intake:
     def take(self, delivery: Delivery) -> None:
         """Hand it on, hold it back, or drop it."""
         route = delivery.subscription.route
-        rate = MAX_RATE if route is None else route.rate
+        rate = route.rate if route else 0.0
         wait = self._limiter.wait(delivery.key, rate) if rate else 0.0
         place = (id(delivery.subscription), delivery.key)
         if not wait:

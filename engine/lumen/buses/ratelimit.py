@@ -3,12 +3,14 @@
 import time
 from collections.abc import Callable
 
+BURST = 5.0
+"""For how long a silence counts [s]."""
 MAX_KEYS = 10_000
 """Keys that are counted at a time; beyond that counting begins anew."""
 
 
 class RateLimiter:
-    """A token bucket for each key: as many messages may come at once as else in a second."""
+    """A token bucket for each key: after a silence as many may come at once as else in `BURST` seconds."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -16,7 +18,7 @@ class RateLimiter:
 
     def wait(self, key: str, rate: float) -> float:
         """0 where one more is not too much, and counts; else how long it is until the next is not [s]."""
-        now, most = self._clock(), max(rate, 1.0)
+        now, most = self._clock(), max(BURST * rate, 1.0)
         if len(self._buckets) > MAX_KEYS:
             self._buckets.clear()
         bucket = self._buckets.setdefault(key, [most, now])

@@ -32,13 +32,14 @@ from lumen.robots.robot_routes import (
     publish_on,
 )
 from lumen.upkeep.drops import TELL_PERIOD, DropLog
+from lumen.upkeep.threads import MessageGuard
 
 MAX_WAITING_COMMANDS = 1_000
 MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
 """How old an aim may be [s]: there is a newer one by then."""
 MAX_RUNNING_COMMANDS = 100
-MAX_BACKLOG = 20.0
+MAX_BACKLOG = 15.0
 """How long about a command may have to wait for those before it [s]; what comes then is refused."""
 MAX_SPEECH = 60.0
 """How long about a text may take to say [s]."""
@@ -92,6 +93,7 @@ class CommandReceiver:
         self._aims: deque[_Arrival] = deque(maxlen=MAX_WAITING_AIMS)
         self._coming = threading.Lock()
         self._closed = False
+        self.guard = MessageGuard(_log, "the robot's server")
         self.drops, self._warned = DropLog(_log, "commands"), dict[str, float]()
         self._reports = CommandReports(self._tell, self._reply)
         self._numbers = count(1)
@@ -116,19 +118,21 @@ class CommandReceiver:
         What can't be understood, or has waited too long, is answered at once.
         """
         for arrival in self._taken(self._aims):
-            self._aim(arrival)
+            with self.guard(arrival.message.key):
+                self._aim(arrival)
         came = self._taken(self._came)
         last = max((i for i, arrival in enumerate(came) if stops_all(arrival.message.body)), default=-1)
         before, after = came[: last + 1], came[last + 1 :]
         for arrival in [a for a in before if stops(a.message.body)]:
-            self._take(arrival)
+            self._guarded(arrival)
         for arrival in [a for a in before if not stops(a.message.body)]:
-            self._take(arrival, overtaken=True)
+            self._guarded(arrival, overtaken=True)
         for arrival in after:
-            self._take(arrival)
+            self._guarded(arrival)
         for id in self._robot.begun():
             self._reports.begun(id)
         self.drops.tell()
+        self.guard.drops.tell()
 
     def answer(self, event: Event) -> bool:
         """Report where this is the end of a command of ours; whether it is."""
@@ -209,6 +213,11 @@ class CommandReceiver:
         record = CommandRecord(message, own_id(message.body), method_of(message.body), state=FAILED, reason=reason)
         self._reply(message, record.report() if record.id else record.text())
 
+    def _guarded(self, arrival: _Arrival, *, overtaken: bool = False) -> None:
+        """Take it; a fault of ours costs this command."""
+        with self.guard(arrival.message.key):
+            self._take(arrival, overtaken=overtaken)
+
     def _take(self, arrival: _Arrival, *, overtaken: bool = False) -> None:
         """Do what a message asks, or report why not; `overtaken` by a command that stops everything."""
         message = arrival.message
@@ -232,6 +241,9 @@ class CommandReceiver:
         except RobotError as error:
             self._warn(message.key, record.method, str(error))
             self._reports.change(record, FAILED, str(error))
+        except Exception:
+            self._reports.change(record, FAILED, "the robot's server failed on it")
+            raise
 
     def _warn(self, key: str, method: str, reason: str) -> None:
         """A line for each reason, whatever the numbers in it, every ten seconds; the rest is counted."""

@@ -40,9 +40,9 @@ class RobotServer:
     have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
     one seed says the same things in the same order; `settle` waits until they have. `date` is what images are dated;
     `clock` [s] measures how long a command has waited: time as modules live through it, whatever the robot's clock
-    says. `started` is called with each command that the robot is given from the bus and its id, `refused` with the method
-    and the reason for each that it is not given, `hurry` when the next sample can't wait: something came that stops the
-    robot. Nobody moves a robot that a person stopped (`hold`).
+    says. `started` is called with each command that the robot is given from the bus and its id, `refused` with the
+    method and the reason for each that it is not given, `hurry` when the next sample can't wait: something came that
+    stops the robot. Nobody moves a robot that a person stopped (`hold`).
     """
 
     def __init__(

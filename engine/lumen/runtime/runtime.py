@@ -22,8 +22,8 @@ Rescue = Callable[[Exception], Sequence[Command] | None]
 class Runtime:
     """A running behaviour: its bundle, its snapshot, and what happens to them at a tick.
 
-    Where a step fails, `rescue` may go on with another bundle, under which the event happens again. Without one, an
-    event or timer after which the behaviour would never come to rest is dropped, and logged.
+    Where a step fails, `rescue` may go on with another bundle, under which the event happens again. Without one, the
+    event or timer is dropped, and logged: a message that a step can't bear must not end the exhibition.
 
     `observe` is shown every step in the order taken. `epoch` is the local time of day at time 0 [s since midnight].
     """
@@ -84,9 +84,7 @@ class Runtime:
             rescued = self._rescue(error)
             if rescued is not None:
                 return [*rescued, *self._hear(event)]
-            if not isinstance(error, LumenError):
-                raise
-            _log.error("the event `%s` is dropped: %s", event.name, error)
+            _log.error("the event `%s` is dropped: %s", event.name, error, exc_info=_ours(error))
             return []
 
     def _timers(self, until: float) -> list[Command]:
@@ -98,14 +96,12 @@ class Runtime:
             rescued = self._rescue(error)
             if rescued is not None:
                 return [*commands, *rescued, *self._timers(until)]
-            if not isinstance(error, LumenError):
-                raise
             self._drop_timer(error)
         return commands
 
-    def _drop_timer(self, error: LumenError) -> None:
+    def _drop_timer(self, error: Exception) -> None:
         first = min(self.snapshot.timers, key=lambda t: t.due)
-        _log.error("the timer `%s` is dropped: %s", first.event, error)
+        _log.error("the timer `%s` is dropped: %s", first.event, error, exc_info=_ours(error))
         kept = tuple(timer for timer in self.snapshot.timers if timer is not first)
         self._snapshot = self.snapshot._replace(timers=kept)
 
@@ -113,3 +109,8 @@ class Runtime:
         self._snapshot = taken.snapshot
         self._observe(taken)
         return list(taken.commands)
+
+
+def _ours(error: Exception) -> Exception | None:
+    """The fault, where it is one of ours, whose place is worth knowing."""
+    return None if isinstance(error, LumenError) else error

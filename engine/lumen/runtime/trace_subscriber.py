@@ -1,5 +1,6 @@
 """A behaviour that runs in another process, seen from here by what it says on the bus."""
 
+import logging
 from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol, get_args
@@ -9,8 +10,11 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
 from lumen.runtime.trace_publisher import TRACE_KEY, TRACE_ROUTE
+from lumen.upkeep.threads import MessageGuard
 
 MAX_PENDING_TRACES = 10_000
+
+_log = logging.getLogger(__name__)
 
 _COMMANDS: Mapping[str, type] = {kind.__name__.lower(): kind for kind in get_args(BodyCommand)}
 """The commands by the names that `TracePublisher` gives them."""
@@ -36,16 +40,19 @@ class TraceSubscriber:
         self.project, self.bus, self.happen = project, bus, happen
         self.watchers: list[TraceListener] = []
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_TRACES)
+        self._guard = MessageGuard(_log, "who watches the behaviour")
         row = project.routes.get(TRACE_ROUTE)
         self._undo = bus.subscribe(row.key_for(project.robot) if row else TRACE_KEY, self._came.append)
 
     def tick(self, now: float) -> None:
         """Tell of all that has come."""
         while self._came:
-            body = self._came.popleft().body
+            message = self._came.popleft()
+            body = message.body
             if isinstance(body, dict) and body.get("robot") == self.project.robot:
-                for watcher in self.watchers:
-                    _tell(watcher, body, now)
+                with self._guard(message.key):
+                    for watcher in self.watchers:
+                        _tell(watcher, body, now)
 
     def close(self) -> None:
         self._undo()

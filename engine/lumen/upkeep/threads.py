@@ -104,19 +104,23 @@ class WatchedThread:
         return not self._ending.wait(FIRST_PAUSE * 2 ** (recent - 1))
 
 
+def _all() -> list[WatchedThread]:
+    with _changing:
+        return list(_watched)
+
+
 class ThreadWatch:
     """Who looks after all watched threads of this process: `tick` returns those that were given up since the last."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock, self._next = clock, 0.0
-        self._told: WeakSet[WatchedThread] = WeakSet()
+        self._told: WeakSet[WatchedThread] = WeakSet(thread for thread in _all() if thread.lost)
 
     def tick(self) -> list[WatchedThread]:
         if self._clock() < self._next:
             return []
         self._next = self._clock() + WATCH_PERIOD
-        with _changing:
-            watched = list(_watched)
+        watched = _all()
         for thread in watched:
             thread.revive()
         lost = [thread for thread in watched if thread.lost and thread not in self._told]

@@ -1,5 +1,6 @@
 """The motion module's process, Lumen Motion: motions by name, and the head that follows what it sees."""
 
+import logging
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 
@@ -14,8 +15,11 @@ from lumen.robots.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import motion_key
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
 from lumen.runtime.tracking import LocalTracking
+from lumen.upkeep.threads import MessageGuard
 
 WAITING = 1_000
+
+_log = logging.getLogger(__name__)
 
 
 class MotionPart(Part):
@@ -35,6 +39,7 @@ class MotionPart(Part):
         self._tracking = LocalTracking(project, self._robot, bus)
         self._asked: deque[Message] = deque(maxlen=WAITING)
         self._undo: Callable[[], None] = lambda: None
+        self._guard = MessageGuard(_log, "the motion module")
         self._session, self._brain, self._played = "", "", 0
 
     def begin(self, now: float) -> None:
@@ -43,7 +48,9 @@ class MotionPart(Part):
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self._look()
         while self._asked:
-            self._do(self._asked.popleft())
+            message = self._asked.popleft()
+            with self._guard(message.key):
+                self._do(message)
         self._robot.poll()
         if (time := self._robot.time()) is not None:
             self._tracking.tick(time)

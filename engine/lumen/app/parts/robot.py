@@ -23,7 +23,8 @@ class RobotPart(Part, Observer):
 
     What comes from elsewhere is told by `foreign`. It watches the brain's loop: what the robot says and answers is on
     the bus, too. Where nobody shares the bus a tick waits until its readings are published, so that a run is the same
-    each time; else it waits for nobody. A `silent` one publishes only those senses that the behaviour hears of as events.
+    each time; else it waits for nobody. A `silent` one publishes only those senses that the behaviour hears of as
+    events.
     """
 
     name = ROBOT_PART

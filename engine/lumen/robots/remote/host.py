@@ -14,6 +14,7 @@ from lumen.language.stories import Visitor
 from lumen.ports import Bus, Hall, Message, Robot, RobotCommand
 from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, key_of, publish_on
 from lumen.robots.server import RobotServer
+from lumen.upkeep.threads import MessageGuard
 
 FACE_REPORT_PERIOD = 0.1
 """How often at most it is published where the visitor's face is seen [s]."""
@@ -43,6 +44,7 @@ class RobotHost:
         self.server.hold.noticed.append(self.notice)
         self._robot, self._bus, self._hall, self._project = robot, bus, hall, project
         self._visitor_messages: deque[Message] = deque(maxlen=1_000)
+        self._guard = MessageGuard(_log, "the hall")
         self._seen: object = ()
         self._looked = -FACE_REPORT_PERIOD
         self._happened: list[Event] = []
@@ -63,10 +65,12 @@ class RobotHost:
     def tick(self, now: float) -> list[Event]:
         """Do what the visitor does, publish the senses that are due, begin commands, and publish what came of them."""
         while self._visitor_messages and self._hall:
-            try:
-                self._apply(self._hall, self._visitor_messages.popleft().body, now)
-            except LumenError as error:
-                _log.warning("what a visitor does was refused: %s", error)
+            message = self._visitor_messages.popleft()
+            with self._guard(message.key):
+                try:
+                    self._apply(self._hall, message.body, now)
+                except LumenError as error:
+                    _log.warning("what a visitor does was refused: %s", error)
         self.server.sample(now)
         events = [*self._robot.poll(), *self._happened]
         self._happened = []
