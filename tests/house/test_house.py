@@ -1,5 +1,7 @@
 """What stays true of the house, whoever builds on it; `python scripts/shape.py` prints where it is not."""
 
+import re
+
 import pytest
 from scripts.shape import PACKAGE, ROOT, Shape, floor_order, measure, read
 
@@ -20,3 +22,13 @@ def test_no_files_import_each_other_in_a_circle_for_types_and_late_neither(house
 
 def test_no_file_imports_what_stands_above_or_beside_its_floor(house: Shape) -> None:
     assert house.arrows_up == []
+
+
+def test_every_thread_is_watched() -> None:
+    """A thread that a fault ends is begun again, or told of: `lumen.upkeep.threads`; the records' is a desk for one."""
+    made = {
+        str(file.relative_to(ROOT / PACKAGE))
+        for file in (ROOT / PACKAGE).rglob("*.py")
+        if re.search(r"threading\.Thread\(|ThreadPoolExecutor\(", file.read_text("utf-8"))
+    }
+    assert made == {"upkeep/threads.py", "app/reload/records.py"}

@@ -1,6 +1,5 @@
 """A robot that is hosted on the bus, for the brain that comes first."""
 
-import threading
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -22,6 +21,7 @@ from lumen.robots.remote import RobotHost
 from lumen.runtime.home import home_of
 from lumen.runtime.journal import Journal
 from lumen.runtime.presence import BRAIN, Presence
+from lumen.upkeep.threads import WatchedThread
 
 
 class HostedRobotPart(RobotPart):
@@ -56,7 +56,7 @@ class HostedRobotPart(RobotPart):
 
     def forget(self, person: PersonName) -> None:
         """Have what names somebody taken out of the journal, by a thread that no tick waits for."""
-        threading.Thread(target=self._journal.forget, args=(person,), name="lumen-forgetting", daemon=True).start()
+        WatchedThread("lumen-forgetting", lambda: self._journal.forget(person)).start()
 
     def begin(self, now: float) -> None:
         self.server.recall(DeduplicationLog(home_of(self._root) / DEDUPLICATION_FILE))

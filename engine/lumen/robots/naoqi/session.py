@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from lumen.errors import RobotError, RobotFailedError, RobotLostError, RobotUnreachableError, SenseError
+from lumen.upkeep.threads import WatchedThread
 
 NAOQI_PORT = 9559
 CALL_TIMEOUT = 2.0
@@ -210,5 +211,5 @@ class NaoqiSession:
             if session is None or session is not self._session:
                 return
             self._session, self.ready = None, False
-        threading.Thread(target=session.close, daemon=True).start()  # it may wait for what does not answer
+        WatchedThread("lumen-naoqi-closing", session.close).start()  # it may wait for what does not answer
         self._lost(reason)
