@@ -132,8 +132,8 @@ def test_hover_over_a_finding_shows_its_rule() -> None:
 @pytest.mark.parametrize(
     ("file", "text", "name", "edits", "moved"),
     [
-        (TOUR, "target: how_are|_you", "mood", 34, None),
-        (TOUR, "context.name_|tries <", "tries", 7, None),
+        (TOUR, "target: how_are|_you", "mood", 38, None),
+        (TOUR, "context.name_|tries <", "tries", 8, None),
         (TOUR, "heard(event.data.result, 'engl|ish')", "inggris", 6, None),
         (VISITOR, "played: dan|ce", "horse", 3, ("motions/dance.yaml", "motions/horse.yaml")),
         ("lumen.yaml", "  jour|nal: {key", "diary", 1, None),

@@ -1,6 +1,7 @@
 """Cases from YAML: a small machine, what happens to it, and what has to come of that."""
 
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,7 @@ def outcome(steps: list[Step], interpreter: Interpreter) -> dict[str, Any]:
 def shown(command: Command) -> str:
     match command:
         case Start(id, body):
-            values = [getattr(body, name) for name in body.__dataclass_fields__]
+            values = [getattr(body, f.name) for f in fields(body) if f.metadata.get("yaml", True)]
             words = [f"{round(v, 5)}" if isinstance(v, float) else str(v) for v in values]
             if type(body).__name__ == "Say":
                 words.reverse()

@@ -55,7 +55,7 @@ def test_another_trouble_during_the_first_is_not_forgotten_by_the_guide(project:
         Expect(("battery_low", "interrupted"), within=1.0),
         Happen("fallen"),
         Expect(("fallen", "interrupted"), said="I fell", within=1.0),
-        Expect(("watching", "offer"), said="on my feet"),
+        Expect(("watching", "ask_name"), said="on my feet"),
     ]
     assert visit(project, deeds).failure == ""
 

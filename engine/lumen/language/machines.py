@@ -6,7 +6,7 @@ The words are XState v5's with UML's `entry`/`do`/`exit`; what they mean is W3C 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from typing import Any
+from typing import Any, Literal
 
 from lumen.language.actions import ComputedValue, Expression, PlacedAction
 from lumen.language.diagnostics import NodePath
@@ -53,13 +53,18 @@ class Invoke:
     where: NodePath = field(default=(), compare=False)
 
 
+Resume = Literal["again", "after", "never", ""]
+RESUME_WORDS = ("again", "after", "never")
+
+
 @dataclass(frozen=True, slots=True)
 class State:
     """A state; `path` is its identity, dotted from the root, whose own path is empty.
 
     `initial` holds the paths entered by default (of a compound state, or of a history state without history).
     `children` are paths in document order, `transitions` candidates in document order. `output` is the data of
-    `done.state.*` for a final state.
+    `done.state.*` for a final state. `resume` says how its `do` goes on where a history leads back into it, or where
+    the engine was away: the step that it was at `again`, the one `after` it, or `never`; empty for all of it anew.
     """
 
     path: str
@@ -76,6 +81,7 @@ class State:
     invoke: tuple[Invoke, ...] = ()
     output: ComputedValue = None
     on_reload: str = ""
+    resume: Resume = ""
     where: NodePath = field(default=(), compare=False)
 
     @property

@@ -84,6 +84,7 @@ class _Builder:
             invoke=invocations(entry, self.expressions),
             output=self.expressions.value(data.get("output"), (*where, "output")),
             on_reload=self.on_reload(entry),
+            resume=data.get("resume", ""),
             where=where,
         )
 

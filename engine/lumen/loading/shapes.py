@@ -16,7 +16,8 @@ _HISTORY = {*_COMMON, "history", "target"}
 _FINAL = {*_COMMON, "entry", "exit", "output"}
 _MACHINE = {"units", "context", "types", "events", "phrases", "answers", "renamed"}
 _STATE = {
-    *_COMMON, *_MACHINE, "on", "always", "after", "onDone", "onError", "onReload", "entry", "do", "exit", "invoke"
+    *_COMMON, *_MACHINE, "on", "always", "after", "onDone", "onError", "onReload", "resume", "entry", "do",
+    "exit", "invoke",
 }  # fmt: skip
 _ALLOWED = {
     StateKind.HISTORY: _HISTORY,

@@ -23,6 +23,9 @@ def check(draft: ProjectDraft) -> None:
 
 def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
     for state in machine.states.values():
+        if state.resume and not state.do:
+            message = "`resume` has no effect in a state without a `do`: there is nothing to go on with"
+            report(NO_EFFECT, (*state.where, "resume"), message, "delete it, or give the state a `do`", key=True)
         if state.on_reload and not state.children:
             message = "`onReload` has no effect in a state without states: nothing within it can be gone"
             hint = "let the state around it have it"

@@ -18,6 +18,8 @@ from lumen.runtime.tracking import LocalTracking, TrackingService
 
 TICK_PERIOD = 0.02
 BRAIN_LOST_AFTER = 5.0
+CAUSES = ("brain.lost", "robot.lost")
+"""What comes before the failures that it causes."""
 
 
 class Observer:
@@ -78,9 +80,9 @@ class BehaviorLoop:
         for name in resumption.tracking:
             self.tracking.switch(Track(name))
         self._perform(resumption.commands, self._last)
-        self._events += resumption.answers(self._last)
         if resumption.away > BRAIN_LOST_AFTER:
             self.happen(Event("brain.lost", {"seconds": resumption.away}, self._last))
+        self._events += resumption.answers(self._last)
 
     def happen(self, event: Event) -> None:
         """Let something happen at the next tick."""
@@ -144,7 +146,9 @@ class BehaviorLoop:
         happened, self._events = self._events, []
         ended, self.performer.events = self.performer.events, []
         heard = [event for event in answers if _ours(event)]
-        return [*ended, *heard, *(e._replace(at=now) for e in happened), *self.inbox.drain(now)]
+        own = [*ended, *heard, *(event._replace(at=now) for event in happened)]
+        own.sort(key=lambda event: event.name not in CAUSES)
+        return [*own, *self.inbox.drain(now)]
 
     def _perform(self, commands: Sequence[Command], now: float, project: Project | None = None) -> None:
         for command in commands:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from lumen.interpreters.migration import MigrationPlan, Refusal, plan
-from lumen.interpreters.statechart import Snapshot, initial, retimed
+from lumen.interpreters.statechart import Snapshot, initial, paused, retimed
 from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.type_checks import fits, type_checks
 from lumen.interpreters.statechart.values import awaited
@@ -40,8 +40,8 @@ class Resumption(NamedTuple):
     notes: tuple[str, ...] = ()
 
     def answers(self, now: float) -> list[Event]:
-        """An answer for each command that was under way: it failed, for the robot has forgotten it."""
-        return [Event(f"error.command.{id}", {"reason": LOST_COMMAND_REASON}, now) for id in self.lost]
+        """An answer for each command that was under way: the robot has forgotten it."""
+        return [Event(f"lost.command.{id}", {"reason": LOST_COMMAND_REASON}, now) for id in self.lost]
 
 
 def resume(
@@ -52,7 +52,7 @@ def resume(
     Before it ended it had stood `unchanged` [s] where the snapshot says.
     Newer files are a reload that waits for nothing: what was under way has ended anyway.
     """
-    later = retimed(snapshot._replace(at=snapshot.at + unchanged + away), 0.0, "remaining")
+    later = retimed(paused(snapshot, away)._replace(at=snapshot.at + unchanged + away), 0.0, "remaining")
     verdict = MigrationPlan(later) if old is new else plan(old, new, later, now=True)
     if not isinstance(verdict, MigrationPlan):
         return verdict if isinstance(verdict, Refusal) else Refusal(verdict.reason)

@@ -14,6 +14,7 @@ from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree, regular
 from lumen.formats.scxml.transition_reader import ScxmlTransitionReader
 from lumen.formats.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import Diagnostic
+from lumen.language.machines import RESUME_WORDS
 
 _KNOWN = {*STATES, "transition", "onentry", "onexit", "initial", "datamodel", "donedata", "invoke", "script"}
 
@@ -171,9 +172,12 @@ class _ScxmlReader:
         data.update(self.transitions.of(node, afters["events"]))
         if node.source.tag == "final" and (output := self._output(node)) is not None:
             data["output"] = output
-        reload = self._own(node.source, "state", {}).get("onReload")
+        ours = self._own(node.source, "state", {})
+        reload = ours.get("onReload")
         if isinstance(reload, str) and (home := self.outline.by_id.get(reload)):
             data["onReload"] = node.calls(home, self.outline.title)
+        if ours.get("resume") in RESUME_WORDS:
+            data["resume"] = ours["resume"]
         return data
 
     def _invokes(self, node: ForeignState) -> list[dict[str, Any]]:

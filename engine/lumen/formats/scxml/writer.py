@@ -118,9 +118,15 @@ class _ScxmlWriter:
         if state.do:
             self.report.foreign("`do`", (*state.where, "do"))
             yield _json("do", plain_block(state.do))
+        ours: dict[str, str] = {}
         if state.on_reload:
             self.report.foreign("`onReload`", (*state.where, "onReload"))
-            yield _json("state", {"onReload": self.ids[state.on_reload]})
+            ours["onReload"] = self.ids[state.on_reload]
+        if state.resume:
+            self.report.foreign("`resume`", (*state.where, "resume"))
+            ours["resume"] = state.resume
+        if ours:
+            yield _json("state", ours)
         timers = {t.event: t.delay for t in state.transitions if t.delay is not None}
         for event, delay in timers.items():
             name = self._event(state, event)

@@ -12,6 +12,7 @@ from lumen.formats.xstate.json_source import parse_json
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.formats.xstate.transition_reader import XStateTransitionReader
 from lumen.language.diagnostics import Diagnostic, NodePath
+from lumen.language.machines import RESUME_WORDS
 
 _MEANT = {
     "id", "key", "type", "initial", "states", "on", "always", "after", "entry", "exit", "onDone", "invoke", "history",
@@ -169,6 +170,8 @@ class _XStateReader:
         own = _lumen(state)
         if isinstance(own.get("onReload"), str) and (found := self.outline.resolve(state, own["onReload"])):
             data["onReload"] = state.calls(found, self.outline.title)
+        if own.get("resume") in RESUME_WORDS:
+            data["resume"] = own["resume"]
         data.update(self._do(state))
         if "onDone" in state.source and state.kind == "atomic":
             self.parts.lost((*state.where, "onDone"), "`onDone` of a state that has no states")

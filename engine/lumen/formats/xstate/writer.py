@@ -187,6 +187,8 @@ class _XStateWriter:
             yield from self._machine()
         if state.on_reload:
             yield "onReload", self._target(state, state.on_reload)
+        if state.resume:
+            yield "resume", state.resume
         if state.output is not None:
             yield "output", plain_value(state.output)
         if state.invoke:

@@ -76,6 +76,10 @@ class _Comparison:
             yield from block_changes(before, after, title, when, self.file)
         yield from transition_changes(old, new, title, self.file, self.mapped, self.named_now)
         yield from self.invokes(old, new, title)
+        if old.resume != new.resume:
+            yield self.change(
+                "state", title, f"`resume` of {title} {f'is `{new.resume}` now' if new.resume else 'is gone'}"
+            )
         if self.mapped((old.on_reload,) if old.on_reload else ()) != ((new.on_reload,) if new.on_reload else ()):
             target = f"leads to `{self.new.states[new.on_reload].name}`" if new.on_reload else "is gone"
             yield self.change("state", title, f"`onReload` of {title} {target}")

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.interpreters.exploration.expression_uses import of_state
+from lumen.interpreters.exploration.history_uses import history_uses
 from lumen.interpreters.exploration.liveness import Liveness
 from lumen.interpreters.expressions.tree import FunctionCall, Literal, walk
 from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
@@ -23,12 +24,13 @@ class Abstraction:
     Of the context only keys that can still matter count. Of a number only whether it is one of those near the numbers
     that the behaviour mentions, or below or above them all; of a text whether it is empty or one that is mentioned;
     where the behaviour asks for a `size`, of texts, lists and maps also that, as a number.
-    Times, ids, what has been drawn and (unless it is asked for) the language do not count.
+    Of a history only what it can still lead back to. Times, ids, what has been drawn and (unless it is asked for) the
+    language do not count.
     """
 
     def __init__(self, machine: MachineDefinition) -> None:
         self._machine = machine
-        self._liveness = Liveness(machine)
+        self._liveness, self._histories = Liveness(machine), history_uses(machine)
         uses = [use for state in machine.states.values() for use in of_state(state)]
         literals = {node.value for use in uses for node, _ in walk(use.tree) if isinstance(node, Literal)}
         self._texts = {value for value in literals if isinstance(value, str)}
@@ -46,10 +48,17 @@ class Abstraction:
             tuple((k, self.value(snapshot.context.get(k))) for k in sorted(live)),
             tuple(sorted((t.event if t.kind != "wait" else "", t.state, t.kind) for t in snapshot.timers)),
             tuple((path, _shape(position)) for path, position in sorted(snapshot.doing.items())),
-            tuple(sorted(snapshot.history.items())),
+            tuple(self._remembered(snapshot)),
             snapshot.language if self._language else "",
             tuple(self._child(id, child) for id, child in sorted(snapshot.invoked.items())),
         )
+
+    def _remembered(self, snapshot: Snapshot) -> Iterator[tuple[Any, ...]]:
+        """What histories can still lead back to."""
+        for history, paths in sorted(snapshot.history.items()):
+            if self._histories[history] & snapshot.configuration:
+                halted = [(path, _shape(at.position)) for path, at in sorted(snapshot.halted.items()) if path in paths]
+                yield (history, paths, *halted)
 
     def _child(self, id: str, child: Invoked) -> ConfigurationKey:
         behavior = self._machine.invoked_behavior(child.state, id)
@@ -86,6 +95,6 @@ def _shape(position: Position | None) -> Any:
             return (block, place, _shape(inner))
         case Fork(branches):
             return tuple(_shape(branch) for branch in branches)
-        case Awaiting(id):
+        case Awaiting(id, _):
             return "wait" if id.startswith("w") else "command"
     return None

@@ -9,7 +9,7 @@ from lumen.interpreters.statechart.chart import Chart, StateNode
 from lumen.interpreters.statechart.history import History
 from lumen.interpreters.statechart.state_sets import EntrySet, StateSets
 from lumen.interpreters.statechart.type_checks import fits, type_name
-from lumen.interpreters.statechart.values import Timer
+from lumen.interpreters.statechart.values import Halted, Timer
 from lumen.language.machines import StateKind
 
 
@@ -34,6 +34,15 @@ def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identit
         f"`{key}` is forgotten" for key in values if key in gone and values[key] != old.definition.context.get(key)
     ]
     return CarriedContext({**first, **kept}, tuple(notes))
+
+
+def halted(halted: Mapping[str, Halted], old: Chart, new: Chart) -> dict[str, Halted]:
+    """Where a `do` stood that was left, for those whose actions are as they were."""
+    return {
+        path: where
+        for path, where in halted.items()
+        if path in new.nodes and old.definition.states[path].do == new.definition.states[path].do
+    }
 
 
 def timers(timers: tuple[Timer, ...], kept: Mapping[StateNode, StateNode], at: float) -> tuple[Timer, ...]:

@@ -105,6 +105,7 @@ class _Migration:
             language=language,
             timers=carried_state.timers(before.timers, kept, before.at),
             doing={image.path: doing[node.path] for node, image in kept.items() if node.path in doing},
+            halted=carried_state.halted(before.activities.halted, self.old.chart, self.new.chart),
             history=carried_state.history(before.history, self.new.chart, situation.identity),
             counters=before.counters,
             generator=before.generator,

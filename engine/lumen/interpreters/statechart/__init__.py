@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from lumen.interpreters.statechart.deserialization import deserialize
-    from lumen.interpreters.statechart.serialization import TimerPolicy, retimed, serialize
+    from lumen.interpreters.statechart.serialization import TimerPolicy, paused, retimed, serialize
     from lumen.interpreters.statechart.stepping import due, elapse, initial, step
     from lumen.interpreters.statechart.values import (
         Awaiting,
         Counters,
         Fork,
+        Halted,
         Invoked,
         Position,
         Snapshot,
@@ -26,6 +27,7 @@ __all__ = [
     "Awaiting",
     "Counters",
     "Fork",
+    "Halted",
     "Invoked",
     "Position",
     "Snapshot",
@@ -37,16 +39,17 @@ __all__ = [
     "due",
     "elapse",
     "initial",
+    "paused",
     "retimed",
     "serialize",
     "step",
 ]
 
 _MODULES = {
-    "serialization": ("TimerPolicy", "retimed", "serialize"),
+    "serialization": ("TimerPolicy", "paused", "retimed", "serialize"),
     "stepping": ("due", "elapse", "initial", "step"),
     "deserialization": ("deserialize",),
-    "values": ("Awaiting", "Counters", "Fork", "Invoked", "Position", "Snapshot", "Step", "Timer", "Within"),
+    "values": ("Awaiting", "Counters", "Fork", "Halted", "Invoked", "Position", "Snapshot", "Step", "Timer", "Within"),
 }
 
 

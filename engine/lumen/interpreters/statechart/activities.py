@@ -1,6 +1,6 @@
 """The `do` of active states while it runs: begun after entry, resumed by answers, ended on exit (UML's do activity)."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Literal, Protocol
 
 from lumen.interpreters.expressions import ExpressionError
@@ -14,7 +14,8 @@ from lumen.interpreters.statechart.do_actions import (
     ParallelActions,
     TimedWait,
 )
-from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Timer, Within, awaited
+from lumen.interpreters.statechart.spoken import rest_of
+from lumen.interpreters.statechart.values import Awaiting, Fork, Halted, Position, Timer, Within, awaited
 from lumen.language.commands import Cancel
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
@@ -37,21 +38,39 @@ class ActivityError(Exception):
         self.reason, self.where = reason, where
 
 
+def resumption_of(node: StateNode) -> str:
+    """How the `do` of a state is resumed: `again`, `after`, `never`; empty where it begins anew."""
+    return node.state.resume if node.state else ""
+
+
 class Activities:
-    """How far each `do` has come, by the path of its state."""
+    """How far each `do` has come, by the path of its state; `halted` are those that were left before their end."""
 
-    __slots__ = ("positions",)
+    __slots__ = ("halted", "positions")
 
-    def __init__(self, positions: Mapping[str, Within]) -> None:
-        self.positions = positions
+    def __init__(self, positions: Mapping[str, Within], halted: Mapping[str, Halted]) -> None:
+        self.positions, self.halted = positions, halted
 
-    def begin(self, context: ActivityContext, node: StateNode) -> None:
-        """Begin what a state does while it is active."""
-        self._advance(context, node, None)
+    def begin(self, context: ActivityContext, node: StateNode, halted: Halted | None = None) -> None:
+        """Begin what a state does while it is active; where it was halted, as the state says of its `resume`."""
+        if halted is None:
+            self._advance(context, node, lambda advance: advance.block(node.do))
+        else:
+            self._advance(context, node, lambda advance: advance.again(node, halted.position, halted.at))
 
     def resume(self, context: ActivityContext, node: StateNode, id: str) -> None:
         """Go on with the `do` of that state, since what it awaited under that id is over."""
-        self._advance(context, node, id)
+        position = self.positions[node.path]
+        self._advance(context, node, lambda advance: advance.resume_block(node.do, position, id), id)
+
+    def lose(self, context: ActivityContext, node: StateNode, id: str, reason: str) -> None:
+        """Go on with the `do` of that state though the robot has forgotten what it awaits, as its `resume` says."""
+        if not resumption_of(node):
+            self.fail(context, node, id, reason)
+            return
+        position = self.positions[node.path]
+        _cancel(context, [other for other in awaited(position) if other != id])
+        self._advance(context, node, lambda advance: advance.again(node, position, context.at))
 
     def fail(
         self, context: ActivityContext, node: StateNode, id: str | None, reason: str, started: Iterable[str] = ()
@@ -71,13 +90,29 @@ class Activities:
         _cancel(context, list(awaited(self.positions[path])))
         self._place(path, None)
 
-    def _advance(self, context: ActivityContext, node: StateNode, id: str | None) -> None:
+    def halt(self, node: StateNode, at: float) -> None:
+        """Note where the `do` of a state that is left stands, where the state says how it is resumed."""
+        if resumption_of(node):
+            self.halted = {**self.halted, node.path: Halted(self.positions[node.path], at)}
+
+    def forget(self, path: str) -> Halted | None:
+        """Where the `do` of a state that is entered again had stood; it is forgotten."""
+        found = self.halted.get(path)
+        if found:
+            self.halted = {other: halted for other, halted in self.halted.items() if other != path}
+        return found
+
+    def _advance(
+        self,
+        context: ActivityContext,
+        node: StateNode,
+        move: Callable[["_Advance"], Within | None],
+        id: str | None = None,
+    ) -> None:
         context.evaluate_in(node)
         advance = _Advance(context)
         try:
-            position = (
-                advance.block(node.do) if id is None else advance.resume_block(node.do, self.positions[node.path], id)
-            )
+            position = move(advance)
         except ActivityError as error:
             context.raise_error(error.reason, error.where)
             self.fail(context, node, id, error.reason, advance.started)
@@ -117,6 +152,31 @@ class _Advance:
             return position._replace(inner=inner)
         return self.block(actions, position.block, position.place + 1)
 
+    def again(self, node: StateNode, position: Within, at: float) -> Within | None:
+        """Go on from a `position` that was left, or lost, at `at` [s], as the state says of its `resume`."""
+        word = resumption_of(node)
+        return None if word == "never" else self._again_block(node.do, position, at, after=word == "after")
+
+    def _again_block(
+        self, actions: tuple[CompiledAction, ...], position: Within, at: float, *, after: bool
+    ) -> Within | None:
+        inner = self._again(actions[position.place], position.inner, at, after=after)
+        if inner is not None:
+            return position._replace(inner=inner)
+        return self.block(actions, position.block, position.place + 1)
+
+    def _again(self, action: CompiledAction, position: Position, at: float, *, after: bool) -> Position | None:
+        match action, position:
+            case ConditionalAction(), Within(block, _, _):
+                return self._again_block(action.block(block), position, at, after=after)
+            case ParallelActions(branches), Fork(positions):
+                pairs = zip(branches, positions, strict=True)
+                return _fork([p and self._again(branch, p, at, after=after) for branch, p in pairs])
+            case AwaitedCommand(make, where), Awaiting(_, since) if not after:
+                with _Failing(where):
+                    return self.awaiting(self.context.start(rest_of(make(self.context), at - since), awaited=True))
+        return None if after else self.begin(action)
+
     def begin(self, action: CompiledAction) -> Position | None:
         match action:
             case InstantAction(act, where):
@@ -149,7 +209,7 @@ class _Advance:
 
     def awaiting(self, id: str) -> Awaiting:
         self.started.append(id)
-        return Awaiting(id)
+        return Awaiting(id, self.context.at)
 
 
 class _Failing:

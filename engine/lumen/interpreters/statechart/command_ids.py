@@ -10,11 +10,11 @@ from typing import NamedTuple
 from lumen.language.commands import Cancel, Command, Start
 from lumen.language.events import Event
 
-ANSWER_KINDS = ("done", "error", "cancelled")
+ANSWER_KINDS = ("done", "error", "cancelled", "lost")
 
 
 class CommandAnswer(NamedTuple):
-    """What became of a command: `done`, or `error` or `cancelled` with a reason."""
+    """What became of a command: `done`, or `error`, `cancelled` or `lost` (forgotten by the robot) with a reason."""
 
     kind: str
     id: str

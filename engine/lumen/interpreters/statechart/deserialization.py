@@ -14,7 +14,17 @@ from lumen.interpreters.statechart.do_actions import (
 )
 from lumen.interpreters.statechart.json_cursor import JsonCursor
 from lumen.interpreters.statechart.type_checks import TypeCheck, fits, refusal
-from lumen.interpreters.statechart.values import Awaiting, Counters, Fork, Invoked, Position, Snapshot, Timer, Within
+from lumen.interpreters.statechart.values import (
+    Awaiting,
+    Counters,
+    Fork,
+    Halted,
+    Invoked,
+    Position,
+    Snapshot,
+    Timer,
+    Within,
+)
 from lumen.language.machines import MachineDefinition, State, StateKind
 
 SNAPSHOT_VERSION = 1
@@ -58,6 +68,7 @@ class _SnapshotReader:
             language=data["language"].text(),
             timers=tuple(self.timer(row) for row in data["timers"].rows()),
             doing={path: self.position(path, part) for path, part in data["doing"].items()},
+            halted={path: self.halted(path, part) for path, part in data.optional("halted")},
             history={path: self.remembered(path, part) for path, part in data["history"].items()},
             counters=Counters(**{key: data["counters"][key].count() for key in Counters._fields}),
             generator=data["generator"].count() % 2**32,
@@ -111,6 +122,12 @@ class _SnapshotReader:
             raise data.refused("stands for no active state with a `do`")
         return _within(data, node.do, ("do",))
 
+    def halted(self, path: str, data: JsonCursor) -> Halted:
+        node = compiled(self.machine).chart.nodes.get(path)
+        if node is None or not node.do:
+            raise data.refused("stands for no state with a `do`")
+        return Halted(_within(data["position"], node.do, ("do",)), data["at"].number())
+
     def remembered(self, path: str, data: JsonCursor) -> tuple[str, ...]:
         state, paths = self.machine.states.get(path), tuple(data.texts())
         if state is None or state.kind is not StateKind.HISTORY:
@@ -161,7 +178,7 @@ def _within(data: JsonCursor, actions: tuple[CompiledAction, ...], blocks: tuple
 def _position(data: JsonCursor, action: CompiledAction) -> Position:
     match action:
         case AwaitedCommand() | TimedWait():
-            return Awaiting(data["awaiting"].text())
+            return Awaiting(data["awaiting"].text(), data["at"].number() if "at" in dict(data.items()) else 0.0)
         case ConditionalAction():
             return _within(data, action.block(data["block"].text()), ("then", "else"))
         case ParallelActions(branches):

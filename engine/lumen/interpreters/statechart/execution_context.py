@@ -11,7 +11,7 @@ from lumen.interpreters.statechart.activities import Activities
 from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine
 from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.values import Counters, Invoked, Snapshot, Step, Timer
+from lumen.interpreters.statechart.values import Counters, Halted, Invoked, Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
@@ -21,11 +21,15 @@ _new = tuple.__new__  # a third of the price of Scope(…), Snapshot(…), Step(
 
 
 class Beginning(NamedTuple):
-    """What a state begins when the macrostep is done: its invocations, then its `do` (SCXML 6.4: `statesToInvoke`)."""
+    """What a state begins when the macrostep is done: its invocations, then its `do` (SCXML 6.4: `statesToInvoke`).
+
+    `halted` is where that `do` stood, for a state that a history leads back into.
+    """
 
     node: StateNode
     invokes: tuple[CompiledInvoke, ...]
     do: bool
+    halted: Halted | None = None
 
 
 class InvocationHandler(Protocol):
@@ -95,11 +99,11 @@ class ExecutionContext:
         invocations: InvocationHandler,
     ) -> Self:
         """The context of a macrostep from that snapshot at `at` [s]; raises KeyError with a state that is unknown."""
-        names, data, _, language, timers, doing, history, counters, generator, epoch, _ = snapshot
+        names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted = snapshot
         start = machine.planner.configuration(names)
         return cls(
             machine, event, event, at, start, start.known, machine.chart.root, data, language, timers, history,
-            counters, generator, epoch, Activities(doing), invocations,
+            counters, generator, epoch, Activities(doing, halted), invocations,
         )  # fmt: skip
 
     def step(self) -> Step:
@@ -107,7 +111,7 @@ class ExecutionContext:
         self.cached_scope = None  # which refers to this context: no need to wait for the garbage collector
         after = (
             self.configuration.names, self.data, self.at, self.language, self.timers, self.activities.positions,
-            self.history, self.counters, self.generator, self.epoch, self.invocations.children,
+            self.history, self.counters, self.generator, self.epoch, self.invocations.children, self.activities.halted,
         )  # fmt: skip
         made = (
             self.trigger, self.exited, self.entered, self.commands, _new(Snapshot, after), self.transitions,

@@ -54,6 +54,8 @@ def _answer(context: ExecutionContext, event: Event, answer: CommandAnswer) -> N
         node = context.machine.chart.nodes[waiting]
         if kind == "done":
             context.activities.resume(context, node, id)
+        elif kind == "lost":
+            context.activities.lose(context, node, id, reason)
         else:
             context.activities.fail(context, node, id, reason)
     elif kind == "error" and id.startswith("c"):

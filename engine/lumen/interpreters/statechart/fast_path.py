@@ -87,7 +87,7 @@ class FastPaths:
 
     def step(self, snapshot: Snapshot, event: Event) -> Step | None:
         """The step of this event, None where it is not plain."""
-        names, context, before, language, timers, doing, history, counters, generator, epoch, invoked = snapshot
+        names, context, before, language, timers, doing, history, counters, generator, epoch, invoked, halted = snapshot
         name, data, at, sendid = event
         if sendid or invoked:
             return None
@@ -121,7 +121,7 @@ class FastPaths:
             return None
         if after_timers:
             timers = after_timers.at(at, timers)
-        after = (target, context, at, language, timers, doing, history, counters, generator, epoch, invoked)
+        after = (target, context, at, language, timers, doing, history, counters, generator, epoch, invoked, halted)
         return _new(Step, (event, exited, entered, (), _new(Snapshot, after), transitions, (), ()))
 
     def _find(self, names: frozenset[str], name: str) -> FastPath | None:

@@ -22,6 +22,10 @@ class JsonCursor:
             raise self.refused(f"lacks `{key}`")
         return self.below(key)
 
+    def optional(self, key: str) -> "list[tuple[str, JsonCursor]]":
+        """What stands under a key that older data do not have."""
+        return self[key].items() if any(key == known for known, _ in self.items()) else []
+
     def below(self, key: object) -> "JsonCursor":
         return JsonCursor(self.data[key], f"{self.place}.{key}".lstrip("."))
 

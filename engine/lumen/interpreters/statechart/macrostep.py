@@ -48,8 +48,8 @@ def _macrostep(context: ExecutionContext) -> None:
 def _begin(context: ExecutionContext) -> None:
     """Begin what every state entered and not left invokes and has to `do`, in document order."""
     beginnings, context.beginnings = sorted(context.beginnings, key=lambda beginning: beginning.node.index), ()
-    for node, invokes, do in beginnings:
+    for node, invokes, do, halted in beginnings:
         for invoke in invokes:
             context.invocations.begin(context, node, invoke)
         if do:
-            context.activities.begin(context, node)
+            context.activities.begin(context, node, halted)

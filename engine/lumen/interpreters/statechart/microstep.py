@@ -12,6 +12,7 @@ from lumen.interpreters.statechart.plans import Candidates, MicrostepPlan
 from lumen.interpreters.statechart.values import Timer
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
+from lumen.language.machines import StateKind
 
 MAX_MICROSTEPS = 1000
 """How many microsteps, or internal events, a macrostep may take."""
@@ -55,8 +56,9 @@ def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
     for transition in taken:
         if transition.block:
             _execute(context, transition.block, transition.source)
+    restored = _restored(context, taken) if context.activities.halted else frozenset[str]()
     for node, context.active, done in entries:
-        _enter(context, node, done)
+        _enter(context, node, done, restored)
     context.configuration = target
     context.active = target.known
 
@@ -91,6 +93,7 @@ def _exit(context: ExecutionContext, node: StateNode) -> None:
     if context.beginnings:
         context.beginnings = tuple(beginning for beginning in context.beginnings if beginning.node is not node)
     if node.path in context.activities.positions:
+        context.activities.halt(node, context.at)
         context.activities.cancel(context, node.path)
     if node.afters:
         context.timers = tuple(t for t in context.timers if t.kind != "after" or t.state != node.path)
@@ -98,15 +101,24 @@ def _exit(context: ExecutionContext, node: StateNode) -> None:
         context.invocations.cancel(context, node)
 
 
-def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ...]) -> None:
-    """`enterStates`, of one state; `done` are those whose end that is, the nearest first."""
+def _restored(context: ExecutionContext, taken: tuple[CompiledTransition, ...]) -> frozenset[str]:
+    """The paths of the states that history leads back into."""
+    targets = (t for transition in taken for t in transition.targets if t.kind is StateKind.HISTORY)
+    nodes = (context.machine.chart.nodes[path] for t in targets for path in context.history.get(t.path, ()))
+    return frozenset(node.path for found in nodes for node in (found, *found.ancestors))
+
+
+def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ...], restored: frozenset[str]) -> None:
+    """`enterStates`, of one state; `done` are those whose end that is, the nearest first, `restored` by history."""
     at = context.at
     for event, delay in node.afters:
         context.timers = (*context.timers, Timer(event, at + delay, delay, event, None, node.path, "after"))
     if node.entry:
         _execute(context, node.entry, node)
     if node.do or node.invokes:
-        context.beginnings += (Beginning(node, node.invokes, bool(node.do)),)
+        halted = context.activities.forget(node.path)
+        halted = halted if node.path in restored else None
+        context.beginnings += (Beginning(node, node.invokes, bool(node.do), halted),)
     for ended, parent in enumerate(done):
         context.raise_event(Event(f"done.state.{parent.name}", None if ended else _output(context, node), at))
 

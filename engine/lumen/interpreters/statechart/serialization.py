@@ -6,7 +6,7 @@ from typing import Any, Literal
 from lumen.errors import SnapshotError, UsageError
 from lumen.interpreters.statechart.deserialization import SNAPSHOT_VERSION
 from lumen.interpreters.statechart.json_cursor import plain
-from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Snapshot, Timer, Within
+from lumen.interpreters.statechart.values import Awaiting, Fork, Halted, Position, Snapshot, Timer, Within
 from lumen.language.machines import MachineDefinition
 
 TimerPolicy = Literal["deadline", "remaining", "restart"]
@@ -38,6 +38,7 @@ def _data(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
         "language": snapshot.language,
         "timers": [plain(timer._asdict(), timer.id) for timer in snapshot.timers],
         "doing": {path: _position(position) for path, position in snapshot.doing.items()},
+        "halted": {path: {"position": _position(p), "at": at} for path, (p, at) in snapshot.halted.items()},
         "history": {path: list(remembered) for path, remembered in snapshot.history.items()},
         "counters": snapshot.counters._asdict(),
         "generator": snapshot.generator,
@@ -71,11 +72,21 @@ def retimed(snapshot: Snapshot, now: float, timing: TimerPolicy) -> Snapshot:
             return _shifted(snapshot, now, now - snapshot.at, lambda timer: now + timer.delay)
 
 
+def paused(snapshot: Snapshot, away: float) -> Snapshot:
+    """The snapshot after nothing was done for that long [s]: what was under way has not come on meanwhile."""
+    return snapshot._replace(
+        doing={path: moved(position, away) for path, position in snapshot.doing.items()},
+        invoked={id: child._replace(snapshot=paused(child.snapshot, away)) for id, child in snapshot.invoked.items()},
+    )
+
+
 def _shifted(snapshot: Snapshot, now: float, later: float, due: Callable[[Timer], float]) -> Snapshot:
     return snapshot._replace(
         at=now,
         epoch=snapshot.epoch - later,
         timers=tuple(timer._replace(due=due(timer)) for timer in snapshot.timers),
+        doing={path: moved(position, later) for path, position in snapshot.doing.items()},
+        halted={path: Halted(moved(p, later), at + later) for path, (p, at) in snapshot.halted.items()},
         invoked={
             id: child._replace(snapshot=_shifted(child.snapshot, now, later, due))
             for id, child in snapshot.invoked.items()
@@ -83,10 +94,25 @@ def _shifted(snapshot: Snapshot, now: float, later: float, due: Callable[[Timer]
     )
 
 
+def moved(position: Within, later: float) -> Within:
+    """A position in which all that is awaited began so much later [s]."""
+    return position._replace(inner=_moved(position.inner, later))
+
+
+def _moved(position: Position, later: float) -> Position:
+    match position:
+        case Awaiting(_, at):
+            return position._replace(at=at + later)
+        case Within():
+            return moved(position, later)
+        case Fork(branches):
+            return Fork(tuple(branch and _moved(branch, later) for branch in branches))
+
+
 def _position(position: Position) -> dict[str, Any]:
     match position:
-        case Awaiting(id):
-            return {"awaiting": id}
+        case Awaiting(id, at):
+            return {"awaiting": id, "at": at}
         case Within(block, place, inner):
             return {"block": block, "place": place, "inner": _position(inner)}
         case Fork(branches):

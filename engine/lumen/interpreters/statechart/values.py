@@ -24,9 +24,10 @@ class Timer(NamedTuple):
 
 
 class Awaiting(NamedTuple):
-    """A `do` stands before a command or a `wait` of that id."""
+    """A `do` stands before a command or a `wait` of that id, since `at` [s]."""
 
     id: str
+    at: float = 0.0
 
 
 class Within(NamedTuple):
@@ -58,6 +59,13 @@ def awaited(position: Position | None) -> Iterator[str]:
                 yield from awaited(branch)
 
 
+class Halted(NamedTuple):
+    """Where a `do` stood when its state was left at `at` [s], for a history state that leads back into it."""
+
+    position: Within
+    at: float
+
+
 class Counters(NamedTuple):
     """How many ids were given out: `c1, c2, …` to commands, `d1, d2, …` to awaited ones, `s1, s2, …` to timers."""
 
@@ -81,7 +89,8 @@ class Snapshot(NamedTuple):
     `doing` the position of each active `do` and `history` the paths remembered by each history state, both by path.
     `at` [s] is the time of the last event, or a later one at which it was taken off a clock; `epoch` the local time of
     day at time 0 [s since midnight]; `generator` the state from which alternatives of `say` are drawn. `invoked` are
-    the behaviours that run within it, by their ids; its time, language, counters and generator are theirs too.
+    the behaviours that run within it, by their ids; its time, language, counters and generator are theirs too. `halted`
+    is where a `do` stood that says how it is resumed, when its state was last left, by path.
     Mappings in it are never changed, only replaced.
     """
 
@@ -96,6 +105,7 @@ class Snapshot(NamedTuple):
     generator: int = 0
     epoch: float = 0.0
     invoked: Mapping[str, Invoked] = {}
+    halted: Mapping[str, Halted] = {}
 
 
 class Step(NamedTuple):

@@ -1,0 +1,41 @@
+"""In which states it still matters what a history state remembers: from there on it may be led back to."""
+
+from collections.abc import Iterator, Mapping
+
+from lumen.language.machines import MachineDefinition, State, StateKind
+
+
+def history_uses(machine: MachineDefinition) -> Mapping[str, frozenset[str]]:
+    """For each history state the names of the states from which it can be led back to before it remembers anew.
+
+    It remembers anew when its parent is left, which entering it, or a state within, comes to. Where a transition leads
+    through is not looked at closely: a state may be named that does not matter, and none that does is left out.
+    """
+    histories = (state for state in machine.states.values() if state.kind is StateKind.HISTORY)
+    return {state.path: _uses(machine, state) for state in histories}
+
+
+def _uses(machine: MachineDefinition, history: State) -> frozenset[str]:
+    home = history.parent or ""
+    leads = {path: set(_led_to(machine, state, home)) for path, state in machine.states.items()}
+    found = {path for path, targets in leads.items() if history.path in targets}
+    while more := {path for path, targets in leads.items() if path not in found and targets & found}:
+        found |= more
+    return frozenset(machine.states[path].name for path in found if not _within(path, home))
+
+
+def _led_to(machine: MachineDefinition, state: State, home: str) -> Iterator[str]:
+    """The paths of what a transition of that state may enter, without entering `home`."""
+    for transition in state.transitions:
+        for target in transition.targets:
+            kind = machine.states[target].kind
+            if kind is StateKind.HISTORY:
+                yield target
+                target = machine.states[target].parent or ""
+            if not _within(target, home):
+                yield from (path for path in machine.states if _within(path, target) and not _within(path, home))
+                yield from (path for path in machine.states if path and _within(target, path))
+
+
+def _within(path: str, home: str) -> bool:
+    return not home or path == home or path.startswith(f"{home}.")
