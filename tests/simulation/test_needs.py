@@ -65,9 +65,10 @@ def test_a_body_without_postures_and_joints_is_told_what_it_lacks(body: Body, mo
     assert "the joint `HeadYaw`, the posture `Stand`" in reason
 
 
-def test_a_timestep_longer_than_the_time_between_two_commands_is_told(body: Body, models: Path) -> None:
-    hall = changed(models, "hall.xml", ('timestep="0.002"', 'timestep="0.05"'))
-    assert "a timestep of at most 0.01 s" in trouble(body, models, hall)
+@pytest.mark.parametrize("timestep", ["0.05", "0.000000001", "-0.002", "nan"])
+def test_a_timestep_that_no_simulation_can_live_with_is_told(body: Body, models: Path, timestep: str) -> None:
+    hall = changed(models, "hall.xml", ('timestep="0.002"', f'timestep="{timestep}"'))
+    assert "a timestep from 0.0001 to 0.01 s" in trouble(body, models, hall)
 
 
 def test_a_timestep_that_would_lose_time_is_told(body: Body, models: Path) -> None:

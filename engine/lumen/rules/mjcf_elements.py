@@ -1,24 +1,24 @@
 """The elements of an MJCF file and where they stand, as far as a file may go; MuJoCo itself is not imported here."""
 
 from collections.abc import Mapping
+from math import prod
 from typing import NamedTuple
 from xml.parsers import expat
 
 MAX_ELEMENT_DEPTH = 100
 """Levels of elements within one another: MuJoCo and the parsers before it call themselves for each."""
 MAX_ELEMENTS = 20_000
-"""Elements of a file, and how many an element may be made into by a number in it."""
+"""Elements of a file, and as how many one of them may be repeated."""
 
-_MULTIPLIED: Mapping[str, tuple[str, ...]] = {
-    "replicate": ("count",),
-    "composite": ("count",),
-    "flexcomp": ("count",),
-    "hfield": ("nrow", "ncol"),
-    "texture": ("width", "height"),
+_BOUNDS: Mapping[str, tuple[tuple[tuple[str, ...], float], ...]] = {
+    "replicate": ((("count",), MAX_ELEMENTS),),
+    "composite": ((("count",), MAX_ELEMENTS),),
+    "flexcomp": ((("count",), MAX_ELEMENTS),),
+    "hfield": ((("nrow", "ncol"), 4_000_000),),
+    "texture": ((("width", "height"), 64_000_000),),
+    "option": tuple(((name,), 10_000) for name in ("iterations", "ls_iterations", "noslip_iterations")),
 }
-"""Numbers whose product is how much is made of an element."""
-_MOST = {"hfield": 4_000_000, "texture": 64_000_000}
-"""How much may be made of an element, where it is no further elements: points, pixels."""
+"""Of an element, attributes whose product is how much is made or done of it, and the most that this may be."""
 
 
 class ModelElement(NamedTuple):
@@ -79,7 +79,7 @@ class _Reader:
         if len(self.elements) > MAX_ELEMENTS:
             self._stop(len(name) + 1, f"the model has more than {MAX_ELEMENTS:,} elements", "use fewer")
         if reason := _too_many(name, attributes):
-            self._stop(len(name) + 1, f"the model makes {reason} of this `<{name[:40]}>`", "use fewer")
+            self._stop(len(name) + 1, f"the model asks for {reason} can be simulated", "use fewer")
 
     def _end(self, name: str) -> None:
         self._depth -= 1
@@ -94,12 +94,12 @@ class _Reader:
 
 
 def _too_many(name: str, attributes: Mapping[str, str]) -> str:
-    """How much is made of an element where that is too much, else empty."""
-    product = 1.0
-    for key in _MULTIPLIED.get(name, ()):
-        for word in attributes.get(key, "").split():
-            product *= abs(_number(word)) or 1.0
-    return f"{product:,.0f}" if product > _MOST.get(name, MAX_ELEMENTS) else ""
+    """Which attributes ask for more than may be, and how much; empty where none do."""
+    for keys, most in _BOUNDS.get(name, ()):
+        words = (word for key in keys for word in attributes.get(key, "").split())
+        if (product := prod(abs(_number(word)) or 1.0 for word in words)) > most:
+            return f"{' times '.join(f'`{key}`' for key in keys)} of {product:,.0f}: at most {most:,.0f}"
+    return ""
 
 
 def _number(word: str) -> float:

@@ -8,6 +8,8 @@ from lumen.language.robots import Body
 
 MAX_TIMESTEP = 0.01
 """The longest timestep [s]: the joints get their goals as often."""
+MIN_TIMESTEP = 0.0001
+"""The shortest [s]: with it no machine keeps real time any more."""
 
 _HEAD = ("HeadYaw", "HeadPitch")
 _LEG = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
@@ -39,8 +41,8 @@ def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
     if visitor is not None and not visitor.geom:
         found.append("a geom in its body `visitor`")
     timestep = hall.option.timestep or MAX_TIMESTEP
-    if timestep > MAX_TIMESTEP:
-        found.append(f"a timestep of at most {MAX_TIMESTEP:g} s")
+    if not MIN_TIMESTEP <= timestep <= MAX_TIMESTEP:
+        found.append(f"a timestep from {MIN_TIMESTEP:g} to {MAX_TIMESTEP:g} s")
     elif abs(MAX_TIMESTEP / timestep - round(MAX_TIMESTEP / timestep)) > 1e-6:
         found.append(f"a timestep that fits into {MAX_TIMESTEP:g} s a whole number of times")
     return found
