@@ -89,6 +89,20 @@ def test_what_holds_too_many_nodes_ends_the_reading(kind: str) -> None:
         compose(LONG[kind])
 
 
+def test_aliases_are_counted_as_what_they_stand_for() -> None:
+    lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x, x]"]
+    lines += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 10)}]" for i in range(1, 12)]
+    with pytest.raises(TooLargeError, match="more than 200,000 values") as raised:
+        compose("\n".join(lines))
+    assert raised.value.mark.line == 5
+
+
+@pytest.mark.parametrize("text", ["&a [*a]", "a: &x {b: [*x]}", "? &a [*a]\n: b", "&a {*a : b}"])
+def test_an_alias_within_what_it_stands_for_is_refused(text: str) -> None:
+    with pytest.raises(TooLargeError, match="within what it stands for"):
+        compose(text)
+
+
 @pytest.mark.parametrize("digits", ["0x" + "f" * 5_000, "0o" + "7" * 5_000, "9" * 5_000, "0x" + "f" * 300])
 def test_integers_of_thousands_of_digits_are_no_integers(digits: str) -> None:
     document, found = parse("a.yaml", f"a: {digits}".encode())

@@ -1,7 +1,8 @@
 """The nodes of a YAML file, composed from libyaml's events.
 
 libyaml's own composer calls itself for every level: 60,000 brackets end the process. Here depth and number are counted
-event by event, and what is too much ends the reading there, before it is parsed any further.
+event by event, an alias as all that it stands for, and what is too much ends the reading there, before it is parsed any
+further.
 """
 
 from collections.abc import Callable
@@ -46,6 +47,7 @@ class _Composer:
     def __init__(self, loader: yaml.CSafeLoader) -> None:
         self._next: Callable[[], Any] = loader.get_event
         self._anchors: dict[str, yaml.Node] = {}
+        self._sizes: dict[str, int] = {}
         self._count = 0
 
     def document(self) -> yaml.Node | None:
@@ -60,18 +62,26 @@ class _Composer:
         return root
 
     def _node(self, event: Any, depth: int) -> yaml.Node:
-        self._count += 1
         if depth > MAX_NODE_DEPTH:
             raise TooLargeError(f"nested deeper than {MAX_NODE_DEPTH} levels", event.start_mark)
-        if self._count > MAX_NODES:
-            raise TooLargeError(f"more than {MAX_NODES:,} values", event.start_mark)
-        kind = type(event)
-        if kind is yaml.ScalarEvent:
-            tag = event.tag or _TEXT
-            return self._named(event, yaml.ScalarNode(tag, event.value, event.start_mark, event.end_mark, event.style))
+        kind, before = type(event), self._count
+        self._add(1, event)
         if kind is yaml.AliasEvent:
             return self._meant(event)
-        return self._list(event, depth + 1) if kind is yaml.SequenceStartEvent else self._map(event, depth + 1)
+        node: yaml.Node
+        if kind is yaml.ScalarEvent:
+            node = yaml.ScalarNode(event.tag or _TEXT, event.value, event.start_mark, event.end_mark, event.style)
+            self._named(event, node)
+        else:
+            node = self._list(event, depth + 1) if kind is yaml.SequenceStartEvent else self._map(event, depth + 1)
+        if event.anchor is not None:
+            self._sizes[event.anchor] = self._count - before
+        return node
+
+    def _add(self, nodes: int, event: Any) -> None:
+        self._count += nodes
+        if self._count > MAX_NODES:
+            raise TooLargeError(f"more than {MAX_NODES:,} values", event.start_mark)
 
     def _list(self, event: Any, depth: int) -> yaml.Node:
         node = self._named(event, yaml.SequenceNode(event.tag or _LIST, [], event.start_mark, None, event.flow_style))
@@ -101,4 +111,7 @@ class _Composer:
         """The node that an alias stands for."""
         if event.anchor not in self._anchors:
             raise ComposerError(None, None, "found undefined alias", event.start_mark)
+        if event.anchor not in self._sizes:
+            raise TooLargeError("an alias stands within what it stands for", event.start_mark)
+        self._add(self._sizes[event.anchor] - 1, event)
         return self._anchors[event.anchor]
