@@ -172,6 +172,14 @@ def test_what_could_not_be_forgotten_is_when_the_database_can_be_written(stand: 
     assert [found for found in tmp_path.iterdir() if b"Wulandari" in found.read_bytes()] == []
 
 
+def test_nobody_without_a_name_is_remembered(stand: Make) -> None:
+    here = stand()
+    remembering(here, None)
+    answer = here.ask(FACT, {"method": "remember", "name": "\u200b ", "data": {"likes": "tea"}})
+    assert answer == {"ok": False, "reason": "`remember` takes a `name`"}
+    assert here.ask(FACT, {"method": "list"})["visitors"] == []
+
+
 FIRST = """
 CREATE TABLE journal (
     id INTEGER PRIMARY KEY, time REAL NOT NULL, date TEXT NOT NULL, robot TEXT NOT NULL,

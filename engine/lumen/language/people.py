@@ -83,6 +83,8 @@ class PersonName:
 
 
 def _folded(text: str) -> str:
+    if text.isascii():
+        return text.lower()
     text = text.encode("utf-8", "replace").decode()  # half characters, which JSON may bring
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", text).casefold())
     shown = "".join(sign for sign in folded if unicodedata.category(sign) not in ("Cf", "Mn") or _accent(sign))

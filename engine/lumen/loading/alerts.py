@@ -47,7 +47,9 @@ def _channel(row: Mapping[str, Any]) -> AlertChannel | None:
         case {"mail": {"host": str(host), "from": str(sender), "to": str() | list() as to, **more}}:
             security = str(more.get("security", "starttls"))
             port = more.get("port", SMTP_PORTS[security])
-            return Mail(host, int(str(port)), security, sender, (to,) if isinstance(to, str) else tuple(map(str, to)))
+            return Mail(
+                host, int(float(str(port))), security, sender, (to,) if isinstance(to, str) else tuple(map(str, to))
+            )
         case {"command": list(words)}:
             return Program(tuple(words))
     return None

@@ -123,11 +123,10 @@ class Memory(Module):
         self._visit.live(self._clock(), self._earlier, spoken=spoken)
 
     def _earlier(self) -> JournalEnd:
-        """Where an earlier run stopped; as good as nowhere where the database can't be read now."""
+        """Where an earlier run stopped; as good as nowhere where the database can't be read: writing tells of that."""
         try:
             return self._store.end()
-        except ModuleError as error:
-            self.tell(str(error))
+        except ModuleError:
             return JournalEnd()
 
     def _state(self, message: Message) -> None:
@@ -158,7 +157,7 @@ class Memory(Module):
         name, data = str(body.get("name", "")).strip(), body.get("data") or {}
         match body.get("method"):
             case "remember":
-                self._answer(message, lambda: self._store.met(name, self._clock(), data) or {})  # type: ignore[func-returns-value]
+                self._answer(message, lambda: self._remember(name, data))
             case "recall":
                 self._answer(message, lambda: {"visitor": self._store.visitor(name)})
             case "list":
@@ -169,9 +168,13 @@ class Memory(Module):
                 self._note("fact", body, "", theirs=False)
                 self._answer(message, dict)
 
+    def _remember(self, name: str, data: Mapping[str, Any]) -> dict[str, Any]:
+        _check_name(name, "remember")
+        self._store.met(name, self._clock(), data)
+        return {}
+
     def _forget(self, name: str) -> dict[str, Any]:
-        if not name_key(name):
-            raise ModuleError("`forget` takes a `name`")
+        _check_name(name, "forget")
         try:
             found = self._delete(name)
         finally:
@@ -194,7 +197,7 @@ class Memory(Module):
         self._met = deque((met for met in self._met if name_key(met) != person.key), MAX_PENDING_ENTRIES)
         self._write()
         found = self._store.forget(name)
-        if self._visit.number in found.visits:
+        if self._visit.number and self._visit.number in found.visits:
             self._visit.forget(name)
         del self._owed[person.key]
         return found
@@ -219,3 +222,9 @@ class Memory(Module):
             self.reply(message, {"ok": False, "reason": str(error)})
             raise
         self.reply(message, {"ok": True, **found})
+
+
+def _check_name(name: str, method: str) -> None:
+    """Raises ModuleError where there is none that could be found again."""
+    if not name_key(name):
+        raise ModuleError(f"`{method}` takes a `name`")

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from lumen.errors import ModuleError
 from lumen.language.people import PersonName, name_key
-from lumen.modules.memory.tables import prepare
+from lumen.modules.memory.tables import check, prepare
 from lumen.modules.memory.visit import JournalEnd
 
 LOCK_TIMEOUT = 0.5
@@ -167,6 +167,7 @@ class Store:
         db = sqlite3.connect(self._file or ":memory:", timeout=LOCK_TIMEOUT)
         self._connection = db
         db.row_factory = sqlite3.Row
+        check(db)
         db.execute("PRAGMA secure_delete = ON")
         db.execute("PRAGMA journal_mode = WAL")
         prepare(db)

@@ -20,12 +20,23 @@ CREATE TABLE IF NOT EXISTS visitors (
     visits INTEGER NOT NULL, data TEXT NOT NULL
 );
 """
-_FIRST_VISITORS = ["name", "first", "last", "visits", "data"]
+_FIRST = {
+    "journal": {"id", "time", "date", "robot", "visitor", "kind", "text", "data"},
+    "visitors": {"name", "first", "last", "visits", "data"},
+}
+_NOW = {"journal": _FIRST["journal"] | {"key", "visit"}, "visitors": _FIRST["visitors"] | {"key"}}
+
+
+def check(db: sqlite3.Connection) -> None:
+    """Raises sqlite3.OperationalError where tables of these names are somebody else's; nothing is written."""
+    for table in _NOW:
+        if _columns(db, table) not in (set(), _FIRST[table], _NOW[table]):
+            raise sqlite3.OperationalError(f"no such column in {table}")
 
 
 def prepare(db: sqlite3.Connection) -> None:
     """Make the tables, or bring those of the first version up to date, wholly or (sqlite3.Error) not at all."""
-    if _columns(db, "visitors") == _FIRST_VISITORS and "key" not in _columns(db, "journal"):
+    if _columns(db, "visitors") == _FIRST["visitors"]:
         with db:
             db.execute("BEGIN IMMEDIATE")
             _bring_up(db)
@@ -46,5 +57,5 @@ def _bring_up(db: sqlite3.Connection) -> None:
     db.execute("DROP TABLE known")
 
 
-def _columns(db: sqlite3.Connection, table: str) -> list[str]:
-    return [row[1] for row in db.execute(f"PRAGMA table_info({table})").fetchall()]
+def _columns(db: sqlite3.Connection, table: str) -> set[str]:
+    return {row[1] for row in db.execute(f"PRAGMA table_info({table})").fetchall()}
