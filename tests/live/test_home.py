@@ -34,6 +34,17 @@ def test_a_home_that_is_a_link_is_not_used(tmp_path: Path, monkeypatch: pytest.M
     assert home_of(tmp_path / "show").is_relative_to(tmp_path / "state")
 
 
+@pytest.mark.parametrize("link", ["journal.jsonl", "memory.db-wal", "physics/case.json", "faces"])
+def test_a_home_that_holds_a_link_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, link: str) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    inside = tmp_path / "show" / ".lumen"
+    (inside / link).parent.mkdir(parents=True)
+    (inside / "snapshot.json").write_text("{}")
+    assert home_of(tmp_path / "show") == inside
+    (inside / link).symlink_to(tmp_path)
+    assert home_of(tmp_path / "show").is_relative_to(tmp_path / "state")
+
+
 @pytest.mark.parametrize("content", [b"[" * 100_000, b"9" * 5_000, b"\xff", b"", b'{"bundles": {"a": 1e999}}'])
 def test_what_nobody_of_us_wrote_into_a_home_is_as_good_as_nothing(tmp_path: Path, content: bytes) -> None:
     home = Home(tmp_path)

@@ -14,6 +14,10 @@ from lumen.upkeep.threads import WatchedThread
 
 FAREWELL = 5.0
 """How long it goes on after whoever typed has left [s]."""
+MAX_LINE_CHARACTERS = 1_000
+"""Of a line; a longer one is several."""
+MAX_WAITING_LINES = 100
+"""Lines that wait to be said: a program that types faster than visitors speak waits, too."""
 
 
 class TypedVisitorPart(Part):
@@ -26,7 +30,7 @@ class TypedVisitorPart(Part):
     def __init__(self, visitor: VisitorPart, narrator: Narrator, greeting: str) -> None:
         self.needs = visitor.needs
         self._visitor, self._narrator, self._greeting = visitor.actor, narrator, greeting
-        self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._lines: queue.Queue[str | None] = queue.Queue(MAX_WAITING_LINES)
         self._gone: float | None = None
         self._now = 0.0
         self._thread = WatchedThread("lumen-typing", self._read)
@@ -44,7 +48,7 @@ class TypedVisitorPart(Part):
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Say what was typed since the last tick."""
         self._now = now
-        while not self._lines.empty():
+        for _ in range(self._lines.qsize()):
             line = self._lines.get()
             if line is None:
                 self._narrator.visitor_action(Leave())
@@ -58,7 +62,7 @@ class TypedVisitorPart(Part):
         if isinstance(sys.stdin, TextIOWrapper):
             sys.stdin.reconfigure(errors="replace")
         typed = sys.stdin is not None and sys.stdin.isatty()
-        for line in sys.stdin or ():
+        while sys.stdin and (line := sys.stdin.readline(MAX_LINE_CHARACTERS)):
             typed = True
             self._lines.put(line.strip())
         if typed:

@@ -98,15 +98,23 @@ class Home:
 def home_of(root: Path) -> Path:
     """The folder for an exhibition of the project in `root`.
 
-    It is inside the project, unless that can't be written or is a link that may lead elsewhere tomorrow: then it is
-    among the user's own files, under a name made from the project's path.
+    It is inside the project, unless that can't be written or is a link that may lead elsewhere tomorrow, or holds one,
+    as whoever sends a project may send a `.lumen/` with it: then it is among the user's own files, under a name made
+    from the project's path.
     """
     inside = root / STATE_FOLDER
-    linked = root.is_symlink() or inside.is_symlink()
-    if not linked and os.access(inside if inside.is_dir() else root, os.W_OK):
+    if not root.is_symlink() and not _linked(inside) and os.access(inside if inside.is_dir() else root, os.W_OK):
         return inside
     digest = hashlib.sha256(os.fsencode(root.absolute())).hexdigest()[:12]
     return _own() / f"{root.name}-{digest}"
+
+
+def _linked(folder: Path) -> bool:
+    """Whether a folder is a link, or there is one in it: who writes into it would write somewhere else."""
+    below = ([here, *files, *folders] for here, folders, files in os.walk(folder))
+    return folder.is_symlink() or any(
+        os.path.islink(os.path.join(here, name)) for here, *names in below for name in names
+    )
 
 
 def homes() -> list[Home]:

@@ -14,6 +14,7 @@ from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.robots.motion_codec import encode_motion
 from lumen.rules.physics import Case, Outcome
+from lumen.runtime.home import home_of
 
 _ENGINE = ("robots/simulation", "robots/executor.py", "interpreters", "rules/physics")
 
@@ -25,7 +26,7 @@ class OutcomeCache:
     """
 
     def __init__(self, project: Project, files: Mapping[str, bytes]) -> None:
-        self._folder = Path(project.root) / ".lumen" / "physics"
+        self._folder = home_of(Path(project.root)) / "physics"
         root = Path(project.root)
         models = {path: path.read_bytes() for path in sorted(root.glob("models/**/*")) if path.is_file()}
         passages = {file: content for file, content in files.items() if file.startswith("models/passages/")}
