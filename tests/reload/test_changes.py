@@ -13,7 +13,9 @@ from lumen.interpreters.changes import Change, Risk, changes, live, risk, summar
 from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.loading import revisions
 from lumen.loading.files import read_files
+from lumen.loading.revisions import files_at
 from lumen.project import load
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
@@ -252,6 +254,18 @@ def test_what_looks_like_an_option_of_git_is_a_revision_that_is_none(repository:
     with pytest.raises(UsageError, match="no revision of"):
         version("--output=stolen")
     assert not (repository / "stolen").exists()
+
+
+def test_a_revision_is_read_as_far_as_a_folder_would_be(repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    largest = max(map(len, read_files(repository).values()))
+    monkeypatch.setattr(revisions, "MAX_FILE_BYTES", largest - 1)
+    found = files_at(repository, "HEAD")
+    assert found
+    assert found.keys() == read_files(repository).keys()
+    assert b"it is too large" in found.values()
+    monkeypatch.setattr(revisions, "MAX_PROJECT_BYTES", largest)
+    with pytest.raises(UsageError, match="larger than 0 MB at `HEAD`"):
+        files_at(repository, "HEAD")
 
 
 def test_outside_of_a_repository(

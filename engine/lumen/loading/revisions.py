@@ -3,10 +3,12 @@
 import os
 import subprocess
 from collections.abc import Iterator, Sequence
-from pathlib import Path, PurePosixPath
+from pathlib import Path
+from typing import NamedTuple
 
 from lumen.errors import UsageError
-from lumen.loading.files import belongs
+from lumen.loading.files import MAX_FILE_BYTES, MAX_PROJECT_BYTES, Unreadable, belongs
+from lumen.loading.regular_files import MEGABYTE
 
 
 def files_at(root: Path, revision: str) -> dict[str, bytes] | None:
@@ -21,19 +23,31 @@ def files_at(root: Path, revision: str) -> dict[str, bytes] | None:
     if commit is None:
         return None
     tree = f"{commit.decode().strip()}:{os.fsdecode(where).strip()}"
-    listed = _git(root, "ls-tree", "-r", "-z", "--full-tree", tree) or b""
-    rows = [(PurePosixPath(path), id) for path, id in _blobs(listed) if belongs(path)]
-    contents = _contents(root, [id for _, id in rows])
-    return {str(path): content for (path, _), content in sorted(zip(rows, contents, strict=True))}
+    listed = _git(root, "ls-tree", "-r", "-l", "-z", "--full-tree", tree) or b""
+    blobs = [blob for blob in _blobs(listed) if belongs(blob.path)]
+    read = [blob for blob in blobs if blob.size <= MAX_FILE_BYTES]
+    large: dict[str, bytes] = {blob.path: Unreadable(b"it is too large") for blob in blobs if blob not in read}
+    if sum(blob.size for blob in read) > MAX_PROJECT_BYTES:
+        raise UsageError(f"the project was larger than {MAX_PROJECT_BYTES // MEGABYTE} MB at `{revision}`")
+    contents = _contents(root, [blob.id for blob in read])
+    return dict(sorted({**large, **dict(zip((blob.path for blob in read), contents, strict=True))}.items()))
 
 
-def _blobs(listed: bytes) -> Iterator[tuple[str, str]]:
-    """Path and id of every plain file in the output of `git ls-tree -z`."""
+class _Blob(NamedTuple):
+    """A file of a revision, and how large it is [bytes]."""
+
+    path: str
+    id: str
+    size: int
+
+
+def _blobs(listed: bytes) -> Iterator[_Blob]:
+    """Every plain file in the output of `git ls-tree -l -z`."""
     for row in filter(None, listed.split(b"\0")):
         about, _, path = row.partition(b"\t")
-        mode, _, id = about.decode().split(" ", 2)
+        mode, _, id, size = about.decode().split()
         if mode in ("100644", "100755"):
-            yield path.decode("utf-8", "replace"), id
+            yield _Blob(path.decode("utf-8", "replace"), id, int(size))
 
 
 def _contents(root: Path, ids: Sequence[str]) -> list[bytes]:
