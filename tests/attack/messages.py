@@ -1,8 +1,9 @@
 """Hostile messages, from a `random.Random`: what a broker lets anybody send, and what a process may say at the door.
 
-    message(random, keys)   a key, the bytes of a body, and of its AMQP properties, for `send`
+    message(random, keys)   a key, the bytes of a body, and of its AMQP properties, for `Stranger.send`
     frame(random, keys)     bytes for the socket of the local bus: frames that are none, or hold what nobody expects
-    send(channel, message)  publishes one on `amq.topic` over a channel of pika's, which writes down what it is given
+    Stranger(url)           a connection of its own to a broker, `send`s what pika would not: made again where that has
+                            ended it, as RabbitMQ does for tables that are none (541, INTERNAL_ERROR)
 
 Each of them is one of a list of small generators, so that another kind is another function. What they give depends on
 nothing but the seed, and is never much larger than 64 KiB.
@@ -11,10 +12,13 @@ nothing but the seed, and is never much larger than 64 KiB.
 import json
 import struct
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from random import Random
 from typing import Any, NamedTuple
 
+import pika
 from pika import BasicProperties
+from pika.exceptions import AMQPError
 
 LARGEST = 64 * 1024
 """How long a body, a table of headers or a frame is at most [bytes]."""
@@ -45,7 +49,7 @@ _BITS = {
 class HostileMessage(NamedTuple):
     """A message as it goes over the wire; `properties` as in the header's frame, from the flags on."""
 
-    key: str
+    key: str | bytes
     body: bytes
     properties: bytes
 
@@ -61,9 +65,37 @@ class RawProperties(BasicProperties):  # type: ignore[misc]  # pika is not typed
         return [self._raw]
 
 
-def send(channel: Any, message: HostileMessage, exchange: str = "amq.topic") -> None:
-    """Publish it, whatever pika would have said."""
-    channel.basic_publish(exchange, message.key, message.body, RawProperties(message.properties))
+class Stranger:
+    """Somebody with a connection to the broker at `url`; `ended` counts how often that has ended it.
+
+    What is sent last before that is lost: who asks whether all is well after an attack has a connection of their own.
+    """
+
+    def __init__(self, url: str) -> None:
+        self.ended = 0
+        self._url = url
+        self._connection: Any = None
+
+    def send(self, message: HostileMessage) -> None:
+        """Publish it on `amq.topic`, whatever pika would have said."""
+        try:
+            self._publish(message)
+        except AMQPError:
+            self.ended += 1
+            self._connection = None
+            self._publish(message)
+
+    def close(self) -> None:
+        with suppress(AMQPError):
+            if self._connection:
+                self._connection.close()
+
+    def _publish(self, message: HostileMessage) -> None:
+        if self._connection is None:
+            self._connection = pika.BlockingConnection(pika.URLParameters(self._url))
+            self._channel = self._connection.channel()
+        self._channel.basic_publish("amq.topic", message.key, message.body, RawProperties(message.properties))
+        self._connection.process_data_events(0)
 
 
 def message(random: Random, keys: Sequence[str]) -> HostileMessage:

@@ -4,7 +4,6 @@ import logging
 import struct
 from collections.abc import Iterator
 from random import Random
-from typing import Any
 
 import pika
 import pytest
@@ -13,7 +12,7 @@ from lumen.bus import connect
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.properties import MessageProperties, read_properties
 from lumen.buses.publisher import Publisher
-from tests.attack.messages import PROPERTIES, HostileMessage, encoded, header, nested, send
+from tests.attack.messages import PROPERTIES, HostileMessage, Stranger, encoded, header, nested
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 
@@ -28,10 +27,10 @@ POISON = {
 
 
 @pytest.fixture
-def stranger(broker: RabbitMQ) -> Iterator[Any]:
-    connection = pika.BlockingConnection(pika.URLParameters(broker.url))
-    yield connection.channel()
-    connection.close()
+def stranger(broker: RabbitMQ) -> Iterator[Stranger]:
+    one = Stranger(broker.url)
+    yield one
+    one.close()
 
 
 def test_properties_are_read_as_pika_reads_them() -> None:
@@ -58,16 +57,16 @@ def test_no_bytes_are_too_many_or_too_few() -> None:
 
 
 def test_no_property_ends_the_connection_nor_the_thread_that_handles(
-    broker: RabbitMQ, stranger: Any, caplog: pytest.LogCaptureFixture
+    broker: RabbitMQ, stranger: Stranger, caplog: pytest.LogCaptureFixture
 ) -> None:
     bus, seen = connect(broker.url), Collector()
     connection = bus._transport.consumer.connection  # type: ignore[attr-defined]
     bus.subscribe("lumen.poison.#", seen)
     with caplog.at_level(logging.WARNING):
         for i, properties in enumerate(POISON.values()):
-            send(stranger, HostileMessage("lumen.poison.a", str(i).encode(), properties))
-        stranger.basic_publish("amq.topic", b"lumen.poison.\xff", b'"key"')
-        stranger.basic_publish("amq.topic", "lumen.poison.a", b'"last"')
+            stranger.send(HostileMessage("lumen.poison.a", str(i).encode(), properties))
+        stranger.send(HostileMessage(b"lumen.poison.\xff", b'"key"', encoded()))
+        stranger.send(HostileMessage("lumen.poison.a", b'"last"', encoded()))
         assert seen.wait(7) == [0, 1, 2, 3, 4, "key", "last"]
     assert bus._transport.consumer.connection is connection  # type: ignore[attr-defined]
     assert seen.messages[5].key == "lumen.poison.\\xff"
