@@ -2,6 +2,7 @@
 
 import logging
 import threading
+from collections import deque
 from collections.abc import Iterator
 from typing import Any
 
@@ -212,3 +213,11 @@ def test_drops_are_told_at_once_then_every_ten_seconds_with_their_key(caplog: py
         drops.add(f"key {n}", "too many")
     assert len(drops.counts) == MAX_KEYS + 1
     assert drops.counts[OTHERS] == MAX_KEYS + 1
+
+
+def test_what_gives_way_in_a_full_queue_is_counted_by_its_key() -> None:
+    drops, waiting = DropLog(LOG), deque[tuple[str, int]](maxlen=2)
+    for n, key in enumerate("aabc"):
+        drops.push(waiting, (key, n), lambda old: old[0], "full")
+    assert list(waiting) == [("b", 2), ("c", 3)]
+    assert drops.counts == {"a": 2}

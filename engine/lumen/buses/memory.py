@@ -20,6 +20,7 @@ from lumen.errors import BusClosedError, Refused
 from lumen.interpreters.routing import matches
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler
+from lumen.upkeep.drops import DropLog
 
 HANDLER_TIMEOUT = 5.0
 """How long closing waits for a subscriber that still works [s]."""
@@ -51,7 +52,7 @@ class _Hub:
         self.queue: deque[_Delivery | Callable[[], None]] = deque()
         self.delivering = threading.Lock()
         self.deliverer = 0
-        self.dropped = 0
+        self.drops = DropLog(_log)
         self.changing = threading.Lock()
 
     def change(self, *, add: _Subscription | None = None, drop: tuple[_Subscription, ...] = ()) -> None:
@@ -76,9 +77,7 @@ class _Hub:
             while len(self.queue) > MAX_QUEUED_MESSAGES:
                 item = self.queue.popleft()
                 if type(item) is tuple:
-                    self.dropped += 1
-                    if self.dropped == 1:
-                        _log.warning("%d messages wait for a subscriber: the oldest are dropped", MAX_QUEUED_MESSAGES)
+                    self.drops.add(item[1].key, f"{MAX_QUEUED_MESSAGES:,} messages wait for a subscriber already")
                 else:
                     self.queue.append(item)
 
@@ -104,9 +103,7 @@ class _Hub:
                             self.refuse(message, reason)
                     else:
                         item()  # type: ignore[operator]
-                if self.dropped:
-                    _log.warning("%d messages were dropped: a subscriber was too slow", self.dropped)
-                    self.dropped = 0
+                self.drops.tell(all=True)
             finally:
                 self.deliverer = 0
                 delivering.release()
@@ -143,6 +140,11 @@ class MemoryBus:
         self._hub = _shared.setdefault(name, _Hub()) if name else _Hub()
         self._mine: dict[_Subscription, None] = {}
         self._closed = False
+
+    @property
+    def dropped(self) -> Mapping[str, int]:
+        """How many messages were dropped under each key."""
+        return self._hub.drops.counts
 
     def carry(self, routes: Mapping[str, Route]) -> None:
         """Nothing changes: here every message arrives, and at once."""

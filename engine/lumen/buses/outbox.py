@@ -1,5 +1,6 @@
 """What waits to be sent: bounded, so that a broker that is away does not fill the memory."""
 
+import logging
 import threading
 import time
 from collections import deque
@@ -7,6 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from lumen.errors import BusFullError
+from lumen.upkeep.drops import DropLog
 
 MAX_PENDING_MESSAGES = 50_000
 """Messages that may be lost; then the oldest give way."""
@@ -14,6 +16,9 @@ MAX_PENDING_BYTES = 64 * 1024 * 1024
 """Bodies of either kind [bytes]."""
 MAX_PENDING_RELIABLE = 10_000
 """Messages that must arrive; then `put` raises."""
+LATE = "they were too old before they could be sent"
+
+_log = logging.getLogger(__name__)
 
 
 class OutgoingMessage(NamedTuple):
@@ -44,13 +49,13 @@ class OutgoingMessage(NamedTuple):
 class Outbox:
     """Any thread puts, one thread takes, first what must arrive.
 
-    When it is full the oldest gives way and is counted in `dropped`; what must arrive never does: `put` raises BusError
-    instead. `late` counts those whose deadline passed before they could be sent. `awaken` is called where the thread
-    that takes has gone to sleep and there is something again.
+    When it is full the oldest gives way; what must arrive never does: `put` raises BusError instead. That, and what
+    became too old before it could be sent, is counted in `drops`, by key. `awaken` is called where the thread that
+    takes has gone to sleep and there is something again.
     """
 
     def __init__(self, awaken: Callable[[], None] = lambda: None) -> None:
-        self.dropped = self.late = 0
+        self.drops = DropLog(_log)
         self._awaken = awaken
         self._must: deque[OutgoingMessage] = deque()
         self._may: deque[OutgoingMessage | str] = deque()
@@ -70,8 +75,7 @@ class Outbox:
                 self._may.append(message)
             self._weigh(message, +1)
             while len(self._may) > MAX_PENDING_MESSAGES or self._bytes[False] > MAX_PENDING_BYTES:
-                self._pop()
-                self.dropped += 1
+                self.drops.add(self._pop().key, "too much waits to be sent")
             asleep, self._asleep = self._asleep, False
             self._changed.notify_all()
         if asleep:
@@ -89,7 +93,7 @@ class Outbox:
                 if message.deadline is None or message.deadline > now:
                     taken.append(message)
                 else:
-                    self.late += 1
+                    self.drops.add(message.key, LATE)
             if not self:
                 self._changed.notify_all()
             return taken
@@ -138,8 +142,8 @@ class Outbox:
             self._weigh(waiting.popleft(), -1)
             self._may.remove(message.key)
 
-    def _check_room(self, message: OutgoingMessage) -> None:
-        if len(self._must) < MAX_PENDING_RELIABLE and self._bytes[True] + len(message.body) <= MAX_PENDING_BYTES:
+    def _check_room(self, new: OutgoingMessage) -> None:
+        if len(self._must) < MAX_PENDING_RELIABLE and self._bytes[True] + len(new.body) <= MAX_PENDING_BYTES:
             return
         now = time.monotonic()
         late = [p for p in self._must if p.deadline is not None and p.deadline <= now]
@@ -147,7 +151,8 @@ class Outbox:
             raise BusFullError(
                 f"the broker takes nothing, and {len(self._must):,} messages that must arrive wait already"
             )
-        self.late += len(late)
+        for message in late:
+            self.drops.add(message.key, LATE)
         self._must = deque(p for p in self._must if p.deadline is None or p.deadline > now)
         self._bytes[True] = sum(len(p.body) for p in self._must)
 

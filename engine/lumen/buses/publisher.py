@@ -45,7 +45,7 @@ class Publisher(BrokerConnection):
         self._declared: set[str] = set()
         self._refused: set[str] = set()
         self._window: dict[int, OutgoingMessage] = {}
-        self._bytes = self._number = self._dropped = self._late = 0
+        self._bytes = self._number = 0
         self._warned: set[str] = set()
         self.unsendable = DropLog(_log)
 
@@ -79,7 +79,8 @@ class Publisher(BrokerConnection):
                 self.outbox.put_back(messages[sent:])
                 raise
         self.connection.turn(IDLE_TIME if self._idle(bool(messages)) else 0.0)
-        self._log_losses()
+        self.outbox.drops.tell()
+        self.unsendable.tell()
         return bool(self.outbox or self._window) or not self.ending.is_set()
 
     def finish(self) -> None:
@@ -178,12 +179,3 @@ class Publisher(BrokerConnection):
             _log.info("the broker at %s does not let us make what keeps `%s`: %s", self.address, name, refusal)
         else:
             self._declared.add(name)
-
-    def _log_losses(self) -> None:
-        outbox = self.outbox
-        if outbox.dropped > self._dropped:
-            _log.warning("%d messages were dropped: the outbox was full", outbox.dropped - self._dropped)
-            self._dropped = outbox.dropped
-        if outbox.late > self._late:
-            _log.warning("%d messages were dropped: they were too old to be sent", outbox.late - self._late)
-            self._late = outbox.late

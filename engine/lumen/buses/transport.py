@@ -31,8 +31,9 @@ class Transport:
 
     @property
     def drops(self) -> tuple[DropLog, ...]:
-        """What was dropped: too many came, or a fault of ours met them."""
-        return self.consumer.intake.drops, self.dispatcher.guard.drops
+        """What was dropped: too many came, a fault of ours met them, or they could not be sent."""
+        sent = self.publisher.outbox.drops, self.publisher.unsendable
+        return self.consumer.intake.drops, self.dispatcher.guard.drops, *sent
 
     def open(self) -> None:
         """Raises BusError, saying what to do, where the broker can't be used."""

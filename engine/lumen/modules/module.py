@@ -11,6 +11,7 @@ from lumen.errors import BusError, ModuleError
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 DEFAULT_KEYS: Mapping[str, str] = {
@@ -68,6 +69,7 @@ class Module:
         self.handled = 0
         self._tell = tell
         self._waiting: deque[tuple[str, Message]] = deque(maxlen=MAX_WAITING_MESSAGES)
+        self._drops = DropLog(_log)
         self._changed = threading.Condition()
         self._busy = self._ending = False
         self._told: set[str] = set()
@@ -154,7 +156,9 @@ class Module:
         with self._changed:
             if row and row.keep == 1:
                 self._waiting = deque((w for w in self._waiting if w[0] != route), maxlen=MAX_WAITING_MESSAGES)
-            self._waiting.append((route, message))
+            self._drops.push(
+                self._waiting, (route, message), lambda waiting: waiting[1].key, f"{self.name} is too slow"
+            )
             self._changed.notify_all()
 
     def _run(self) -> None:

@@ -1,13 +1,17 @@
 """From messages to events: what arrives on any thread waits here for the next tick."""
 
+import logging
 from collections import deque
 from collections.abc import Callable
 
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
+from lumen.upkeep.drops import DropLog
 
 MAX_WAITING_EVENTS = 10_000
+
+_log = logging.getLogger(__name__)
 
 
 class Inbox:
@@ -16,6 +20,7 @@ class Inbox:
     def __init__(self, bus: Bus) -> None:
         self._bus = bus
         self._waiting: deque[tuple[str, object]] = deque(maxlen=MAX_WAITING_EVENTS)
+        self._drops = DropLog(_log, "events")
         self._undo: dict[tuple[str, str], Callable[[], None]] = {}
 
     def listen(self, project: Project) -> None:
@@ -29,6 +34,7 @@ class Inbox:
     def drain(self, now: float) -> list[Event]:
         """Everything that has arrived, as events at `now` [s]."""
         events = []
+        self._drops.tell()
         while self._waiting:
             name, body = self._waiting.popleft()
             events.append(Event(name, body, now))
@@ -36,6 +42,8 @@ class Inbox:
 
     def _receiver(self, event: str) -> Callable[[Message], None]:
         def receive(message: Message) -> None:
-            self._waiting.append((event, message.body))
+            self._drops.push(
+                self._waiting, (event, message.body), lambda waiting: waiting[0], "the behaviour is too slow"
+            )
 
         return receive

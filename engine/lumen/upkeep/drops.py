@@ -3,13 +3,18 @@
 import logging
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import suppress
+from typing import TypeVar
 
 TELL_PERIOD = 10.0
 """How long after a line about a key the next one comes at the earliest [s]."""
 MAX_KEYS = 1_000
 """Keys that are counted apart; what is dropped under further ones is counted as `OTHERS`."""
 OTHERS = "other keys"
+
+T = TypeVar("T")
 
 
 class DropLog:
@@ -45,6 +50,13 @@ class DropLog:
                 self._untold[key] = (self._untold.get(key, (0, ""))[0] + count, why)
         if first:
             self._log.warning("%s on `%s` are dropped: %s", self._what, key, why)
+
+    def push(self, waiting: deque[T], item: T, key_of: Callable[[T], str], why: str) -> None:
+        """Append to a bounded queue; where that is full the oldest gives way, and is counted under its key."""
+        if len(waiting) == waiting.maxlen:
+            with suppress(IndexError):  # somebody has just taken it
+                self.add(key_of(waiting[0]), why)
+        waiting.append(item)
 
     def tell(self, *, all: bool = False) -> None:
         """Log what was dropped since the last line about its key, where that was long enough ago, or `all`."""

@@ -29,6 +29,7 @@ from lumen.buses.local.sendbuffer import SendBuffer
 from lumen.errors import BusClosedError, BusError, BusRefusedError, BusUnreachableError, Refused
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler
+from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 CLOSE_TIMEOUT = 5.0
@@ -54,7 +55,7 @@ class LocalBusClient:
         self._answers: dict[int, tuple[threading.Event, list[str]]] = {}
         self._numbers, self._marked = count(), threading.Event()
         self._arrived: deque[tuple[MessageHandler, int, Message]] = deque(maxlen=MAX_UNHANDLED_MESSAGES)
-        self._arriving = threading.Condition()
+        self._arriving, self._drops = threading.Condition(), DropLog(_log)
         self._threads = [
             WatchedThread(f"lumen-local-{name}", work)
             for name, work in (("out", self._send), ("in", self._receive), ("handlers", self._handle))
@@ -157,7 +158,8 @@ class LocalBusClient:
         match words:
             case ["message", number, key, reply_to, correlation_id, body] if handler := self._handlers.get(number):
                 with self._arriving:
-                    self._arrived.append((handler, number, Message(key, body, reply_to, correlation_id)))
+                    arrived = (handler, number, Message(key, body, reply_to, correlation_id))
+                    self._drops.push(self._arrived, arrived, lambda waiting: waiting[2].key, "its handler is too slow")
                     self._arriving.notify()
             case ["subscribed", number, reason] if waiting := self._answers.pop(number, None):
                 waiting[1].append(reason)

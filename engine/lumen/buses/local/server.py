@@ -29,6 +29,7 @@ from lumen.buses.local.frames import (
 )
 from lumen.errors import BusError
 from lumen.ports import Bus, Message
+from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_CLIENTS = 32
@@ -99,7 +100,7 @@ class LocalBusServer:
         self._clients: dict[socket.socket, ClientConnection] = {}
         self._marks: dict[str, Callable[[], None]] = {}
         self._undo = bus.subscribe(FLUSH_MARK, self._marked)
-        self._ending = False
+        self._ending, self._drops = False, DropLog(_log)
         self._thread = WatchedThread("lumen-local-server", self._run, vital=True)
         self._thread.start()
 
@@ -125,6 +126,7 @@ class LocalBusServer:
                     self._receive(self._clients[key.fileobj])  # type: ignore[index]
             for client in list(self._clients.values()):
                 self._serve(client)
+            self._drops.tell()
         for client in list(self._clients.values()):
             self._disconnect(client)
         for end in (self._listener, self._wake, self._woken, self._selector):
@@ -189,7 +191,9 @@ class LocalBusServer:
         def arrived(message: Message) -> None:
             if message.key == FLUSH_MARK:
                 return
-            client.arrived.append((number, message))
+            self._drops.push(
+                client.arrived, (number, message), lambda waiting: waiting[1].key, "who reads them is too slow"
+            )
             self._wake_up()
 
         try:
