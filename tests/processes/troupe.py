@@ -1,4 +1,7 @@
-"""The parts of an exhibition, each with a bus, a clock and a loop of its own as in its own process."""
+"""The parts of an exhibition, each with a bus, a clock and a loop of its own as in its own process.
+
+Their clocks are real ones: in one loop who follows the robot's time would make the robot wait for it.
+"""
 
 import time
 from collections.abc import Callable
@@ -14,7 +17,7 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup, set_up
 from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
-from lumen.clocks.following import FollowingClock
+from lumen.clocks.real import RealClock
 from lumen.ports import Clock
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.presence import BRAIN, ROBOT_PART
@@ -68,7 +71,7 @@ class Member:
         project = replace(lumen.load(folder), robot=name)
         self.run_directory = RunDirectory(folder, guest=BRAIN not in names)
         self.cast: Setup | None = set_up("recording", project, speed) if ROBOT_PART in names else None
-        clock: Clock = self.cast.clock if self.cast else FollowingClock(float(speed))
+        clock: Clock = self.cast.clock if self.cast else RealClock(speed=float(speed))
         played = project.stories[story] if story else None
         bus = validated(connect(url), project)
         narrator = Printed(clock.now, lambda: self.process.project.machine)
