@@ -103,6 +103,11 @@ class RabbitMQ:
         _end(self._process, signal.SIGKILL)
         self._process = None
 
+    def signal(self, number: int) -> None:
+        """Send it a signal, as SIGSTOP and SIGCONT for one that hangs."""
+        assert self._process
+        os.killpg(self._process.pid, number)
+
     def stop(self) -> None:
         """End it and its name server, and delete its folder."""
         for process in (self._process, self._names):

@@ -1,0 +1,335 @@
+"""What a visitor notices when a part of an exhibition fails, and how long until the tour goes on where it was.
+
+    python benchmarks/faults.py [--count N] [--seed S] [--robot recording|simulation] [--parts brain,robot]
+                                [--faults killed,paused3] [--moments dance] [--json FILE]
+
+Robot, brain and motion module are processes of their own on a private RabbitMQ, each behind a wire of its own.
+Somebody visits: at each moment of the tour that is asked for a part is killed (and begun again at once, as systemd
+does), paused for 3 or 15 s, cut off, half-open (nothing comes through, and nobody is told) or delayed (0.5 s each way)
+for 8 s; when the tour goes on, the same again. The visitor says everything once, and stands there.
+
+`silent` is how long the robot says nothing [s], from the fault on; `on` how long it takes from the end of the fault (for
+what is killed: from the kill) until the tour is where it was; `said` what the visitor hears that is no part of it;
+TWICE names motions that were begun again though nobody asked. `rest` is whether the robot rested, with a ! where it had
+to and did not, or did for nothing: it has to where its brain was away for 5 s and it lives. Without `--count` all are run;
+with it a sample.
+"""
+
+import argparse
+import json
+import os
+import random
+import re
+import shutil
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded, temporary_folder
+from tests.rabbitmq import RabbitMQ
+from wire import Wire
+
+import lumen
+from lumen.bus import connect
+from lumen.errors import BusError
+
+ROOT = Path(__file__).parents[1]
+PARTS = ("broker", "brain", "robot", "motion")
+FAULTS = ("killed", "paused3", "paused15", "cut", "half-open", "delayed")
+FAULT_PERIOD, DELAY = 8.0, 0.5
+"""How long a wire is cut, dead or slow [s], and how much later what it carries arrives."""
+READY_TIMEOUT, MOMENT_TIMEOUT, RETURN_TIMEOUT = 90.0, 150.0, 60.0
+BRAIN_TIMEOUT = 5.0
+
+SPOKEN = {
+    "ask_name": "My name is Ada",
+    "how_are_you": "fine",
+    "offer": "Tell me about this stand",
+    "any_question": "How tall are you?",
+}
+"""What the visitor says in a state, on the way to a moment."""
+WISHES = {"explain": "Tell me about this stand", "dance": "dance", "sing": "sing", "photo": "photo", "goodbye": "no"}
+MOMENTS = ("idle", "greet", "ask_name", "how_are_you", "offer", "explain", "any_question", "answer", "dance", "goodbye")
+BACK = {"greet": "ask_name", "dance": "offer", "sing": "offer", "photo": "offer", "answer": "answer"}
+"""Where a moment is taken up that is not begun again."""
+APOLOGIES = ("lost my thoughts", "not hear", "I fell", "on my feet", "cannot", "have stopped")
+
+LINE = re.compile(r"^ *\d+:\d\d\.\d  (\w+) +(.*)$")
+
+
+class Told(NamedTuple):
+    """A line of a transcript, and when it came [s]."""
+
+    at: float
+    who: str
+    text: str
+
+
+class Part:
+    """A process of the exhibition: begun, watched, and begun again."""
+
+    def __init__(self, name: str, command: Sequence[str]) -> None:
+        self.name, self.told = name, list[Told]()
+        self._command = command
+        self.process: Guarded[str] | None = None
+
+    def begin(self) -> None:
+        self.process = Guarded(self._command, text=True, stdin=DEVNULL, stdout=PIPE, stderr=STDOUT, bufsize=1)
+        threading.Thread(target=self._read, args=(self.process,), daemon=True).start()
+
+    def signal(self, number: int) -> None:
+        assert self.process
+        os.killpg(self.process.pid, number)
+
+    def end(self) -> None:
+        if self.process:
+            self.signal(signal.SIGKILL)
+            self.process.wait()
+
+    def since(self, at: float, who: str = "") -> list[Told]:
+        return [told for told in list(self.told) if told.at >= at and who in ("", told.who)]
+
+    def _read(self, process: Guarded[str]) -> None:
+        assert process.stdout
+        for line in process.stdout:
+            found = LINE.match(line)
+            who, text = (found[1], found[2]) if found else ("note", line.strip())
+            self.told.append(Told(time.monotonic(), who, text))
+
+
+class Outcome(NamedTuple):
+    """What came of one fault; times in [s]."""
+
+    part: str
+    fault: str
+    moment: str
+    again: bool
+    silent: float
+    on: float | None
+    at: str
+    said: list[str]
+    twice: list[str]
+    rested: bool
+    should_rest: bool
+
+    @property
+    def well(self) -> bool:
+        return self.on is not None and not self.twice and self.rested == self.should_rest
+
+
+class Exhibition:
+    """Broker, wires, processes, and a visitor."""
+
+    def __init__(self, robot: str, stack: ExitStack) -> None:
+        self.folder = _copy(temporary_folder("lumen-faults-"))
+        self.broker = RabbitMQ()
+        stack.callback(self.broker.stop)
+        self.broker.start()
+        self.wires = {name: Wire(self.broker.port) for name in ("brain", "robot", "motion")}
+        self.parts = {name: Part(name, self._command(name, robot)) for name in ("robot", "motion", "brain")}
+        for part in self.parts.values():
+            stack.callback(part.end)
+            part.begin()
+        self._bus = connect(self.broker.url)
+        stack.callback(self._bus.close)
+        self.until(lambda: self.state == "idle", READY_TIMEOUT, "the tour begins")
+
+    @property
+    def state(self) -> str:
+        """The innermost state of the guide, as the brain told last; empty where something else is on."""
+        for told in reversed(self.parts["brain"].told):
+            if told.who == "state":
+                names = told.text.partition("  (")[0].split(", ")
+                for name in names:
+                    if name in ("paused", "interrupted"):
+                        return ""
+                    if name in (*MOMENTS, *BACK, "fine", "not_understood"):
+                        return name
+            if told.text.startswith("The last run ended without notice"):
+                return told.text.rpartition(" in ")[2].split(", ")[0].rstrip(".")
+        return ""
+
+    def until(self, condition: Callable[[], object], patience: float, what: str) -> float:
+        """When it was so [s]. Raises TimeoutError."""
+        deadline = time.monotonic() + patience
+        while not condition():
+            if time.monotonic() > deadline:
+                last = "\n".join(f"{p.name}: {t.who} {t.text}" for p in self.parts.values() for t in p.told[-12:])
+                raise TimeoutError(f"{what}: not within {patience:g} s; told last:\n{last}")
+            time.sleep(0.02)
+        return time.monotonic()
+
+    def publish(self, key: str, body: Any) -> None:
+        self.until(lambda: self._published(key, body), READY_TIMEOUT, f"a message on {key}")
+
+    def _published(self, key: str, body: Any) -> bool:
+        try:
+            self._bus.publish(key, body)
+        except BusError:
+            return False
+        return True
+
+    def say(self, text: str) -> None:
+        self.publish("lumen.audio.speech.recognition", {"name": "Ada", "result": text, "date": "2026-01-01T10:00:00"})
+
+    def reach(self, moment: str) -> None:
+        """Have the visit come to that moment, from wherever it is."""
+        deadline, said = time.monotonic() + MOMENT_TIMEOUT, ""
+        self.publish("avatar.NAO.hall", {"visitor": {"x": 1.2, "y": 0.0, "height": 1.65}})
+        while self.state != moment:
+            state = self.state
+            if time.monotonic() > deadline:
+                raise TimeoutError(f"{moment} was not reached, but {state}")
+            if state != said and state in SPOKEN:
+                wish = WISHES.get(moment, SPOKEN[state]) if state in ("offer", "any_question") else SPOKEN[state]
+                self.say(wish)
+            said = state
+            time.sleep(0.05)
+            if moment == "idle":
+                self.publish("avatar.NAO.hall", {"visitor": None})
+                if state in ("offer", "any_question"):
+                    self.say("no")
+
+    def fault(self, part: str, fault: str) -> float:
+        """Let it happen, and be over; when it was over [s]."""
+        if fault == "killed":
+            began = time.monotonic()
+            self._kill(part)
+            return began
+        if fault.startswith("paused"):
+            self._signal(part, signal.SIGSTOP)
+            time.sleep(float(fault.removeprefix("paused")))
+            self._signal(part, signal.SIGCONT)
+            return time.monotonic()
+        wires = list(self.wires.values()) if part == "broker" else [self.wires[part]]
+        for wire in wires:
+            if fault == "delayed":
+                wire.delay = DELAY
+            else:
+                wire.mode = "cut" if fault == "cut" else "dead"
+        time.sleep(FAULT_PERIOD)
+        for wire in wires:
+            wire.delay, wire.mode = 0.0, "whole"
+        return time.monotonic()
+
+    def _kill(self, part: str) -> None:
+        if part == "broker":
+            self.broker.kill()
+            self.broker.start()
+        else:
+            self.parts[part].end()
+            self.parts[part].begin()
+
+    def _signal(self, part: str, number: int) -> None:
+        if part == "broker":
+            self.broker.signal(number)
+        else:
+            self.parts[part].signal(number)
+
+    def _command(self, name: str, robot: str) -> list[str]:
+        url = f"amqp://guest:guest@127.0.0.1:{self.wires[name].port}/"
+        words = [sys.executable, "-m", "lumen", "run", str(self.folder), "--only", name, "--bus", url]
+        return [*words, "--robot", robot] if name == "robot" else words
+
+
+def endure(exhibition: Exhibition, part: str, fault: str, moment: str, *, again: bool) -> Outcome:
+    """One fault at one moment, and what came of it."""
+    exhibition.reach(moment)
+    time.sleep(1.0)  # in the middle of it
+    robot, brain = exhibition.parts["robot"], exhibition.parts["brain"]
+    began = time.monotonic()
+    over = exhibition.fault(part, fault)
+    wanted = {moment, BACK.get(moment, moment), *(("idle", "greet") if moment in ("idle", "goodbye") else ())}
+    quiet = fault in ("delayed", "paused3") or part == "motion"
+    try:
+        back = exhibition.until(
+            lambda: exhibition.state in wanted and (quiet or brain.since(began, "state") or brain.since(began, "note")),
+            RETURN_TIMEOUT,
+            f"{part} {fault} at {moment}: the tour goes on",
+        )
+    except TimeoutError as error:
+        print(error, file=sys.stderr)
+        back = None
+    said = [t for t in robot.since(began, "robot") if t.text.startswith("“")]
+    apologies = [t.text for t in said if any(words in t.text for words in APOLOGIES)]
+    played = [t.text for t in robot.since(began, "robot") if t.text.startswith("plays ")]
+    rested = any("rests" in t.text for t in robot.since(began, "robot"))
+    away = {"killed": 0.0, "paused3": 3.0, "paused15": 15.0, "delayed": 0.0}.get(fault, FAULT_PERIOD)
+    return Outcome(
+        part, fault, moment, again,
+        silent=round((said[0].at if said else time.monotonic()) - began, 1),
+        on=None if back is None else round(max(back - over, 0.0), 1),
+        at=exhibition.state,
+        said=apologies,
+        twice=sorted({text for text in played if text.endswith(moment)}) if moment in BACK else [],
+        rested=rested,
+        should_rest=away > BRAIN_TIMEOUT and part != "motion",
+    )  # fmt: skip
+
+
+def _copy(folder: Path) -> Path:
+    for name in ("behaviors", "fuzzy", "models", "motions", "schemas"):
+        shutil.copytree(ROOT / name, folder / name)
+    shutil.copy(ROOT / "lumen.yaml", folder)
+    return folder
+
+
+@contextmanager
+def exhibition_with(robot: str) -> Iterator[Exhibition]:
+    with ExitStack() as stack:
+        yield Exhibition(robot, stack)
+
+
+def table(outcomes: Sequence[Outcome]) -> str:
+    """Outcomes as they are printed."""
+    rows = [f"{'part':7} {'fault':10} {'moment':13}{'silent':>7}{'on':>7}  {'goes on at':13} rest   said"]
+    for o in outcomes:
+        on = "never" if o.on is None else f"{o.on:.1f}"
+        rest = ("yes" if o.rested else "no") + ("" if o.rested == o.should_rest else " !")
+        rows.append(
+            f"{o.part:7} {o.fault:10} {o.moment:13}{o.silent:>7.1f}{on:>7}  {o.at:13} {rest:6} {' '.join(o.said)[:60]}"
+            + "".join(f"  TWICE {text}" for text in o.twice)
+        )
+    well = sum(o.well for o in outcomes)
+    return "\n".join([*rows, f"{well} of {len(outcomes)} go on, with nothing twice, and rest where they have to"])
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, help="how many combinations, drawn (default: all)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--robot", choices=("recording", "simulation"), default="recording")
+    parser.add_argument("--parts", default=",".join(PARTS))
+    parser.add_argument("--faults", default=",".join(FAULTS))
+    parser.add_argument("--moments", default=",".join(MOMENTS))
+    parser.add_argument("--json", type=Path, help="write the outcomes there")
+    options = parser.parse_args()
+    every = [
+        (part, fault, moment)
+        for part in options.parts.split(",")
+        for fault in options.faults.split(",")
+        for moment in options.moments.split(",")
+    ]
+    drawn = random.Random(options.seed).sample(every, min(options.count or len(every), len(every)))
+    outcomes: list[Outcome] = []
+    print(f"Lumen {lumen.__version__}, {len(drawn)} combinations, each twice in a row, robot: {options.robot}")
+    with exhibition_with(options.robot) as exhibition:
+        for part, fault, moment in drawn:
+            for again in (False, True):
+                outcomes.append(endure(exhibition, part, fault, moment, again=again))
+                print(table(outcomes[-1:]).splitlines()[1], flush=True)
+    print(table(outcomes).splitlines()[-1])
+    if options.json:
+        options.json.write_text(json.dumps([o._asdict() | {"well": o.well} for o in outcomes], indent=1))
+    return int(not all(o.well for o in outcomes))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
