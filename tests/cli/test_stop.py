@@ -1,0 +1,88 @@
+"""`lumen stop` and `lumen resume`, to an exhibition that runs and to one whose robot is not there."""
+
+import io
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.bus import Bus, connect
+from lumen.cli import stop
+from lumen.cli.main import main
+from lumen.cli.person import person
+from tests.waiting import until
+
+
+class Terminal(io.StringIO):
+    """A person who types this."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture
+def bus(copy: Path) -> Iterator[Bus]:
+    """A bus that other terminals reach, and nobody on it."""
+    bus, directory = connect("memory://"), RunDirectory(copy)
+    directory.open(bus, "memory://", lumen.load(copy))
+    yield bus
+    directory.close(forget=True)
+    bus.close()
+
+
+@pytest.fixture
+def exhibition(copy: Path, bus: Bus) -> Iterator[Exhibition]:
+    """One that runs in a thread."""
+    ending = threading.Event()
+    with lumen.open(copy, bus=bus) as one:
+
+        def live() -> None:
+            while not ending.wait(0.001):
+                one.tick()
+
+        thread = threading.Thread(target=live)
+        thread.start()
+        yield one
+        ending.set()
+        thread.join()
+
+
+@pytest.mark.slow
+def test_it_stops_stays_and_goes_on_as_a_person_wants_it(
+    exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert main(["stop", str(copy)]) == 0
+    assert "the robot rests" in capsys.readouterr().out
+    until(lambda: "stopped" in exhibition.configuration)
+    hold = exhibition.node.robot.server.hold
+    assert hold.stopped
+    assert hold.stopped.by == person()
+    monkeypatch.setattr("sys.stdin", Terminal("no\n"))
+    assert main(["resume", str(copy)]) == 1
+    assert f"{person()} stopped the robot at 20" in capsys.readouterr().out
+    assert "stopped" in exhibition.configuration
+    monkeypatch.setattr("sys.stdin", io.StringIO())
+    assert main(["resume", str(copy)]) == 2
+    assert "say --yes" in capsys.readouterr().err
+    monkeypatch.setattr("sys.stdin", Terminal("Yes\n"))
+    assert main(["resume", str(copy)]) == 0
+    until(lambda: "watching" in exhibition.configuration)
+    assert main(["stop", str(copy)]) == 0
+    assert main(["resume", str(copy), "--yes"]) == 0
+    until(lambda: "watching" in exhibition.configuration)
+
+
+def test_where_no_robot_answers_it_says_what_is_left(
+    bus: Bus, copy: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stop, "STOP_TIMEOUT", 0.2)
+    told: list[object] = []
+    bus.subscribe("lumen.config.command", lambda message: told.append(message.body))
+    assert main(["stop", str(copy)]) == 2
+    said = capsys.readouterr().err
+    assert "no robot answers on `avatar.NAO.stop`: it may still move. Press the button on its chest" in said
+    until(lambda: told == [{"command": "stop"}])
