@@ -5,6 +5,7 @@ import json
 import os
 import signal
 import sys
+import time
 import unicodedata
 import zipfile
 from collections.abc import Iterator
@@ -61,7 +62,8 @@ def copy(whole: Path) -> Path:
 
 @contextmanager
 def running(copy: Path) -> Iterator[tuple[Guarded[str], Bus]]:
-    """An exhibition in a process of its own, and its bus."""
+    """An exhibition in a process of its own, which hears by now, and its bus."""
+    begun = time.time()
     command = [sys.executable, "-m", "lumen", "run", copy, "--robot", "recording"]
     with Guarded(command, stdin=PIPE, stdout=PIPE, stderr=STDOUT, text=True) as process:
         buses: list[Bus] = []
@@ -70,7 +72,8 @@ def running(copy: Path) -> Iterator[tuple[Guarded[str], Bus]]:
             assert process.poll() is None, process.stdout and process.stdout.read()
             with suppress(OSError, ValueError, BusError):
                 address = json.loads((copy / ".lumen/door.json").read_text("utf-8"))
-                if address["process"] == process.pid:
+                alive = json.loads((copy / ".lumen/alive.json").read_text("utf-8"))["time"] > begun
+                if address["process"] == process.pid and alive:
                     buses.append(LocalBusClient(LocalAddress.of(address)))
             return bool(buses)
 
