@@ -149,7 +149,7 @@ class Exhibition:
         for told in reversed(self.parts["brain"].told):
             if told.who == "state":
                 names = told.text.partition("  (")[0].split(", ")
-                for name in names:
+                for name in reversed(names):
                     if name in ("paused", "interrupted"):
                         return ""
                     if name in (*MOMENTS, *BACK, "fine", "not_understood"):

@@ -2,6 +2,7 @@
 
 import pytest
 
+from lumen.app.parts.hosted_robot import HostedRobotPart
 from lumen.errors import UsageError
 from lumen.language.commands import Posture, Rest, Say
 from lumen.language.motions import MotionDefinition
@@ -122,6 +123,35 @@ def test_a_network_that_is_cut_for_10_seconds_ends_safely_and_goes_on(troupe: Tr
         member.close()
     troupe.members.clear()
     cable.close()
+
+
+def test_a_robot_that_a_person_stopped_wakes_for_a_hand_on_its_head_and_for_resume(troupe: Troupe) -> None:
+    robot, brain = troupe.play()
+    reports = Collector()
+    troupe.ear.subscribe("avatar.NAO.event.command", reports)
+
+    def ask(method: str, **parameter: object) -> None:
+        troupe.ear.publish("avatar.NAO.stop", {"type": "motion", "method": method, "parameter": parameter}, ttl=2.0)
+
+    def hand(*, pressed: bool) -> None:
+        troupe.ear.publish("avatar.NAO.hall", {"sensor": "FrontTactil", "pressed": pressed}, ttl=2.0)
+
+    ask("rest", by="Ada")
+    troupe.until(lambda: "stopped" in brain.states)
+    troupe.ear.publish("avatar.NAO.command", {"type": "motion", "method": "wakeUp", "id": "theirs"}, ttl=2.0)
+    troupe.until(
+        lambda: any(report["id"] == "theirs" and "Ada" in report.get("reason", "") for report in reports.bodies)
+    )
+    hand(pressed=True)
+    troupe.until(lambda: "watching" in brain.states)
+    hand(pressed=False)
+    part = robot.process.parts[0]
+    assert isinstance(part, HostedRobotPart)
+    assert part.server.hold.stopped is None
+    ask("rest", by="Ada")
+    troupe.until(lambda: "stopped" in brain.states)
+    ask("resume", by="Bo")
+    troupe.until(lambda: "watching" in brain.states)
 
 
 def test_files_that_the_brain_puts_in_force_are_in_force_everywhere(troupe: Troupe) -> None:

@@ -33,7 +33,13 @@ class RemoteBody:
     def __init__(self, project: Project, bus: ValidatedBus, clock: Clock, presence: Presence) -> None:
         self._presence = presence
         self._project: Callable[[], Project] = lambda: project
-        self.robot = RemoteRobot(project, bus, clock.now, delegate=lambda id, command: self.tracking.play(id, command))
+        self.robot = RemoteRobot(
+            project,
+            bus,
+            clock.now,
+            delegate=lambda id, command: self.tracking.play(id, command),
+            session=presence.session,
+        )
         own = LocalTracking(project, self.robot, bus)
         self.tracking = DelegatedTracking(own, project, bus, self.motion_module, self.robot.time)
         self._clock = clock

@@ -63,11 +63,11 @@ Delegate = Callable[[str, Perform], bool]
 class RemoteRobot:
     """The robot whose server is on this bus, as the routes of the project say.
 
-    Commands travel under ids that no other process has (`session`). One that is not heard of is sent again; one that
-    the robot never took fails after 5 s, and would not be performed if it came after all. What stops the robot has a
-    way of its own on the bus: what was sent before and not heard of is called off with it, what comes after it waits
-    until the robot has it. `clock` [s] stamps events, `patience` [s] is the time that answers take. `delegate` may take
-    motions over.
+    Commands travel under ids that no other process has (`session`): by it the robot knows its brain. One that is not
+    heard of is sent again; one that the robot never took fails after 5 s, and would not be performed if it came after
+    all. What stops the robot has a way of its own on the bus: what was sent before and not heard of is called off with
+    it, what comes after it waits until the robot has it. `clock` [s] stamps events, `patience` [s] is the time that
+    answers take. `delegate` may take motions over.
     """
 
     def __init__(
@@ -78,8 +78,9 @@ class RemoteRobot:
         *,
         patience: Callable[[], float] = time.monotonic,
         delegate: Delegate = lambda id, command: False,
+        session: str = "",
     ) -> None:
-        self.session = uuid.uuid4().hex[:12]
+        self.session = session or uuid.uuid4().hex[:12]
         self._project, self._bus, self._clock, self._patience = project, bus, clock, patience
         self._delegate = delegate
         self._pending: dict[str, _Pending] = {}
