@@ -75,7 +75,7 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
     if old.languages[:1] != new.languages[:1]:
         yield Change("language", "", f"`{new.languages[0]}` is spoken first now", Risk.BEHAVIOR, "lumen.yaml")
     if old.alerts != new.alerts:
-        yield Change("alerts", "", "who is told of troubles (`alerts`) changed", Risk.WIRING, "lumen.yaml")
+        yield Change("alerts", "", "who is told of troubles (`alerts`) changed", Risk.COSMETIC, "lumen.yaml")
     for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_PARTS, *_SELF)):
         before, after = getattr(old, field), getattr(new, field)
         if before != after:
