@@ -65,11 +65,22 @@ NUMBERED = {
     "hex.py": CALL.format("0x" + "f" * 5_000),
     "long.py": CALL.format("9" * 400),
     "time.motion": f"#WEBOTS_MOTION,V1.0,HeadYaw\n{NINES}:00:500,Pose1,0.2\n",
+    "angle.motion": "#WEBOTS_MOTION,V1.0,HeadYaw\n00:00:500,Pose1,1e308\n",
     "delay.scxml": SCXML.format(f"<onentry><send event='e' delay='{NINES}s'/></onentry>"),
     "condition.scxml": SCXML.format(f"<transition cond='{HEX} > 1'/>"),
     "resolution.fll": FOREIGN["fll"].replace("Centroid 100", "Centroid ²"),
     "numbers.json": f'{{"states": {{"a": {{}}}}, "context": {{"n": {NINES[:400]}}}}}',
 }
+
+
+@pytest.mark.parametrize("name", ["blank.py", "blank.fcl", "blank.fll", "blank.fis", "blank.motion", "blank.scxml"])
+@pytest.mark.parametrize("blank", [" ", "\n", "\t"])
+def test_hundreds_of_thousands_of_blanks_are_nothing(name: str, blank: str, tmp_path: Path) -> None:
+    ending = name.partition(".")[2]
+    (tmp_path / name).write_text(FOREIGN[ending].replace(" ", " " + blank * 100_000, 1), "utf-8")
+    began = time.process_time()
+    assert main(["import", str(tmp_path / name), "-o", str(tmp_path / "out.yaml")]) in (0, 1, 2)
+    assert time.process_time() - began < 2.0
 
 
 @pytest.mark.parametrize("name", NUMBERED)

@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from math import degrees, isfinite
+from math import degrees
 from typing import Any, NamedTuple
 
 from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.gestures.literals import MAX_NUMBER
 from lumen.language.diagnostics import Place
 from lumen.language.robots import Body
 
@@ -134,12 +135,12 @@ class MotionWriter:
 
 
 def number(text: str) -> float | None:
-    """The finite number that a text holds, None where it holds none."""
+    """The number that a text holds, None where it holds none, or none that a time or an angle could be."""
     try:
         value = float(text)
     except ValueError:
         return None
-    return value if isfinite(value) else None
+    return value if abs(value) < MAX_NUMBER else None
 
 
 def _bent(points: Iterable[CurvePoint]) -> list[CurvePoint]:

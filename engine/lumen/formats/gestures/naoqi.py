@@ -22,8 +22,8 @@ ALMOTION_CALLS = {
 BEZIER, LINEAR = 3, 1
 
 _OLD = (
-    (re.compile(r"^(\s*except\s+[\w.]+),\s*(\w+)\s*:", re.MULTILINE), r"\1 as \2:"),
-    (re.compile(r"^(\s*)print\b(?!\s*\().*", re.MULTILINE), r"\1pass"),
+    (re.compile(r"^([ \t]*except[ \t]+[\w.]+),[ \t]*(\w+)[ \t]*:", re.MULTILINE), r"\1 as \2:"),
+    (re.compile(r"^([ \t]*)print\b(?![ \t]*\().*", re.MULTILINE), r"\1pass"),
 )
 """What Python 2 wrote otherwise, and how it is read."""
 
