@@ -96,7 +96,7 @@ def _limit_time(seconds: float) -> None:
 def main() -> None:
     """Answer until the pipe ends; what anybody prints goes to the terminal, not into the pipe."""
     if hasattr(os, "nice"):
-        os.nice(NICENESS)
+        os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
     _limit_memory()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
