@@ -1,7 +1,7 @@
 """Messages by topic, for authors of modules: `connect`, `subscribe`, `publish`, `close`."""
 
 from lumen.buses.memory import MemoryBus
-from lumen.buses.validated import OnRefused, log_refusal, validated
+from lumen.buses.validated import OnRefused, validated
 from lumen.errors import BusAddressError, BusError, Refused
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
@@ -9,7 +9,7 @@ from lumen.ports import Bus, Message
 __all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
 
 
-def connect(url: str, project: Project | None = None, *, on_refused: OnRefused = log_refusal) -> Bus:
+def connect(url: str, project: Project | None = None, *, on_refused: OnRefused | None = None) -> Bus:
     """The bus at `url`.
 
     `memory://` is a new one inside this process, `memory://NAME` the one that everybody in this process shares under

@@ -12,7 +12,7 @@ from lumen.app.setup import set_up
 from lumen.bus import Message, connect
 from lumen.language.commands import Rest
 from lumen.upkeep import threads
-from lumen.upkeep.drops import MAX_KEYS, OTHERS, TELL_PERIOD, DropLog
+from lumen.upkeep.drops import MAX_KEYS, OTHERS, TELL_PERIOD, DropLog, ReasonLog
 from lumen.upkeep.threads import MAX_FAULTS, MessageGuard, ThreadWatch, WatchedThread
 from tests.exhibits import project
 from tests.nodes import Printed, whole
@@ -221,3 +221,19 @@ def test_what_gives_way_in_a_full_queue_is_counted_by_its_key() -> None:
         drops.push(waiting, (key, n), lambda old: old[0], "full")
     assert list(waiting) == [("b", 2), ("c", 3)]
     assert drops.counts == {"a": 2}
+
+
+def test_a_reason_is_told_once_in_ten_seconds_whatever_its_numbers(caplog: pytest.LogCaptureFixture) -> None:
+    now = 0.0
+    said = ReasonLog(LOG, "on `%(key)s`: %(reason)s", clock=lambda: now)
+    told = [said(*what) for what in (("a", "3 wait"), ("a", "4 wait"), ("b", "4 wait"), ("a", "too late"))]
+    now = TELL_PERIOD
+    told.append(said("a", "5 wait"))
+    assert told == [True, False, True, True, True]
+    assert [record.getMessage() for record in caplog.records] == [
+        "on `a`: 3 wait",
+        "messages on `a` are dropped: 4 wait",
+        "on `b`: 4 wait",
+        "on `a`: too late",
+        "on `a`: 5 wait",
+    ]

@@ -48,7 +48,9 @@ def test_the_same_seed_gives_the_same_messages() -> None:
     assert isinstance(frame(Random(1), ["lumen.a"]), bytes)
 
 
-def test_no_message_ends_a_running_exhibition_nor_makes_it_deaf(exhibition: WholeNode, broker: RabbitMQ) -> None:
+def test_no_message_ends_a_running_exhibition_nor_makes_it_deaf(
+    exhibition: WholeNode, broker: RabbitMQ, caplog: pytest.LogCaptureFixture
+) -> None:
     random, keys, robot = Random(1), keys_of(exhibition.project), exhibition.setup.robot
     stranger, friend, watch = Stranger(broker.url), Stranger(broker.url), ThreadWatch()
     for n in range(COUNT):
@@ -64,7 +66,7 @@ def test_no_message_ends_a_running_exhibition_nor_makes_it_deaf(exhibition: Whol
 
     obeyed("avatar.NAO.stop", {"type": "motion", "method": "rest"}, Rest)
     assert watch.tick() == []
-    assert exhibition.bus.dropped.get("avatar.NAO.command", 0) == 0, "no fault of ours"
+    assert "Traceback" not in caplog.text, "no fault of ours"
     stranger.close()
     friend.close()
 

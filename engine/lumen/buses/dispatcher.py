@@ -12,6 +12,7 @@ from lumen.buses.queues import UNROUTED
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import Refused
 from lumen.ports import Message
+from lumen.upkeep.drops import ReasonLog
 from lumen.upkeep.threads import MessageGuard, WatchedThread
 
 FLUSH_MARK = "lumen.mark"
@@ -36,6 +37,7 @@ class Dispatcher:
         self._marks: set[str] = set()
         self._marked = threading.Event()
         self._done: dict[tuple[int, str], None] = {}
+        self.unusable = ReasonLog(_log, "a message on `%(key)s` was dropped: %(reason)s")
         self.guard = MessageGuard(_log, "what hands on messages")
         self._thread = WatchedThread("lumen-bus-handlers", self._run, vital=True)
         self._thread.start()
@@ -131,7 +133,7 @@ class Dispatcher:
                 self._refused(delivery, f"who should handle it failed: {error!r}")
 
     def _drop(self, delivery: Delivery, reason: str) -> None:
-        _log.warning("a message on `%s` was dropped: %s", delivery.key, reason)
+        self.unusable(delivery.key, reason)
         self._refused(delivery, reason)
 
 

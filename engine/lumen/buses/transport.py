@@ -12,9 +12,12 @@ from lumen.buses.dispatcher import FLUSH_MARK, Dispatcher
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.publisher import Publisher
 from lumen.buses.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY
+from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery
 from lumen.upkeep.drops import DropLog
 
+ASIDE_RATE = 10.0
+"""How many messages a second that nobody could use are put aside of one key: a flood leaves room for others'."""
 REPLY_LIFETIME = 30.0
 """How long an answer waits for a broker that is away [s]."""
 
@@ -27,13 +30,14 @@ class Transport:
         self.consumer = Consumer(
             address, f"{name}in", outage, lambda delivery: self.dispatcher.receive(delivery), self._refused
         )
+        self._aside = RateLimiter()
         self.dispatcher = Dispatcher(self.consumer.handled, self._refused)
 
     @property
     def drops(self) -> tuple[DropLog, ...]:
         """What was dropped: too many came, a fault of ours met them, or they could not be sent."""
         sent = self.publisher.outbox.drops, self.publisher.unsendable
-        return self.consumer.intake.drops, self.dispatcher.guard.drops, *sent
+        return self.consumer.intake.drops, self.dispatcher.guard.drops, self.dispatcher.unusable.drops, *sent
 
     def open(self) -> None:
         """Raises BusError, saying what to do, where the broker can't be used."""
@@ -77,7 +81,7 @@ class Transport:
     def _refused(self, delivery: Delivery, reason: str) -> None:
         """Put aside what nobody could use, and answer the sender who wants an answer."""
         properties = delivery.properties
-        if self.publisher.has_side_queues:
+        if self.publisher.has_side_queues and not self._aside.wait(delivery.key, ASIDE_RATE):
             headers = {"reason": reason[:1000], "key": delivery.key}
             body, kind = delivery.body[:MAX_BODY_BYTES], properties.content_type or JSON
             self.publisher.outbox.put(

@@ -10,16 +10,12 @@ from lumen.errors import BadMessageError, Refused
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.upkeep.drops import ReasonLog
 
-OnRefused = Callable[[str, str], None]
+OnRefused = Callable[[str, str], object]
 """Called for a message that was not handed on, with its key and the reason."""
 
 _log = logging.getLogger(__name__)
-
-
-def log_refusal(key: str, reason: str) -> None:
-    """The refusal as a warning in the log."""
-    _log.warning("a message on `%s` was refused: %s", key, reason)
 
 
 class ValidatedBus:
@@ -31,8 +27,9 @@ class ValidatedBus:
     while messages flow.
     """
 
-    def __init__(self, bus: Bus, project: Project, on_refused: OnRefused = log_refusal) -> None:
-        self._bus, self._on_refused = bus, on_refused
+    def __init__(self, bus: Bus, project: Project, on_refused: OnRefused | None = None) -> None:
+        self._bus = bus
+        self._on_refused = on_refused or ReasonLog(_log, "a message on `%(key)s` was refused: %(reason)s")
         self._checks: dict[str, BodyCheck] = {}
         self.use(project)
 
@@ -93,6 +90,6 @@ def by_key(project: Project) -> dict[str, Route]:
     return {route.key_for(project.robot): route for route in routes}
 
 
-def validated(bus: Bus, project: Project, on_refused: OnRefused = log_refusal) -> ValidatedBus:
+def validated(bus: Bus, project: Project, on_refused: OnRefused | None = None) -> ValidatedBus:
     """The bus, with everything on it checked against the project's message schemas."""
     return ValidatedBus(bus, project, on_refused)

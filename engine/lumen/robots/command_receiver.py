@@ -1,7 +1,6 @@
 """Commands that come over the bus: begun at the next tick, reported on until they are over."""
 
 import logging
-import re
 import threading
 import time
 from collections import deque
@@ -9,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from itertools import count
-from math import inf, isfinite
+from math import isfinite
 from typing import Any, NamedTuple
 
 from lumen.errors import BusError, RobotError, RobotRefusedError
@@ -31,7 +30,7 @@ from lumen.robots.robot_routes import (
     key_of,
     publish_on,
 )
-from lumen.upkeep.drops import TELL_PERIOD, DropLog
+from lumen.upkeep.drops import DropLog, ReasonLog
 from lumen.upkeep.threads import MessageGuard
 
 MAX_WAITING_COMMANDS = 1_000
@@ -49,10 +48,6 @@ RESTARTED = "the robot was restarted since it began that"
 QUERY_METHODS = ("cancel", "outcome")
 HOLD_METHODS = ("resume", "stopped")
 
-MAX_WARNED_REASONS = 1_000
-"""Reasons of refusals that are told apart."""
-
-_DIGITS = re.compile(r"\d+")
 _log = logging.getLogger(__name__)
 
 
@@ -94,7 +89,8 @@ class CommandReceiver:
         self._coming = threading.Lock()
         self._closed = False
         self.guard = MessageGuard(_log, "the robot's server")
-        self.drops, self._warned = DropLog(_log, "commands"), dict[str, float]()
+        self.drops = DropLog(_log, "commands")
+        self._unfit = ReasonLog(_log, "a command was refused: %(reason)s", self.drops, clock)
         self._reports = CommandReports(self._tell, self._reply)
         self._numbers = count(1)
         self._language = ""
@@ -246,14 +242,8 @@ class CommandReceiver:
             raise
 
     def _warn(self, key: str, method: str, reason: str) -> None:
-        """A line for each reason, whatever the numbers in it, every ten seconds; the rest is counted."""
-        kind, now = _DIGITS.sub("#", reason), self._clock()
-        if now - self._warned.get(kind, -inf) < TELL_PERIOD or len(self._warned) >= MAX_WARNED_REASONS:
-            self.drops.add(key, reason)
-            return
-        self._warned[kind] = now
-        _log.warning("a command was refused: %s", reason)
-        self._tell_refused(method, reason)
+        if self._unfit(key, reason):
+            self._tell_refused(method, reason)
 
     def _ask_hold(self, message: Message, method: str) -> None:
         """`resume` lets the robot move again, in the name of who is `by` it; `stopped` asks who stopped it."""

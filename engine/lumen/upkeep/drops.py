@@ -1,11 +1,13 @@
 """What is dropped, counted under each key and told: a flood is known by its key, and costs no line for each message."""
 
 import logging
+import re
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from math import inf
 from typing import TypeVar
 
 TELL_PERIOD = 10.0
@@ -15,6 +17,7 @@ MAX_KEYS = 1_000
 OTHERS = "other keys"
 
 T = TypeVar("T")
+_DIGITS = re.compile(r"\d+")
 
 
 class DropLog:
@@ -69,3 +72,32 @@ class DropLog:
             self._told.update(dict.fromkeys(due, now))
         for key, count, why, seconds in told:
             self._log.warning("%d more %s on `%s` were dropped in %.0f s: %s", count, self._what, key, seconds, why)
+
+
+class ReasonLog:
+    """Logs each reason once in ten seconds, whatever the numbers in it; what comes meanwhile is counted in `drops`.
+
+    `line` has places for `%(key)s` and `%(reason)s`.
+    """
+
+    def __init__(
+        self,
+        log: logging.Logger,
+        line: str,
+        drops: DropLog | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.drops = drops or DropLog(log, clock=clock)
+        self._log, self._line, self._clock = log, line, clock
+        self._said: dict[tuple[str, str], float] = {}
+
+    def __call__(self, key: str, reason: str) -> bool:
+        """Log or count it; whether it was logged."""
+        kind, now = (key, _DIGITS.sub("#", reason)), self._clock()
+        if now - self._said.get(kind, -inf) < TELL_PERIOD or (kind not in self._said and len(self._said) >= MAX_KEYS):
+            self.drops.add(key, reason)
+            return False
+        self._said[kind] = now
+        self._log.warning(self._line, {"key": key, "reason": reason})
+        self.drops.tell()
+        return True
