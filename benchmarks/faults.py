@@ -25,6 +25,7 @@ import signal
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -255,6 +256,7 @@ class Exhibition:
 
 def endure(exhibition: Exhibition, part: str, fault: str, moment: str, *, again: bool) -> Outcome:
     """One fault at one moment, and what came of it."""
+    reached = time.monotonic()
     exhibition.reach(moment)
     time.sleep(1.0)  # in the middle of it
     robot = exhibition.parts["robot"]
@@ -264,7 +266,7 @@ def endure(exhibition: Exhibition, part: str, fault: str, moment: str, *, again:
     back = exhibition.settled(wanted, over)
     said = [t for t in robot.since(began, "robot") if t.text.startswith("“")]
     apologies = [t.text for t in said if any(words in t.text for words in APOLOGIES)]
-    played = [t.text for t in robot.since(began, "robot") if t.text.startswith("plays ")]
+    played = Counter(t.text for t in robot.since(reached, "robot") if t.text == f"plays {moment}")
     rested = any("rests" in t.text for t in robot.since(began, "robot"))
     away = {"killed": 0.0, "paused3": 3.0, "paused15": 15.0, "delayed": 0.0}.get(fault, FAULT_PERIOD)
     return Outcome(
@@ -273,7 +275,7 @@ def endure(exhibition: Exhibition, part: str, fault: str, moment: str, *, again:
         on=None if back is None else round(max(back - over, 0.0), 1),
         at=exhibition.state,
         said=apologies,
-        twice=sorted({text for text in played if text.endswith(moment)}) if moment in BACK else [],
+        twice=[text for text, times in played.items() if times > 1],
         rested=rested,
         should_rest=away > BRAIN_TIMEOUT and part != "motion",
     )  # fmt: skip

@@ -304,7 +304,7 @@ class CommandReceiver:
             return
         if record.asker.body.get("replace") is True:
             self._clear(command)
-        elif not isinstance(command, Rest | Stop):
+        elif not isinstance(command, Rest | Stop) and not self.is_brains(record.id):
             self._check_backlog(record, command)
         record.at = self._number()
         self._reports.accept(record)

@@ -1,6 +1,7 @@
 """The loop of a running behaviour: the order of things, fifty times a second."""
 
 from collections.abc import Mapping, Sequence
+from math import inf
 from typing import Any
 
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
@@ -60,6 +61,7 @@ class BehaviorLoop:
         self._last = clock.now()
         self.patience = BRAIN_LOST_AFTER
         self.rests = False
+        self._lost_at = -inf
 
     @property
     def project(self) -> Project:
@@ -81,7 +83,7 @@ class BehaviorLoop:
             self.tracking.switch(Track(name))
         self._perform(resumption.commands, self._last)
         if resumption.away > BRAIN_LOST_AFTER:
-            self.happen(Event("brain.lost", {"seconds": resumption.away}, self._last))
+            self._lose(resumption.away)
         self._events += resumption.answers(self._last)
 
     def happen(self, event: Event) -> None:
@@ -94,7 +96,7 @@ class BehaviorLoop:
             self.clock.wait(self._last + TICK_PERIOD)
             now = self.clock.now()
         if now - self._last > self.patience:
-            self._events.append(Event("brain.lost", {"seconds": now - self._last}, now))
+            self._lose(now - self._last)
         self._last = now
         try:
             self.tracking.tick(now)
@@ -145,7 +147,7 @@ class BehaviorLoop:
             self._perform(self._cues.answered(event, self.project, self.runtime.snapshot.language), now)
         happened, self._events = self._events, []
         ended, self.performer.events = self.performer.events, []
-        heard = [event for event in answers if _ours(event)]
+        heard = [event for event in answers if _ours(event) and not self._known(event, now)]
         own = [*ended, *heard, *(event._replace(at=now) for event in happened)]
         own.sort(key=lambda event: event.name not in CAUSES)
         return [*own, *self.inbox.drain(now)]
@@ -160,6 +162,14 @@ class BehaviorLoop:
                 self.performer.perform(project or self.project, command, now)
             except Exception as error:
                 self._recover(error, now)
+
+    def _lose(self, seconds: float) -> None:
+        """We were away: the behaviour hears it, and not again when the robot says so, too."""
+        self._lost_at = self.clock.now()
+        self._events.append(Event("brain.lost", {"seconds": seconds}, self._lost_at))
+
+    def _known(self, event: Event, now: float) -> bool:
+        return event.name == "brain.lost" and now - self._lost_at < self.patience
 
     def _note_rest(self, command: Command) -> None:
         match command:

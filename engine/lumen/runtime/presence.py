@@ -19,8 +19,8 @@ PRESENCE_KEY, PRESENCE_ROUTE = "lumen.presence", "presence"
 ROBOT_PART, BRAIN, MOTION, VISITOR = PROCESS_PARTS = ("robot", "brain", "motion", "visitor")
 PRESENCE_PERIOD = 0.5
 """How often a process says that it is there [s]."""
-LOST_AFTER = 2.5
-"""How long one has to be silent to be lost [s]."""
+LOST_AFTER = 4.0
+"""How long one has to be silent to be lost [s]: a process that hung for 3 s is none."""
 PRESENCE_TTL = 2.0
 MAX_PEERS = 100
 """How many processes are known at most: nobody fills the memory."""

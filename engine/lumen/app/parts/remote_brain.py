@@ -102,12 +102,12 @@ class RemoteBrainPart(BrainPart):
         self.robot.close()
 
     def _regained(self, found: Resumption) -> Resumption:
-        """What was under way is asked of the robot, which also says itself whether it was left alone for long."""
+        """What was under way is asked of the robot."""
         before = self._before()
         if not before:
             return found
         self.robot.recover(before, found.lost)
-        return found._replace(lost=(), away=0.0)
+        return found._replace(lost=())
 
     def _before(self) -> str:
         """Under which session the last brain's commands travelled; empty where that is not known."""
