@@ -4,7 +4,7 @@ import re
 
 MAX_DELAY = 1e15
 """[ms]"""
-_DELAY = re.compile(r"\+?(\d*\.?\d+)(ms|s|min|m|h)?")
+_DELAY = re.compile(r"\+?(\d+(?:\.\d+)?|\.\d+)(ms|s|min|m|h)?")
 _FACTORS = {"": 1.0, "ms": 1.0, "s": 1e3, "min": 60e3, "m": 60e3, "h": 3600e3}
 
 
