@@ -40,6 +40,7 @@ from lumen.loading.units import seconds
 from lumen.ports import Clock
 from lumen.runtime.home import home_of as home_of_run
 from lumen.runtime.presence import BRAIN, ROBOT_PART
+from lumen.upkeep.heap import give_back
 
 WHOLE = (ROBOT_PART, BRAIN)
 """The parts that an exhibition in one process has in any case."""
@@ -73,6 +74,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    give_back()
     if options.speed != "max":
         _go_first()
     named = () if options.story is None else (options.story,)

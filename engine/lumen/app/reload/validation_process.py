@@ -18,6 +18,7 @@ from typing import IO, TYPE_CHECKING, Any
 from lumen.app.reload.delta import DeltaEncoder
 from lumen.language.projects import Project
 from lumen.rules import check_files
+from lumen.upkeep.heap import give_back
 
 if TYPE_CHECKING:
     from lumen.app.rehearsal import Rehearsal
@@ -98,6 +99,7 @@ def main() -> None:
     if hasattr(os, "nice"):
         os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
     _limit_memory()
+    give_back()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     with suppress(EOFError, BrokenPipeError):
