@@ -102,7 +102,14 @@ def _lines(random: Random, text: str) -> str:
     """Lines doubled, gone, moved or further in."""
     lines = text.split("\n")
     at, other = random.randrange(len(lines)), random.randrange(len(lines))
-    new = ([], [lines[at]] * 2, [lines[other]], ["  " + lines[at]], [lines[at].lstrip()], ["\t" + lines[at]])
+    new: tuple[list[str], ...] = (
+        [],
+        [lines[at]] * 2,
+        [lines[other]],
+        ["  " + lines[at]],
+        [lines[at].lstrip()],
+        ["\t" + lines[at]],
+    )
     lines[at : at + 1] = random.choice(new)
     return "\n".join(lines)
 

@@ -1,17 +1,18 @@
 """Hostile messages, from a `random.Random`: what a broker lets anybody send, and what a process may say at the door.
 
-    message(random, keys)   a key, the bytes of a body, and of its AMQP properties, for `Stranger.send`
+    message(random, sound)  a key, the bytes of a body, and of its AMQP properties, for `Stranger.send`
     frame(random, keys)     bytes for the socket of the local bus: frames that are none, or hold what nobody expects
     Stranger(url)           a connection of its own to a broker, `send`s what pika would not: made again where that has
-                            ended it, as RabbitMQ does for tables that are none (541, INTERNAL_ERROR)
+                            ended it, as RabbitMQ does for headers that a stream can't hold (541, INTERNAL_ERROR)
 
-Each of them is one of a list of small generators, so that another kind is another function. What they give depends on
-nothing but the seed, and is never much larger than 64 KiB.
+`sound` has a body that is right for each key, where one is known: what is nearly right goes furthest. Each of them is
+one of a list of small generators, so that another kind is another function. What they give depends on nothing but the
+seed, and is never much larger than 64 KiB.
 """
 
 import json
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from random import Random
 from typing import Any, NamedTuple
@@ -20,6 +21,7 @@ import pika
 from pika import BasicProperties
 from pika.exceptions import AMQPError
 
+MARK = "lumen.attack.mark"
 LARGEST = 64 * 1024
 """How long a body, a table of headers or a frame is at most [bytes]."""
 METHODS = (
@@ -34,8 +36,24 @@ METHODS = (
     "record",
     "leds",
     "outcome",
+    "stopped",
+    "cancel",
+    "move",
+    "look",
+    "status",
+    "reload",
+    "rollback",
+    "brain",
+    "robot",
+    "dance",
+    "all",
 )
-NAMES = ("type", "method", "parameter", "id", "text", "result", "x", "y", "time", "name", "replace", "session", "parts")
+"""All but what lets a robot move again that somebody stopped: `check` would not know whose that was."""
+NAMES = (
+    "type", "method", "parameter", "id", "text", "result", "x", "y", "time", "name", "replace", "session", "parts",
+    "state", "robot", "speed", "realtime", "follows", "bundle", "command", "now", "by", "what", "motion", "tracks",
+    "colours", "duration", "jointNames", "angles", "yaw", "language", "visitor", "sensor", "track", "play", "reason",
+)  # fmt: skip
 """Words of our own bodies: what is nearly right goes furthest."""
 NUMBERS = (0, -1, 1, 2**31, 2**53 + 1, 2**63, -(2**63) - 1, 10**400, 0.1, 1e308, -1e308, 1e-320)
 SHORT_FIELDS = ("content_type", "content_encoding", "correlation_id", "reply_to", "expiration", "message_id", "type")
@@ -85,6 +103,15 @@ class Stranger:
             self._connection = None
             self._publish(message)
 
+    def settle(self) -> None:
+        """Return when the broker has taken what was sent: it answers in the order in which it is asked."""
+        try:
+            if self._connection:
+                self._channel.queue_declare(MARK, exclusive=True)
+        except AMQPError:
+            self.ended += 1
+            self._connection = None
+
     def close(self) -> None:
         with suppress(AMQPError):
             if self._connection:
@@ -98,9 +125,11 @@ class Stranger:
         self._connection.process_data_events(0)
 
 
-def message(random: Random, keys: Sequence[str]) -> HostileMessage:
+def message(random: Random, sound: Mapping[str, Any]) -> HostileMessage:
     """One message under one of these keys, with something wrong in its body, its properties, or both."""
-    return HostileMessage(random.choice(keys), random.choice(BODIES)(random), random.choice(PROPERTIES)(random))
+    key = random.choice(list(sound))
+    body = _spoilt(random, sound[key]) if random.random() < 0.4 else random.choice(BODIES)(random)
+    return HostileMessage(key, body, random.choice(PROPERTIES)(random))
 
 
 def frame(random: Random, keys: Sequence[str]) -> bytes:
@@ -158,6 +187,18 @@ def value(random: Random, depth: int = 4) -> Any:
             return [value(random, depth - 1) for _ in range(random.randrange(5))]
         case _:
             return {random.choice(NAMES): value(random, depth - 1) for _ in range(random.randrange(6))}
+
+
+def _spoilt(random: Random, sound: Any) -> bytes:
+    """A body that is right, but for a value or a name of it."""
+    if not isinstance(sound, dict) or not sound:
+        return _data(random)
+    body, name = dict(sound), random.choice(list(sound))
+    if isinstance(body[name], dict) and body[name] and random.random() < 0.5:
+        body[name] = json.loads(_spoilt(random, body[name]))
+    else:
+        body[random.choice((name, random.choice(NAMES)))] = value(random)
+    return json.dumps(body).encode()
 
 
 def _data(random: Random) -> bytes:
@@ -230,8 +271,8 @@ def _tables(random: Random) -> bytes:
 
 
 def _headers(random: Random) -> bytes:
-    """Fields of all kinds, their names no texts."""
-    kinds = ((b"t", b"\x02"), (b"d", b"\x7f\xf0" + bytes(6)), (b"D", b"\xff" + b"\xff" * 4), (b"V", b""))
+    """Fields of all kinds, their names no texts. An infinite number ends in RabbitMQ: it can't read one."""
+    kinds = ((b"t", b"\x02"), (b"d", b"\x7f\xef" + b"\xff" * 6), (b"D", b"\xff" + b"\xff" * 4), (b"V", b""))
     long = (b"S", struct.pack(">I", 30_000) + b"\xff" * 30_000)
     fields = (random.choice((*kinds, long)) for _ in range(random.randrange(1, 4)))
     return encoded(headers=b"".join(header(random.randbytes(5), *field) for field in fields))

@@ -1,0 +1,68 @@
+"""`python -m tests.attack`: random files, messages and frames against running exhibitions, which have to stand them.
+
+Attack N is the same wherever and whenever it is made: `--only N` makes it alone. After each batch an exhibition has to
+tick, to obey a stop, to speak and to answer who runs it; its memory, threads and handles may not grow.
+"""
+
+import argparse
+import logging
+import os
+import platform
+import sys
+import time
+from collections.abc import Iterable
+
+from tests.attack.running import Survey, grown, survey
+from tests.rabbitmq import RabbitMQ
+
+
+def table(found: list[Survey]) -> str:
+    """A row for each way in, and beneath it what came of the attacks."""
+    names = ("attacks", "checks", "seconds", "a second", "memory", "threads", "handles")
+    lines = [f"{'way in':<9}" + "".join(name.rjust(11) for name in names)]
+    for one in found:
+        more, rate = one.growth, one.count / one.seconds
+        numbers = (f"{one.count:,}", f"{one.checks}", f"{one.seconds:.0f}", f"{rate:.1f}", f"{more.memory:+.1f} MB")
+        lines.append(
+            f"{one.name:<9}" + "".join(f"{n:>11}" for n in (*numbers, f"{more.threads:+}", f"{more.handles:+}"))
+        )
+        lines.append(" " * 9 + ", ".join(f"{count:,} {what}" for what, count in one.outcomes.most_common()))
+    return "\n".join(lines)
+
+
+def report(numbers: Iterable[int], url: str) -> list[str]:
+    """Print what came of those attacks; what broke, and what grew."""
+    began = time.monotonic()
+    found = survey(numbers, url)
+    print(f"\n{platform.machine()}, {os.cpu_count()} cores, CPython {platform.python_version()}, recording robot\n")
+    print(table(found))
+    troubles = [f"attack {', '.join(map(str, t.numbers))}: {t.text}" for one in found for t in one.troubles]
+    troubles += [line for one in found for line in grown(one)]
+    count = sum(one.count for one in found)
+    print(f"\n{count:,} attacks, {len(troubles)} troubles, {time.monotonic() - began:.0f} s")
+    return troubles
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.attack", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--count", type=int, default=1_000, help="how many attacks (default: 1,000)")
+    parser.add_argument("--seed", type=int, default=0, help="the number of the first one (default: 0)")
+    parser.add_argument("--only", type=int, metavar="N", help="make attack N alone")
+    options = parser.parse_args()
+    logging.getLogger("lumen").setLevel(logging.CRITICAL)  # of our own bus, which hears the same
+    broker = RabbitMQ()
+    broker.start()
+    try:
+        numbers = range(options.seed, options.seed + options.count) if options.only is None else [options.only]
+        troubles = report(numbers, broker.url)
+    finally:
+        broker.stop()
+    for trouble in troubles:
+        print(f"\n# {trouble}")
+    return int(bool(troubles))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,45 @@
+"""Attacks by a file of another tool, on who imports it."""
+
+import json
+import sys
+
+from tests.attack.attacks import Attack, Kind
+from tests.attack.targets import PATIENCE, ROOT, BrokenError, Size
+from tests.guarded import PIPE, Guarded, temporary_folder
+
+
+class Imports:
+    """Files of other tools, read by `lumen import` in a child process (`importing.py`)."""
+
+    kinds = (Kind.FOREIGN,)
+    batch = 100
+
+    def __init__(self) -> None:
+        self._folder = temporary_folder("lumen-attack-")
+        line = [sys.executable, "-m", "tests.attack.importing", self._folder]
+        self._child = Guarded[str](line, stdin=PIPE, stdout=PIPE, text=True, cwd=ROOT)
+        self._size = Size(0.0, 0, 0)
+
+    def strike(self, attack: Attack) -> str:
+        assert self._child.stdin
+        assert self._child.stdout
+        self._child.stdin.write(f"{attack.number}\n")
+        self._child.stdin.flush()
+        line = self._child.stdout.readline()
+        if not line:
+            raise BrokenError(f"who imports ended with {self._child.wait(PATIENCE)}")
+        answer = json.loads(line)
+        if answer["trouble"]:
+            raise BrokenError(answer["trouble"])
+        self._size = Size(*answer["size"])
+        return f"ended with {answer['code']}"
+
+    def check(self) -> None:
+        """Each was an answer, in time: `strike` has looked."""
+
+    def size(self) -> Size:
+        return self._size
+
+    def close(self) -> None:
+        self._child.kill()
+        self._child.wait()

@@ -1,0 +1,84 @@
+"""Attacks from the machine on which an exhibition runs: frames at its door, files in its project."""
+
+import socket
+from random import Random
+
+from lumen.app.reload.requests import COMMAND
+from lumen.buses.local import LocalAddress
+from lumen.buses.local.frames import CLIENT, frame, nonce, proof, unframed
+from lumen.errors import BusError
+from lumen.runtime.home import ADDRESS_FILE, Home
+from tests.attack import files, messages
+from tests.attack.attacks import Attack, Kind
+from tests.attack.sound import sound
+from tests.attack.targets import PATIENCE, BrokenError, Exhibition, save
+
+
+class Local:
+    """Frames at the door of the embedded bus, and files that are saved.
+
+    A frame has a connection of its own; two of three come from who knows the key. Of files one at a time is hostile:
+    the one before is put right. Where it is taken, the exhibition is checked while it runs.
+    """
+
+    kinds = (Kind.FRAME, Kind.FILE)
+    batch = 250
+
+    def __init__(self) -> None:
+        self._keys, self._target, self._saved = list(sound()), Exhibition("memory://"), ""
+        self._address = LocalAddress.of(Home(self._target.folder / ".lumen").read_json(ADDRESS_FILE) or {})
+        self.size, self.close = self._target.size, self._target.close
+
+    def strike(self, attack: Attack) -> str:
+        return self._save(attack.random) if attack.kind is Kind.FILE else self._send(attack.random)
+
+    def check(self) -> None:
+        if self._saved:
+            self._mend()
+            self._reload()
+        self._target.check()
+
+    def _send(self, random: Random) -> str:
+        known = random.random() < 2 / 3
+        with self._address.connect() as wire:
+            wire.settimeout(PATIENCE)
+            try:
+                if known:
+                    self._prove(wire)
+                wire.sendall(messages.frame(random, self._keys))
+                wire.shutdown(socket.SHUT_WR)
+                while wire.recv(1 << 16):
+                    pass
+            except TimeoutError:
+                raise BrokenError("the door neither answers nor closes") from None
+            except OSError:
+                return "frames, hung up on"
+        return "frames with the key" if known else "frames without"
+
+    def _prove(self, wire: socket.socket) -> None:
+        buffer = bytearray()
+        while not (words := next(unframed(buffer), None)):
+            buffer += wire.recv(1 << 16)
+        wire.sendall(frame("proof", proof(self._address.key, CLIENT, str(words[1])), nonce()))
+
+    def _save(self, random: Random) -> str:
+        path, content = files.project_file(random, self._target.sound)
+        self._mend()
+        save(self._target.folder / path, content)
+        self._saved = path
+        verdict = self._reload()
+        if verdict == "applied":
+            self._target.check()
+        return f"files {verdict}"
+
+    def _mend(self) -> None:
+        if self._saved:
+            save(self._target.folder / self._saved, self._target.sound[self._saved])
+            self._saved = ""
+
+    def _reload(self) -> str:
+        try:
+            answer = self._target.asked(COMMAND, {"command": "reload", "now": True})
+        except BusError as error:
+            raise BrokenError(f"nobody says what became of a file: {error}") from None
+        return str(answer.get("verdict")) if isinstance(answer, dict) else str(answer)

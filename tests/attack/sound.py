@@ -1,0 +1,27 @@
+"""The keys of the shipped project, and bodies that are right there."""
+
+from typing import Any
+
+from lumen.app.reload.requests import COMMAND, STATUS
+from lumen.buses.local.server import FLUSH_MARK
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+from tests.attack.targets import ROOT, SPOKEN
+
+OTHERS = (COMMAND, STATUS, SPOKEN, FLUSH_MARK, "lumen.operator.answer", "lumen.nobody.knows", "avatar.NAO", "#", "*.*")
+"""Keys that no route has."""
+
+
+def sound() -> dict[str, Any]:
+    """A body that is right for every key of the shipped project, in and out, and keys that no route has."""
+    project, _ = check_files(ROOT, read_files(ROOT))
+    assert project
+    shown = {route.key_for(project.robot): _example(project, route.schema) for route in project.routes.values()}
+    return shown | dict.fromkeys(OTHERS) | {COMMAND: {"command": "reload", "now": True}}
+
+
+def _example(project: Project, schema: str) -> Any:
+    """The first example of a message's schema, None where it has none."""
+    found: Any = project.messages.get(schema, {}).get("examples", [None])
+    return found[0]

@@ -1,0 +1,157 @@
+"""Running exhibitions of a copy of the shipped project, that are attacked, asked, stopped and measured."""
+
+import os
+import shutil
+import sys
+from collections.abc import Mapping
+from itertools import count
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from lumen.app.asking import ask
+from lumen.app.reaching import Reached, reach_exhibition
+from lumen.app.reload.requests import COMMAND
+from lumen.errors import BusError
+from lumen.loading.files import read_files
+from lumen.runtime.home import ADDRESS_FILE, Home
+from tests.guarded import DEVNULL, STDOUT, Guarded, TimeoutExpired, temporary_folder
+from tests.waiting import Collector, until
+
+ROOT = Path(__file__).parents[2]
+PARTS = ("behaviors", "fuzzy", "motions", "schemas", "models")
+SPOKEN, ANSWERS = "lumen.audio.text.stream", "lumen.attack.checked"
+SPEED = "4"
+PATIENCE, BEGINNING = 20.0, 120.0
+"""How long any answer, and a start, may take on a crowded machine [s]."""
+
+
+class BrokenError(AssertionError):
+    """What an attack did that none may do."""
+
+
+class Size(NamedTuple):
+    """What a process has of the machine: memory [MB], threads, open files and sockets."""
+
+    memory: float
+    threads: int
+    handles: int
+
+
+class Exhibition:
+    """`lumen run` with the recording robot, four times as fast as real time, on a bus by its address.
+
+    It takes what is saved in `folder`. `check` raises BrokenError where it does not do as it should any more.
+    """
+
+    def __init__(self, url: str) -> None:
+        self.folder = temporary_folder("lumen-attack-")
+        self.sound: Mapping[str, bytes] = read_files(ROOT)
+        for part in PARTS:
+            shutil.copytree(ROOT / part, self.folder / part)
+        shutil.copy(ROOT / "lumen.yaml", self.folder)
+        self._told = self.folder / ".told"
+        self._read, self._numbers = 0, count()
+        line = [sys.executable, "-m", "lumen", "run", self.folder, "--robot", "recording", "--speed", SPEED]
+        with self._told.open("wb") as told:
+            self.process = Guarded[bytes]([*line, "--bus", url], stdin=DEVNULL, stdout=told, stderr=STDOUT)
+        self._reached = self._begun()
+        self.bus, self._spoken = self._reached.bus, Collector()
+        self.bus.subscribe(SPOKEN, self._spoken)
+
+    def check(self) -> None:
+        """It ticks, a stop is obeyed, a text is spoken, nothing of ours failed; then it may move again."""
+        for ask_one in (self._rests, self._speaks, self._reloads):
+            self.lives()
+            try:
+                ask_one()
+            except BusError as error:
+                self.lives()
+                raise BrokenError(f"{ask_one.__name__.strip('_')}: {error}\n{self._tail()}") from None
+        self.lives()
+
+    def lives(self) -> None:
+        """Raises BrokenError where the process has ended, or has told of a fault of ours."""
+        if (code := self.process.poll()) is not None:
+            raise BrokenError(f"the exhibition ended with {code}\n{self._tail()}")
+        with self._told.open("rb") as told:
+            told.seek(self._read)
+            new = told.read()
+        if b"Traceback" in new:
+            raise BrokenError(f"a fault of ours:\n{new.decode('utf-8', 'replace')[-4_000:]}")
+        self._read += new.rfind(b"\n") + 1
+
+    def asked(self, key: str, body: Any) -> Any:
+        """The first answer. Raises BusError where there is none in time."""
+        return next(ask(self.bus, key, body, ANSWERS, first=PATIENCE))
+
+    def size(self) -> Size:
+        """What its process has now."""
+        process = Path(f"/proc/{self.process.pid}")
+        status = dict(line.split(":\t", 1) for line in (process / "status").read_text().splitlines() if ":\t" in line)
+        return Size(int(status["VmRSS"].split()[0]) / 1024, int(status["Threads"]), len(os.listdir(process / "fd")))
+
+    def close(self) -> None:
+        self.bus.close()
+        self.process.terminate()
+        try:
+            self.process.wait(PATIENCE)
+        except TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def dropped(self) -> str:
+        """What it said at its end of messages that it dropped."""
+        lines = self._told.read_text("utf-8", "replace").splitlines()
+        return next((line.strip() for line in lines if "dropped messages" in line), "")
+
+    def _begun(self) -> Reached:
+        try:
+            until(lambda: self._address().get("command") or self.process.poll() is not None, BEGINNING)
+            return reach_exhibition(str(self.folder), None)
+        except (AssertionError, BusError) as error:
+            raise BrokenError(f"no exhibition began: {error}\n{self._tail()}") from None
+
+    def _address(self) -> dict[str, Any]:
+        """Where it is found, and under which keys: saved files may change these."""
+        found = Home(self.folder / ".lumen").read_json(ADDRESS_FILE)
+        return found if isinstance(found, dict) else {}
+
+    def _rests(self) -> None:
+        key = self._address()["stop"]
+        wanted(self.asked(key, order("motion", "rest", by="the attack")), "command finished", "a stop")
+        stopped = self.asked(key, order("motion", "stopped"))
+        if not (isinstance(stopped, dict) and stopped["stopped_by"]):
+            raise BrokenError(f"a robot that rests is not stopped: {stopped}")
+        wanted(self.asked(key, order("motion", "resume", by="the attack")), "command finished", "`resume`")
+
+    def _speaks(self) -> None:
+        text = f"ok {next(self._numbers)}"
+        said = order("texttospeech", "say", text=text, language="en") | {"replace": True}
+        wanted(self.asked(self._address()["command"], said), "command finished", "`say`")
+        if not any(text in str(body) for body in self._spoken.bodies):
+            raise BrokenError(f"`{text}` was not spoken")
+        self._spoken.messages.clear()
+
+    def _reloads(self) -> None:
+        """Who runs the exhibition is answered by the behaviour's own tick."""
+        self.asked(COMMAND, {"command": "status"})
+
+    def _tail(self) -> str:
+        return self._told.read_text("utf-8", "replace")[-4_000:]
+
+
+def order(kind: str, method: str, **parameter: str) -> dict[str, Any]:
+    """A command as any module sends it."""
+    return {"type": kind, "method": method, "parameter": parameter}
+
+
+def wanted(answer: object, right: str, what: str) -> None:
+    if answer != right:
+        raise BrokenError(f"{what} was answered {str(answer)[:300]!r}")
+
+
+def save(path: Path, content: bytes) -> None:
+    """As an editor does."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
