@@ -1,5 +1,6 @@
 """Whom the memory has forgotten all others forget, also while they stand there."""
 
+import logging
 from collections import deque
 from collections.abc import Callable, Sequence
 
@@ -9,15 +10,22 @@ from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
 from lumen.modules.module import DEFAULT_KEYS
 from lumen.ports import Bus, Message
+from lumen.upkeep.drops import DropLog
 
 ROUTE = "forgotten"
 MAX_PENDING_NAMES = 100
+"""Names that wait at a time; what comes then is dropped, and told."""
+FORGETTING_SPACING = 2.0
+"""How long after one name the next is looked for in all files [s]: who sends a thousand names keeps nobody busy."""
+
+_log = logging.getLogger(__name__)
 
 
 class ForgettingPart(Part):
     """Has what this process remembers and has written down forget somebody: each of `forget` is called with the name.
 
-    It stands before the brain, whose `needs` it has where there is one.
+    One name at a time, and one that waits already not twice. It stands before the brain, whose `needs` it has where
+    there is one.
     """
 
     def __init__(
@@ -25,16 +33,37 @@ class ForgettingPart(Part):
     ) -> None:
         self.needs, self._forget = needs, forget
         self._messages: deque[Message] = deque(maxlen=MAX_PENDING_NAMES)
+        self._waiting: dict[str, str] = {}
+        self._drops, self._last = DropLog(_log), -FORGETTING_SPACING
         row = project.routes.get(ROUTE)
         key = row.key_for(project.robot) if row else DEFAULT_KEYS[ROUTE].replace("{robot}", project.robot)
         self._unsubscribe = bus.subscribe(key, self._messages.append)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
-        while self._messages:
-            match self._messages.popleft().body:
-                case {"name": str(name)} if name_key(name):
-                    for forget in self._forget:
-                        forget(PersonName(name))
+        self._gather()
+        if self._waiting and now - self._last >= FORGETTING_SPACING:
+            self._last = now
+            self._forget_next()
 
     def close(self) -> None:
+        """Forget whoever still waits."""
         self._unsubscribe()
+        self._gather()
+        while self._waiting:
+            self._forget_next()
+        self._drops.tell(all=True)
+
+    def _gather(self) -> None:
+        while self._messages:
+            message = self._messages.popleft()
+            match message.body:
+                case {"name": str(name)} if key := name_key(name):
+                    if key in self._waiting or len(self._waiting) < MAX_PENDING_NAMES:
+                        self._waiting[key] = name
+                    else:
+                        self._drops.add(message.key, f"{MAX_PENDING_NAMES} names wait to be forgotten already")
+
+    def _forget_next(self) -> None:
+        name = PersonName(self._waiting.pop(next(iter(self._waiting))))
+        for forget in self._forget:
+            forget(name)
