@@ -24,5 +24,5 @@ def test_names_are_forgotten_one_at_a_time_and_each_once() -> None:
     part.close()
     assert forgotten[:2] == ["ani", "ani"]
     assert "ünal" in forgotten
-    assert len(forgotten) == MAX_PENDING_NAMES + 2
+    assert len(forgotten) == MAX_PENDING_NAMES + 1
     bus.close()
