@@ -35,7 +35,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded, temporary_folder
 from tests.rabbitmq import RabbitMQ
-from wire import Wire
+from tests.relay import Relay
 
 import lumen
 from lumen.bus import connect
@@ -135,7 +135,7 @@ class Exhibition:
         self.broker = RabbitMQ()
         stack.callback(self.broker.stop)
         self.broker.start()
-        self.wires = {name: Wire(self.broker.port) for name in ("brain", "robot", "motion")}
+        self.wires = {name: Relay(self.broker.port) for name in ("brain", "robot", "motion")}
         self.parts = {name: Part(name, self._command(name, robot)) for name in ("robot", "motion", "brain")}
         for part in self.parts.values():
             stack.callback(part.end)
@@ -227,11 +227,16 @@ class Exhibition:
         for wire in wires:
             if fault == "delayed":
                 wire.delay = DELAY
+            elif fault == "cut":
+                wire.refuse()
             else:
-                wire.mode = "cut" if fault == "cut" else "dead"
+                wire.cut()
         time.sleep(FAULT_PERIOD)
         for wire in wires:
-            wire.delay, wire.mode = 0.0, "whole"
+            wire.delay = 0.0
+            if fault == "half-open":
+                wire.reset()
+            wire.mend()
         return time.monotonic()
 
     def _kill(self, part: str) -> None:
