@@ -30,13 +30,20 @@ def table(found: list[Survey]) -> str:
     return "\n".join(lines)
 
 
+def named(numbers: list[int]) -> str:
+    """The attacks that broke something together."""
+    if len(numbers) > 10:
+        return f"{len(numbers)} attacks from {numbers[0]} to {numbers[-1]} together"
+    return f"attack {', '.join(map(str, numbers))}"
+
+
 def report(numbers: Iterable[int], url: str) -> list[str]:
     """Print what came of those attacks; what broke, and what grew."""
     began = time.monotonic()
     found = survey(numbers, url)
     print(f"\n{platform.machine()}, {os.cpu_count()} cores, CPython {platform.python_version()}, recording robot\n")
     print(table(found))
-    troubles = [f"attack {', '.join(map(str, t.numbers))}: {t.text}" for one in found for t in one.troubles]
+    troubles = [f"{named(t.numbers)}: {t.text}" for one in found for t in one.troubles]
     troubles += [line for one in found for line in grown(one)]
     count = sum(one.count for one in found)
     print(f"\n{count:,} attacks, {len(troubles)} troubles, {time.monotonic() - began:.0f} s")

@@ -10,7 +10,7 @@ from tests.attack.attacks import attack, batches
 from tests.attack.lanes import Lane, lanes
 from tests.attack.targets import BrokenError, Size
 
-BOUND = Size(memory=24.0, threads=0, handles=0)
+BOUND = Size(memory=16.0, threads=0, handles=0)
 """What a process may have more at the end than when it was settled."""
 SETTLED, LAST = 5, 3
 """After so many checks everything was used once; that many at the end are compared with these."""

@@ -14,6 +14,7 @@ from lumen.app.reload.requests import COMMAND
 from lumen.errors import BusError
 from lumen.loading.files import read_files
 from lumen.runtime.home import ADDRESS_FILE, Home
+from lumen.runtime.journal import Journal
 from tests.guarded import DEVNULL, STDOUT, Guarded, TimeoutExpired, temporary_folder
 from tests.waiting import Collector, until
 
@@ -23,6 +24,8 @@ SPOKEN, ANSWERS = "lumen.audio.text.stream", "lumen.attack.checked"
 SPEED = "4"
 PATIENCE, BEGINNING = 20.0, 120.0
 """How long any answer, and a start, may take on a crowded machine [s]."""
+TRIES = 3
+"""How often a text is said that somebody cancels: a stop of the attack, or of the behaviour, that came just then."""
 
 
 class BrokenError(AssertionError):
@@ -49,7 +52,7 @@ class Exhibition:
         for part in PARTS:
             shutil.copytree(ROOT / part, self.folder / part)
         shutil.copy(ROOT / "lumen.yaml", self.folder)
-        self._told = self.folder / ".told"
+        self._told, self._home = self.folder / ".told", Home(self.folder / ".lumen")
         self._read, self._numbers = 0, count()
         line = [sys.executable, "-m", "lumen", "run", self.folder, "--robot", "recording", "--speed", SPEED]
         with self._told.open("wb") as told:
@@ -59,7 +62,7 @@ class Exhibition:
         self.bus.subscribe(SPOKEN, self._spoken)
 
     def check(self) -> None:
-        """It ticks, a stop is obeyed, a text is spoken, nothing of ours failed; then it may move again."""
+        """It ticks, a stop is obeyed, a text is spoken and journaled, nothing of ours failed; it may move again."""
         for ask_one in (self._rests, self._speaks, self._reloads):
             self.lives()
             try:
@@ -114,7 +117,7 @@ class Exhibition:
 
     def _address(self) -> dict[str, Any]:
         """Where it is found, and under which keys: saved files may change these."""
-        found = Home(self.folder / ".lumen").read_json(ADDRESS_FILE)
+        found = self._home.read_json(ADDRESS_FILE)
         return found if isinstance(found, dict) else {}
 
     def _rests(self) -> None:
@@ -128,10 +131,13 @@ class Exhibition:
     def _speaks(self) -> None:
         text = f"ok {next(self._numbers)}"
         said = order("texttospeech", "say", text=text, language="en") | {"replace": True}
-        wanted(self.asked(self._address()["command"], said), "command finished", "`say`")
+        answers = (self.asked(self._address()["command"], said) for _ in range(TRIES))
+        wanted(next((a for a in answers if a != "command cancelled"), ""), "command finished", "`say`")
         if not any(text in str(body) for body in self._spoken.bodies):
             raise BrokenError(f"`{text}` was not spoken")
         self._spoken.messages.clear()
+        if not any(entry.get("command") == f"says “{text}”" for entry in Journal(self._home.folder).entries()):
+            raise BrokenError(f"that somebody let it say `{text}` is not in the journal")
 
     def _reloads(self) -> None:
         """Who runs the exhibition is answered by the behaviour's own tick."""
