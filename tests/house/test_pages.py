@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 ENGINE = ROOT / "engine/lumen"
 ARCHITECTURE = "docs/architecture.md"
-PAGES = ("CONTRIBUTING.md", ARCHITECTURE, "docs/python.md")
+PAGES = ("CONTRIBUTING.md", ARCHITECTURE, "docs/python.md", "docs/reliability.md")
 
 SCHEMES = ("http:", "https:", "mailto:", "#")
 CODE = re.compile(r"`([^`\n]+)`")

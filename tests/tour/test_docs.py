@@ -92,7 +92,16 @@ def commands(text: str) -> Iterator[list[str]]:
             yield line.split()
 
 
-@pytest.mark.parametrize("page", ["change-the-tour.md", "yaml.md", "paper.md", "stories.md"])
+def files_of(words: list[str]) -> list[str]:
+    """The files and folders that python or pytest is given."""
+    if words[:2] == ["-m", "pytest"]:
+        words = words[2:]
+    if words[0] == "-m":
+        return [words[1].replace(".", "/")]
+    return [words[0], *(word for word in words if word.startswith(("tests/", "benchmarks/")))]
+
+
+@pytest.mark.parametrize("page", ["change-the-tour.md", "yaml.md", "paper.md", "reliability.md", "stories.md"])
 def test_the_commands_in_the_documentation_exist(page: str, capsys: pytest.CaptureFixture[str]) -> None:
     makefile = (ROOT / "Makefile").read_text("utf-8")
     for command, *rest in commands((ROOT / "docs" / page).read_text("utf-8")):
@@ -106,7 +115,8 @@ def test_the_commands_in_the_documentation_exist(page: str, capsys: pytest.Captu
             case "make":
                 assert f"\n{rest[0]}:" in makefile, rest
             case _:
-                assert (ROOT / rest[0].partition("::")[0]).exists(), rest
+                for word in files_of(rest):
+                    assert (ROOT / word.partition("::")[0]).exists(), rest
 
 
 def exists(words: list[str], option: str, folder: Path) -> None:
