@@ -48,8 +48,8 @@ FAULT_PERIOD, DELAY = 8.0, 0.5
 """How long a wire is cut, dead or slow [s], and how much later what it carries arrives."""
 READY_TIMEOUT, MOMENT_TIMEOUT, RETURN_TIMEOUT = 90.0, 150.0, 45.0
 BRAIN_TIMEOUT = 5.0
-SETTLED = 3.0
-"""How long the tour has to be where it was [s]: an outage of 2.5 s is noticed half a second later."""
+SETTLED = 6.0
+"""How long the tour has to be where it was [s]: who is gone is noticed after 4 s."""
 
 SPOKEN = {
     "ask_name": "My name is Ada",
