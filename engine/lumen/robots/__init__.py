@@ -25,6 +25,7 @@ A robot on the bus:
     sense_codec.py        the five senses as JSON
     sense_publisher.py    the thread of a sense
     command_receiver.py   commands from the bus, until they are over
+    command_queries.py    what is asked about them, and about a robot that is stopped
     command_reports.py    how they stand, for the sender and everybody who watches
     deduplication_log.py  which commands were begun, for the process that comes after a killed one
 """

@@ -17,8 +17,8 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Joints, Message, Perform, Robot, RobotCommand, Sense
 from lumen.robots.command_codec import decode_command, method_of, own_id, stops, stops_all
-from lumen.robots.command_parameters import shown
-from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, UNKNOWN_COMMAND, CommandRecord, CommandReports
+from lumen.robots.command_queries import CommandQueries
+from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, CommandRecord, CommandReports
 from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.person_hold import PersonHold
@@ -43,10 +43,7 @@ MAX_BACKLOG = 15.0
 MAX_SPEECH = 60.0
 """How long about a text may take to say [s]."""
 ENDED = "the robot takes no more commands"
-SOMEBODY = "somebody on the bus"
 RESTARTED = "the robot was restarted since it began that"
-QUERY_METHODS = ("cancel", "outcome")
-HOLD_METHODS = ("resume", "stopped")
 
 _log = logging.getLogger(__name__)
 
@@ -92,6 +89,7 @@ class CommandReceiver:
         self.drops = DropLog(_log, "commands")
         self._unfit = ReasonLog(_log, "a command was refused: %(reason)s", self.drops, clock)
         self._reports = CommandReports(self._tell, self._reply)
+        self._queries = CommandQueries(robot, self._reports, self.hold, self._reply, self.resume)
         self._numbers = count(1)
         self._language = ""
         self._log_of_begun = DeduplicationLog()
@@ -218,11 +216,8 @@ class CommandReceiver:
         """Do what a message asks, or report why not; `overtaken` by a command that stops everything."""
         message = arrival.message
         record = CommandRecord(message, own_id(message.body), method_of(message.body))
-        if record.method in QUERY_METHODS:
-            self._ask(message)
-            return
-        if record.method in HOLD_METHODS:
-            self._ask_hold(message, record.method)
+        if record.method in CommandQueries.METHODS:
+            self._queries.answer(message)
             return
         if known := self._reports.find(record.id):
             self._reports.repeat(known, message)
@@ -244,39 +239,6 @@ class CommandReceiver:
     def _warn(self, key: str, method: str, reason: str) -> None:
         if self._unfit(key, reason):
             self._tell_refused(method, reason)
-
-    def _ask_hold(self, message: Message, method: str) -> None:
-        """`resume` lets the robot move again, in the name of who is `by` it; `stopped` asks who stopped it."""
-        if method == "resume":
-            parameter = message.body.get("parameter")
-            by = parameter.get("by") if isinstance(parameter, dict) else None
-            self.resume(shown(by) if isinstance(by, str) and by else SOMEBODY)
-            self._reply(message, "command finished")
-            return
-        stopped = self.hold.stopped
-        since = stopped.since.isoformat(timespec="seconds") if stopped else ""
-        self._reply(message, {"stopped_by": stopped.by if stopped else "", "since": since})
-
-    def _ask(self, message: Message) -> None:
-        """`cancel` or `outcome` of the command whose `id` the parameter names.
-
-        One that is unknown counts as cancelled from then on: it may still be on its way.
-        """
-        parameter = message.body.get("parameter")
-        id = own_id(parameter)
-        if not id:
-            _log.warning("a command was refused: `%s` needs the `id` of a command", method_of(message.body))
-            self._reply(message, "command failed: which command? `id` names it")
-            return
-        record = self._reports.find(id)
-        cancelled = method_of(message.body) == "cancel"
-        if record is None:
-            record = CommandRecord(message, id, state=CANCELLED if cancelled else UNKNOWN_COMMAND)
-            if cancelled:
-                self._reports.remember(record)
-        elif cancelled and not record.over:
-            self._robot.cancel(record.at)
-        self._reports.repeat(record, message)
 
     def _check_age(self, arrival: _Arrival) -> None:
         route = self._project.routes.get(COMMAND_ROUTE)

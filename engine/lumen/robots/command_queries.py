@@ -1,0 +1,73 @@
+"""What is asked about commands and about a robot that is stopped, rather than of its body."""
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from lumen.ports import Message, Robot
+from lumen.robots.command_codec import method_of, own_id
+from lumen.robots.command_parameters import shown
+from lumen.robots.command_reports import CANCELLED, UNKNOWN_COMMAND, CommandRecord, CommandReports
+from lumen.robots.person_hold import PersonHold
+
+SOMEBODY = "somebody on the bus"
+
+_log = logging.getLogger(__name__)
+
+
+class CommandQueries:
+    """Answers `cancel`, `outcome`, `stopped` and `resume` by `reply`.
+
+    `resume` is called with the person who lets the robot go on.
+    """
+
+    METHODS = ("cancel", "outcome", "stopped", "resume")
+
+    def __init__(
+        self,
+        robot: Robot,
+        reports: CommandReports,
+        hold: PersonHold,
+        reply: Callable[[Message, Any], None],
+        resume: Callable[[str], None],
+    ) -> None:
+        self._robot, self._reports, self._hold, self._reply, self._resume = robot, reports, hold, reply, resume
+
+    def answer(self, message: Message) -> None:
+        """Answer one whose method is among `METHODS`."""
+        match method_of(message.body):
+            case "resume":
+                self._let_go_on(message)
+            case "stopped":
+                stopped = self._hold.stopped
+                since = stopped.since.isoformat(timespec="seconds") if stopped else ""
+                self._reply(message, {"stopped_by": stopped.by if stopped else "", "since": since})
+            case method:
+                self._ask(message, method)
+
+    def _let_go_on(self, message: Message) -> None:
+        """In the name of who is `by` it."""
+        parameter = message.body.get("parameter")
+        by = parameter.get("by") if isinstance(parameter, dict) else None
+        self._resume(shown(by) if isinstance(by, str) and by else SOMEBODY)
+        self._reply(message, "command finished")
+
+    def _ask(self, message: Message, method: str) -> None:
+        """`cancel` or `outcome` of the command whose `id` the parameter names.
+
+        One that is unknown counts as cancelled from then on: it may still be on its way.
+        """
+        id = own_id(message.body.get("parameter"))
+        if not id:
+            _log.warning("a command was refused: `%s` needs the `id` of a command", method)
+            self._reply(message, "command failed: which command? `id` names it")
+            return
+        record = self._reports.find(id)
+        cancelled = method == "cancel"
+        if record is None:
+            record = CommandRecord(message, id, state=CANCELLED if cancelled else UNKNOWN_COMMAND)
+            if cancelled:
+                self._reports.remember(record)
+        elif cancelled and not record.over:
+            self._robot.cancel(record.at)
+        self._reports.repeat(record, message)
