@@ -40,7 +40,7 @@ class Local:
 
     def _send(self, random: Random) -> str:
         known = random.random() < 2 / 3
-        with self._address.connect() as wire:
+        with self._connected() as wire:
             wire.settimeout(PATIENCE)
             try:
                 if known:
@@ -54,6 +54,13 @@ class Local:
             except OSError:
                 return "frames, hung up on"
         return "frames with the key" if known else "frames without"
+
+    def _connected(self) -> socket.socket:
+        try:
+            return self._address.connect()
+        except OSError as error:
+            self._target.lives()
+            raise BrokenError(f"the door does not open: {error}") from None
 
     def _prove(self, wire: socket.socket) -> None:
         buffer = bytearray()
