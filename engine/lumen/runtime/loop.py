@@ -39,7 +39,7 @@ class Observer:
 class BehaviorLoop:
     """A project on a robot, a bus and a clock.
 
-    At each tick: the clock waits, the `parts` live, what happened becomes events, the behaviour steps, its commands are
+    At each tick: the clock waits, tracking lives, what happened becomes events, the behaviour steps, its commands are
     performed; `observers` are called. Where ticks stop for `patience` [s] of the clock the behaviour gets the event
     `brain.lost`. Where a tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
     `tracking` lets controllers follow what is seen; without one that is done here. `rests` is whether the behaviour has

@@ -1,4 +1,4 @@
-"""The three functions that run a behaviour: `initial`, `step` and `due`."""
+"""What runs a behaviour: `initial`, `step`, and for its timers `due` and `elapse`."""
 
 from collections.abc import Callable, Iterator, Mapping
 from math import inf

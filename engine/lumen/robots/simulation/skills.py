@@ -9,7 +9,7 @@ from lumen.interpreters.postures import RESTFUL, UPRIGHT
 from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
-from lumen.robots.command_table import check_command, parts_of
+from lumen.robots.command_table import check_command, parts_of, row_of
 from lumen.robots.cues import EventSink
 from lumen.robots.executor import Activity
 from lumen.robots.silent_recording import SilentRecording
@@ -78,7 +78,7 @@ class SimulatedSkills:
     def begin(self, command: RobotCommand, now: float) -> Activity:
         """The command under way. Raises RobotError where the robot can't."""
         check_command(command, self._world.body)
-        if not isinstance(command, Say | Record | Leds | Rest | Wake | Posture):
+        if row_of(command).moves and not isinstance(command, Wake | Posture):
             self._ready()
         match command:
             case Say(text, language):
