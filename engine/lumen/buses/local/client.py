@@ -165,7 +165,7 @@ class LocalBusClient:
                 waiting[1].append(reason)
                 waiting[0].set()
             case ["refused", key, reason]:
-                _log.warning("the exhibition refuses a message on `%s`: %s", key, reason)
+                _log.warning("the exhibition refuses a message on %.100a: %s", key, reason)
             case ["marked"]:
                 with self._arriving:
                     self._arrived.append((lambda _: self._marked.set(), -1, Message("", None)))
