@@ -15,7 +15,7 @@ class Kind(StrEnum):
     FILE = "file"
 
 
-SHARES = {Kind.MESSAGE: 0.58, Kind.FRAME: 0.358, Kind.FOREIGN: 0.06, Kind.FILE: 0.002}
+SHARES = {Kind.MESSAGE: 0.58, Kind.FRAME: 0.3588, Kind.FOREIGN: 0.06, Kind.FILE: 0.0012}
 """How many of all attacks are of each kind: a file that is saved costs a reload, a message a hundredth of that."""
 
 
