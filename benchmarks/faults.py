@@ -26,7 +26,7 @@ import sys
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -60,8 +60,11 @@ SPOKEN = {
 """What the visitor says in a state, on the way to a moment."""
 WISHES = {"explain": "Tell me about this stand", "dance": "dance", "sing": "sing", "photo": "photo", "goodbye": "no"}
 MOMENTS = ("idle", "greet", "ask_name", "how_are_you", "offer", "explain", "any_question", "answer", "dance", "goodbye")
-BACK = {"greet": "ask_name", "dance": "offer", "sing": "offer", "photo": "offer", "answer": "answer"}
-"""Where a moment is taken up that is not begun again."""
+BACK = {
+    "idle": ("idle", "greet"), "greet": ("greet", "ask_name"), "explain": ("explain", "any_question"),
+    "answer": ("answer", "any_question"), "dance": ("dance", "offer"), "goodbye": ("goodbye", "idle", "greet"),
+}  # fmt: skip
+"""Where a moment is taken up, or leads to by itself meanwhile; else it is taken up as it was."""
 APOLOGIES = ("lost my thoughts", "not hear", "I fell", "on my feet", "cannot", "have stopped")
 
 LINE = re.compile(r"^ *\d+:\d\d\.\d  (\w+) +(.*)$")
@@ -153,7 +156,7 @@ class Exhibition:
                 for name in reversed(names):
                     if name in ("paused", "interrupted"):
                         return ""
-                    if name in (*MOMENTS, *BACK, "fine", "not_understood"):
+                    if name in (*MOMENTS, "sing", "photo", "fine", "not_understood"):
                         return name
             if told.text.startswith("The last run ended without notice"):
                 return told.text.rpartition(" in ")[2].split(", ")[0].rstrip(".")
@@ -169,7 +172,7 @@ class Exhibition:
             time.sleep(0.02)
         return time.monotonic()
 
-    def settled(self, wanted: set[str], over: float) -> float | None:
+    def settled(self, wanted: Collection[str], over: float) -> float | None:
         """Since when it is in one of these states [s], once it has been there for a while; None where it never is."""
         since, deadline = over, over + RETURN_TIMEOUT
         while time.monotonic() < deadline:
@@ -267,8 +270,7 @@ def endure(exhibition: Exhibition, part: str, fault: str, moment: str, *, again:
     robot = exhibition.parts["robot"]
     began = time.monotonic()
     over = exhibition.fault(part, fault)
-    wanted = {moment, BACK.get(moment, moment), *(("idle", "greet") if moment in ("idle", "goodbye") else ())}
-    back = exhibition.settled(wanted, over)
+    back = exhibition.settled(BACK.get(moment, (moment,)), over)
     said = [t for t in robot.since(began, "robot") if t.text.startswith("“")]
     apologies = [t.text for t in said if any(words in t.text for words in APOLOGIES)]
     played = Counter(t.text for t in robot.since(reached, "robot") if t.text == f"plays {moment}")
