@@ -48,6 +48,8 @@ FAULT_PERIOD, DELAY = 8.0, 0.5
 """How long a wire is cut, dead or slow [s], and how much later what it carries arrives."""
 READY_TIMEOUT, MOMENT_TIMEOUT, RETURN_TIMEOUT = 90.0, 150.0, 45.0
 BRAIN_TIMEOUT = 5.0
+PROBATION = 11.0
+"""How long a brain has to live for its files to be approved [s]: who dies twice before that begins anew, on purpose."""
 SETTLED = 6.0
 """How long the tour has to be where it was [s]: who is gone is noticed after 4 s."""
 
@@ -85,8 +87,15 @@ class Part:
         self.name, self.told = name, list[Told]()
         self._command = command
         self.process: Guarded[str] | None = None
+        self._begun = 0.0
+
+    @property
+    def age(self) -> float:
+        """How long it has lived [s]."""
+        return time.monotonic() - self._begun
 
     def begin(self) -> None:
+        self._begun = time.monotonic()
         self.process = Guarded(self._command, text=True, stdin=DEVNULL, stdout=PIPE, stderr=STDOUT, bufsize=1)
         threading.Thread(target=self._read, args=(self.process,), daemon=True).start()
 
@@ -265,6 +274,8 @@ class Exhibition:
 def endure(exhibition: Exhibition, part: str, fault: str, moment: str, *, again: bool) -> Outcome:
     """One fault at one moment, and what came of it."""
     reached = time.monotonic()
+    if not again:
+        exhibition.until(lambda: exhibition.parts["brain"].age > PROBATION, READY_TIMEOUT, "its files are approved")
     exhibition.reach(moment)
     time.sleep(1.0)  # in the middle of it
     robot = exhibition.parts["robot"]

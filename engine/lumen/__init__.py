@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         RobotUnreachableError,
         SenseError,
         SnapshotError,
+        UndeliveredError,
         UsageError,
     )
     from lumen.language.diagnostics import Diagnostic
@@ -69,6 +70,7 @@ __all__ = [
     "RobotUnreachableError",
     "SenseError",
     "SnapshotError",
+    "UndeliveredError",
     "UsageError",
     "__version__",
     "check",
@@ -102,6 +104,7 @@ _HOMES = {
         "RobotUnreachableError",
         "SenseError",
         "SnapshotError",
+        "UndeliveredError",
         "UsageError",
     ),
     "lumen.language.diagnostics": ("Diagnostic",),

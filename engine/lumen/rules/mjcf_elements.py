@@ -79,13 +79,13 @@ class _Reader:
         if len(self.elements) > MAX_ELEMENTS:
             self._stop(len(name) + 1, f"the model has more than {MAX_ELEMENTS:,} elements", "use fewer")
         if reason := _too_many(name, attributes):
-            self._stop(len(name) + 1, f"the model asks for {reason} can be simulated", "use fewer")
+            self._stop(len(name) + 1, f"`<{name}>` asks for {reason} can be simulated", "use fewer")
 
     def _end(self, name: str) -> None:
         self._depth -= 1
 
     def _entity(self, name: str, *_: object) -> None:
-        self._stop(2, f"an entity (`{name[:40]}`) means nothing in a model", "write what it stands for")
+        self._stop(2, f"the entity {name[:40]} means nothing in a model", "write what it stands for")
 
     def _stop(self, length: int, message: str, hint: str) -> None:
         line, column = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1

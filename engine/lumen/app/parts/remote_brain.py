@@ -23,7 +23,7 @@ from lumen.runtime.resuming import Resumption
 from lumen.runtime.tracking import LocalTracking
 
 SESSION = "brain.json"
-"""Where a brain keeps under which session its commands travel, for the one that goes on after it."""
+"""Where a brain keeps under which sessions its commands travel, for the one that goes on after it."""
 GONE = "the robot is gone"
 
 
@@ -77,11 +77,13 @@ class RemoteBrainPart(BrainPart):
         self.robot, self._tracking, self._others, self._home = body.robot, body.tracking, presence, home
         self.motion_module = body.motion_module
         self._session, self._lost = "", False
+        self._earlier: dict[str, str] = {}
 
     def begin(self, now: float) -> None:
         super().begin(now)
         if self._home:
-            self._home.write(SESSION, json.dumps({"session": self.robot.session}).encode())
+            said = {"session": self.robot.session, "earlier": self._earlier}
+            self._home.write(SESSION, json.dumps(said).encode())
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Live through a tick. Raises BusRefusedError where the robot follows another brain."""
@@ -103,19 +105,20 @@ class RemoteBrainPart(BrainPart):
 
     def _regained(self, found: Resumption) -> Resumption:
         """What was under way is asked of the robot."""
-        before = self._before()
-        if not before:
-            return found
-        self.robot.recover(before, found.lost)
-        return found._replace(lost=())
+        self._earlier = self._sessions(found.lost)
+        for id, session in self._earlier.items():
+            self.robot.recover(session, [id])
+        return found._replace(lost=tuple(id for id in found.lost if id not in self._earlier))
 
-    def _before(self) -> str:
-        """Under which session the last brain's commands travelled; empty where that is not known."""
-        try:
-            data: Any = self._home.read_json(SESSION) if self._home else None
-            return str(data["session"])
-        except (TypeError, KeyError):
-            return ""
+    def _sessions(self, ids: Sequence[str]) -> dict[str, str]:
+        """Under which sessions those commands travelled: the last brain's, or that of one before it."""
+        data: Any = self._home.read_json(SESSION) if self._home else None
+        match data:
+            case {"session": str(last), **more}:
+                earlier = more.get("earlier")
+                known = earlier if isinstance(earlier, dict) else {}
+                return {id: str(known.get(id, last)) for id in ids}
+        return {}
 
     def _follow(self) -> None:
         """See which robot there is, and whom it follows."""

@@ -37,7 +37,7 @@ AIM_TTL = 0.2
 COMMAND_TTL = 2.0
 MAX_PENDING_REPORTS = 10_000
 
-_ENDS = {FINISHED: "done", FAILED: "error", CANCELLED: "cancelled", UNKNOWN_COMMAND: "error"}
+_ENDS = {FINISHED: "done", FAILED: "error", CANCELLED: "cancelled", UNKNOWN_COMMAND: "lost"}
 _FORGOTTEN = "the robot has forgotten it: it was restarted"
 
 _log = logging.getLogger(__name__)
@@ -237,7 +237,7 @@ class RemoteRobot:
 
     def _end(self, whole: str, kind: str, reason: str = "") -> None:
         pending = self._pending.pop(whole)
-        data = {"reason": reason} if kind == "error" else None
+        data = {"reason": reason} if kind in ("error", "lost") else None
         self._events.append(Event(f"{kind}.command.{pending.id}", data, self._clock()))
 
     def _chase(self) -> None:
