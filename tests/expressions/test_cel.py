@@ -101,9 +101,9 @@ def test_the_table_has_these_rows() -> None:
 
 @pytest.mark.slow
 @seed(2015)
-@settings(BUSY, max_examples=300)
+@settings(BUSY, max_examples=150)
 @given(expressions(), scopes)
-def test_three_hundred_expressions(tree: ExpressionNode, scope: Scope) -> None:
+def test_a_hundred_and_fifty_expressions(tree: ExpressionNode, scope: Scope) -> None:
     compare(tree, scope)
 
 

@@ -140,7 +140,7 @@ def next_step(machine: Machine, snapshot: Snapshot, what: str, through_disk: boo
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_the_same_events_give_the_same_steps(machine: Machine, happenings: list[str]) -> None:
     steps = run(machine, happenings)
@@ -149,7 +149,7 @@ def test_the_same_events_give_the_same_steps(machine: Machine, happenings: list[
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_every_configuration_is_legal(machine: Machine, happenings: list[str]) -> None:
     for inner, snapshot in (r for taken in run(machine, happenings) for r in running(machine, taken.snapshot)):
@@ -165,7 +165,7 @@ def test_every_configuration_is_legal(machine: Machine, happenings: list[str]) -
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_what_waits_belongs_to_an_active_state(machine: Machine, happenings: list[str]) -> None:
     for inner, snapshot in (r for taken in run(machine, happenings) for r in running(machine, taken.snapshot)):
@@ -176,7 +176,7 @@ def test_what_waits_belongs_to_an_active_state(machine: Machine, happenings: lis
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(machines(), HAPPENINGS)
 def test_what_began_ends_once_and_ids_are_never_used_again(machine: Machine, happenings: list[str]) -> None:
     begun: list[str] = []

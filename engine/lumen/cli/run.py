@@ -4,8 +4,8 @@ import argparse
 import os
 import signal
 import sys
-from collections.abc import Callable, Sequence
-from contextlib import nullcontext, suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 
 from lumen.app.alerts.alert import Origin
@@ -75,15 +75,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     give_back()
-    if options.speed != "max":
-        _go_first()
     named = () if options.story is None else (options.story,)
     root = find_project(options.project or home_of(named))
     parts = parts_of(options.only, options.robot)
     run_directory = RunDirectory(root, guest=bool(parts) and "brain" not in parts)
     told = nullcontext() if options.story else failures_told(root, run_directory, parts or WHOLE, _warn)
     try:
-        with told:
+        with told, nullcontext() if options.speed == "max" else _going_first():
             return _run(options, root, run_directory, parts)
     except (BusError, RobotError, ModuleError):
         run_directory.records.annul()
@@ -196,10 +194,19 @@ def _alerts(project: Project, parts: Sequence[str], narrator: Narrator, story: S
     return AlertDesk(project.alerts, origin, Path(project.root), lambda line: narrator.line("alerts", line))
 
 
-def _go_first() -> None:
+@contextmanager
+def _going_first() -> Iterator[None]:
     """Go before other programs where the system lets us: on a crowded machine a stop waits for none of them."""
+    usual = None
     with suppress(AttributeError, OSError):
+        usual = os.getpriority(os.PRIO_PROCESS, 0)
         os.setpriority(os.PRIO_PROCESS, 0, PRIORITY)
+    try:
+        yield
+    finally:
+        if usual is not None:
+            with suppress(OSError):
+                os.setpriority(os.PRIO_PROCESS, 0, usual)
 
 
 def _heed_signals(node: Node) -> None:

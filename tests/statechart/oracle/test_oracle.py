@@ -113,9 +113,9 @@ def shown(event: Event) -> tuple[Any, ...]:
 
 @pytest.mark.slow
 @seed(2015)
-@settings(BUSY, max_examples=300)
+@settings(BUSY, max_examples=150)
 @given(machines(), happenings)
-def test_three_hundred_machines(machine: MachineDefinition, events: list[Happening | None]) -> None:
+def test_a_hundred_and_fifty_machines(machine: MachineDefinition, events: list[Happening | None]) -> None:
     compare(machine, events, Counter())
 
 
