@@ -11,8 +11,8 @@ for 8 s; when the tour goes on, the same again. The visitor says everything once
 `silent` is how long the robot says nothing [s], from the fault on; `on` how long it takes from the end of the fault
 (for what is killed: from the kill) until the tour is where it was, and stays; `said` what the visitor hears that is no
 part of it; TWICE names motions that were begun again though nobody asked. `rest` is whether the robot rested, with a !
-where it had to and did not, or did for nothing: it has to where its brain was away for 5 s and it lives. Without
-`--count` all are run; with it a sample.
+where it had to and did not, or did for nothing: it has to where its brain was away for 5 s and it lives; how long a
+start takes is the machine's. Without `--count` all are run; with it a sample.
 """
 
 import argparse
@@ -132,11 +132,11 @@ class Outcome(NamedTuple):
     said: list[str]
     twice: list[str]
     rested: bool
-    should_rest: bool
+    should_rest: bool | None
 
     @property
     def well(self) -> bool:
-        return self.on is not None and not self.twice and self.rested == self.should_rest
+        return self.on is not None and not self.twice and self.should_rest in (None, self.rested)
 
 
 class Exhibition:
@@ -295,7 +295,7 @@ def endure(exhibition: Exhibition, part: str, fault: str, moment: str, *, again:
         said=apologies,
         twice=[text for text, times in played.items() if times > 1],
         rested=rested,
-        should_rest=away > BRAIN_TIMEOUT and part != "motion",
+        should_rest=None if fault == "killed" else away > BRAIN_TIMEOUT and part != "motion",
     )  # fmt: skip
 
 
@@ -317,7 +317,7 @@ def table(outcomes: Sequence[Outcome]) -> str:
     rows = [f"{'part':7} {'fault':10} {'moment':13}{'silent':>7}{'on':>7}  {'goes on at':13} rest   said"]
     for o in outcomes:
         on = "never" if o.on is None else f"{o.on:.1f}"
-        rest = ("yes" if o.rested else "no") + ("" if o.rested == o.should_rest else " !")
+        rest = ("yes" if o.rested else "no") + ("" if o.should_rest in (None, o.rested) else " !")
         rows.append(
             f"{o.part:7} {o.fault:10} {o.moment:13}{o.silent:>7.1f}{on:>7}  {o.at:13} {rest:6} {' '.join(o.said)[:60]}"
             + "".join(f"  TWICE {text}" for text in o.twice)

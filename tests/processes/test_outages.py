@@ -21,7 +21,6 @@ def outages(*words: object) -> str:
 @pytest.mark.xdist_group("outages")  # it waits most of the time
 def test_an_explanation_goes_on_after_the_brain_was_killed_and_killed_again() -> None:
     said = outages("--parts", "brain", "--faults", "killed", "--moments", "explain")
-    assert said.count("  explain ") == 4  # where it was, and where it went on
     assert "2 of 2 go on" in said
 
 
