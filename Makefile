@@ -15,7 +15,7 @@ unexport PYTHONDONTWRITEBYTECODE
 help:
 	@echo "make run      a visitor meets the simulated robot (STORY=visitor, SPEED=1|4|max)"
 	@echo "make setup    what the tests need: .venv, Debian packages, what npm has"
-	@echo "make quick    the tests nearest to what changed first, without the long ones (TESTS=tests/FOLDER)"
+	@echo "make quick    for a minute the tests nearest to what changed, without the long ones (TESTS=tests/FOLDER)"
 	@echo "make test     everything, with style, types and floors"
 	@echo "make broker   a private RabbitMQ on loopback, installed where it is missing"
 	@echo "make check    style, types and floors only"
@@ -31,7 +31,7 @@ setup: .venv/test packages
 
 quick: .venv/test
 	@$(BIN)/python scripts/nearest.py $(TESTS) | xargs $(BIN)/python -m pytest -n 2 --dist loadfile \
-		--no-loadscope-reorder --hypothesis-profile quick --cpu-limit 1 -m "not ($(LEFT_OUT))"
+		-p tests.time_budget --begin-within 40 --no-loadscope-reorder --hypothesis-profile quick --cpu-limit 1 -m "not ($(LEFT_OUT))"
 
 test: setup check
 	@$(BIN)/lumen lint --strict
