@@ -279,7 +279,7 @@ def test_a_robot_that_is_lost_has_lost_what_it_did(line: Line) -> None:
     line.robot.start("c2", Rest())
     line.robot.lose("gone")
     assert [(e.name, e.data) for e in line.live(0.1)] == [
-        ("error.command.d1", {"reason": "gone"}), ("error.command.c2", {"reason": "gone"}),
+        ("lost.command.d1", {"reason": "gone"}), ("lost.command.c2", {"reason": "gone"}),
     ]  # fmt: skip
 
 

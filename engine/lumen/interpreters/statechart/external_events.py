@@ -58,7 +58,7 @@ def _answer(context: ExecutionContext, event: Event, answer: CommandAnswer) -> N
             context.activities.lose(context, node, id, reason)
         else:
             context.activities.fail(context, node, id, reason)
-    elif kind == "error" and id.startswith("c"):
+    elif kind in ("error", "lost") and id.startswith("c"):
         context.raise_event(Event("error.communication", {"command": id, "reason": reason}, context.at))
 
 

@@ -140,7 +140,7 @@ class RemoteRobot:
     def lose(self, reason: str) -> None:
         """The robot is gone, and with it all that it was doing."""
         for whole in list(self._pending):
-            self._end(whole, "error", reason)
+            self._end(whole, "lost", reason)
 
     def poll(self) -> Sequence[Event]:
         while self._came:
