@@ -16,6 +16,8 @@ from lumen.runtime.home import Home
 SNAPSHOT_FILE, ALIVE_FILE = "snapshot.json", "alive.json"
 LAST_GOOD_FILE = "good.json"
 SNAPSHOT_VERSION = 1
+DAMAGED_BUNDLE = (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError)
+"""What `zipfile` raises for a bundle that is damaged, however."""
 SNAPSHOT_SPACING = 0.02
 """How long after a snapshot the next is written at the earliest [s]: a simulation may take a hundred steps in that."""
 
@@ -126,7 +128,7 @@ class SnapshotStore:
                 if sum(each.file_size for each in archive.infolist()) > 2 * MAX_PROJECT_BYTES:
                     return None
                 found = {name: archive.read(name) for name in archive.namelist()}
-        except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError):
+        except DAMAGED_BUNDLE:
             return None
         return found if fingerprint(found) == hash else None
 

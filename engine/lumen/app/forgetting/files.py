@@ -17,7 +17,7 @@ from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
 from lumen.runtime.forgetting import forgetful_data
 from lumen.runtime.home import Home
-from lumen.runtime.snapshot_store import SNAPSHOT_FILE
+from lumen.runtime.snapshot_store import DAMAGED_BUNDLE, SNAPSHOT_FILE
 
 DRAFT_AGE = 5.0
 """After how long a draft of a file is one that a crash has left behind [s]."""
@@ -137,11 +137,12 @@ def _members(file: Path, person: PersonName) -> Iterator[str]:
             for member in archive.namelist():
                 if person.is_named_in(archive.read(member).decode("utf-8", "replace")):
                     yield member
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError):
+    except DAMAGED_BUNDLE:
         return
 
 
 def _await(condition: Callable[[], bool]) -> None:
+    """Look again and again, as the condition is another process's work; no longer than PATIENCE."""
     deadline = time.monotonic() + PATIENCE
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.02)
