@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from lumen.bus import connect
 from tests.alerts.halls import files
 from tests.alerts.servers import Web
 from tests.guarded import DEVNULL, Guarded
 from tests.rabbitmq import RabbitMQ
-from tests.waiting import until
+from tests.waiting import Collector, until
 
 BEGUN = 60.0
 """Within this time [s] a process is up and has told, also where the machine has much else to do."""
@@ -67,9 +68,12 @@ def test_an_exhibition_that_is_stopped_killed_and_begun_again(
 @pytest.mark.broker
 def test_a_brain_that_is_killed(hall: tuple[Path, Web], start: Callable[..., Guarded[str]], broker: RabbitMQ) -> None:
     folder, web = hall
+    said, bus = Collector(), connect(broker.url)
+    bus.subscribe("lumen.presence", said)
     start(folder, "--only", "robot", url=broker.url)
     brain = start(folder, "--only", "brain", url=broker.url)
-    until(lambda: (folder / ".lumen/snapshot.json").exists(), BEGUN)
+    until(lambda: any(body.get("follows") for body in said.bodies), BEGUN)
+    bus.close()
     brain.kill()
     until(lambda: web.of("lost"), BEGUN)
     assert web.of("lost")[0]["text"].endswith("the brain is gone, and the robot rests")
