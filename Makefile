@@ -5,6 +5,8 @@ BIN := .venv/bin
 STORY ?= visitor
 SPEED ?= 4
 TESTS ?= tests
+# One more than there are cores: many tests wait for processes of their own.
+WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 LEFT_OUT := soak or slow or broker or physics or npm
 
 # Where Python may not write what it has compiled, each of the processes that tests start compiles everything again.
@@ -35,7 +37,7 @@ quick: .venv/test
 
 test: setup check
 	@$(BIN)/lumen lint --strict
-	@$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not soak"
+	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not soak"
 
 soak: setup check
 	@$(BIN)/python -m pytest -m soak -s
