@@ -79,7 +79,8 @@ class Motion(motions.MotionDefinition):
 def _home(path: Path) -> Path:
     """The project that a motion file belongs to: two folders up, else the one around us."""
     folder = path.absolute().parent
-    return folder.parent if folder.name == "motions" and (folder.parent / "models").is_dir() else find_project()
+    beside = any((folder.parent / name).exists() for name in (MAIN_FILE, "models"))
+    return folder.parent if folder.name == "motions" and beside else find_project()
 
 
 def _surroundings(root: Path) -> ProjectDraft:

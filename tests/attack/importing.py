@@ -15,6 +15,7 @@ from typing import Any
 
 import lumen
 from lumen.cli.main import main
+from lumen.upkeep.heap import give_back
 from tests.attack.attacks import attack
 from tests.attack.files import foreign_file
 
@@ -51,6 +52,7 @@ def _size() -> tuple[float, int, int]:
 
 
 if __name__ == "__main__":
+    give_back()  # what grows is what is kept, not what the C library holds between thousands of files
     lumen.load = cache(lumen.load)  # the robot whose joints a motion moves is the same each time
     for line in sys.stdin:
         sys.stdout.write(json.dumps(imported(Path(sys.argv[1]), int(line))) + "\n")

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from lumen.clocks.real import RealClock
@@ -10,6 +9,7 @@ from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
+from lumen.loading.lending import model_files
 from lumen.ports import Clock, Hall, Robot
 from lumen.runtime.tracking import TrackingService
 
@@ -47,7 +47,7 @@ def set_up(kind: str, project: Project, speed: str, story: Story | None = None, 
     if kind == "simulation":
         from lumen.robots.simulation import SimulatedRobot, available
 
-        simulated = SimulatedRobot(project.body, Path(project.root) / "models", project.hall, stage=project.stage)
+        simulated = SimulatedRobot(project.body, *model_files(project), stage=project.stage)
         return Setup(simulated, SimulatedClock(simulated.advance, pace), simulated, available() or "")
     if kind == "recording":
         from lumen.robots.recording import RecordingRobot

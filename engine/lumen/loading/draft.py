@@ -22,11 +22,13 @@ class ProjectDraft:
 
     `names` has for each folder the names of all files in it, whether they could be built or not; `reports` the report
     of each document by its file; `missing` the folders that were reported as missing; `unsound` the JSON Schemas in
-    behaviours that were reported as broken: behaviour, `types` or `events`, name. `settings` is None where lumen.yaml
+    behaviours that were reported as broken: behaviour, `types` or `events`, name. `lent` are files that come with Lumen
+    and stand where the project has none. `settings` is None where lumen.yaml
     could not be read at all. `root` is the project's folder, for what is needed of files that are not read.
     """
 
     files: Mapping[str, bytes]
+    lent: Mapping[str, bytes] = field(default_factory=dict)
     settings: Settings | None = None
     bodies: dict[str, Body] = field(default_factory=dict)
     behaviors: dict[str, MachineDefinition] = field(default_factory=dict)

@@ -1,6 +1,6 @@
 """A whole project: all its files built into a `ProjectDraft`, and that into a `Project` where nothing is wrong."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import TypeVar
@@ -8,12 +8,14 @@ from typing import TypeVar
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
+from lumen.language.robots import Body
 from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_main_file
+from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend
 from lumen.loading.linking import link
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
@@ -33,8 +35,8 @@ _KINDS: Mapping[str, str] = {
     "behaviors/stories": "story",
     "fuzzy": "controller",
     "motions": "motion",
-    "models/passages": "motion",
-    "models": "body",
+    PASSAGES: "motion",
+    MODELS: "body",
 }
 
 
@@ -46,14 +48,17 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
         found.say(MISSING_FILE, MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
     elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
         found.settings = main.built
-    models, behaviors = _each(found, "models", build_body), _each(found, "behaviors", build_machine)
+    models, behaviors = _each(found, MODELS, build_body), _each(found, "behaviors", build_machine)
+    if found.settings:
+        found.lent = lend(files, found.settings, [*_wanted(found.settings, models)])
+        models |= _each(found, MODELS, build_body, found.lent)
     sources = {name: (file.data, file.report) for name, file in models.items()}
-    found.bodies = build_likes(_built(models), sources, found.names["models"])
+    found.bodies = build_likes(_built(models), sources, found.names[MODELS])
     reports = {name: file.report for name, file in behaviors.items()}
     found.behaviors = link(_built(behaviors), reports, found.names["behaviors"])
     found.stories = _built(_each(found, "behaviors/stories", build_story))
     found.controllers = _built(_each(found, "fuzzy", build_controller))
-    passages = _motions(found, "models/passages")
+    passages = _motions(found, PASSAGES)
     found.motions = _motions(found, "motions")
     found.bodies = {name: replace(body, passages=tuple(passages.values())) for name, body in found.bodies.items()}
     _messages(found)
@@ -100,10 +105,20 @@ def assemble(found: ProjectDraft, root: str) -> Project:
     )
 
 
-def _each(found: ProjectDraft, folder: str, build: Build[T]) -> dict[str, BuiltFile[T]]:
-    """What the documents of a folder hold, by name."""
+def _wanted(settings: Settings, models: Mapping[str, BuiltFile[Body]]) -> Iterator[str]:
+    """The robot's body, and what the project's own bodies are made from."""
+    yield settings.model
+    for file in models.values():
+        if isinstance(file.data, Mapping):
+            yield from (name for key in ("like", "mjcf") if isinstance(name := file.data.get(key), str))
+
+
+def _each(
+    found: ProjectDraft, folder: str, build: Build[T], files: Mapping[str, bytes] | None = None
+) -> dict[str, BuiltFile[T]]:
+    """What the documents of a folder hold, by name: of the project's own files, if not others are given."""
     names, read = set(), dict[str, BuiltFile[T]]()
-    for file, content in found.files.items():
+    for file, content in (found.files if files is None else files).items():
         path = PurePosixPath(file)
         if str(path.parent) != folder or path.suffix not in (".yaml", ".yml"):
             continue
@@ -114,7 +129,7 @@ def _each(found: ProjectDraft, folder: str, build: Build[T]) -> dict[str, BuiltF
         names.add(path.stem)
         if (each := _read(found, file, content, _KINDS[folder], build)) is not None:
             read[path.stem] = each
-    found.names[folder] = frozenset(names)
+    found.names[folder] = found.names.get(folder, frozenset()) | names
     return read
 
 
@@ -147,7 +162,9 @@ def _read(found: ProjectDraft, file: str, content: bytes, kind: str, build: Buil
 
 def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
     """The motions of a folder, which can be read only where the robot's body is known."""
-    files: Mapping[str, BuiltFile[None]] = _each(found, folder, lambda data, report, name: None)
+    files: Mapping[str, BuiltFile[None]] = _each(
+        found, folder, lambda data, report, name: None, {**found.files, **found.lent}
+    )
     only = next(iter(found.bodies)) if found.settings is None and len(found.bodies) == 1 else ""
     model = found.settings.model if found.settings else only
     if model not in found.bodies:
@@ -159,9 +176,9 @@ def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
 
 def _messages(found: ProjectDraft) -> None:
     names = set()
-    for file, content in found.files.items():
+    for file, content in {**found.files, **found.lent}.items():
         path = PurePosixPath(file)
-        if str(path.parent) != "schemas/messages" or not path.name.endswith(SCHEMA_SUFFIX):
+        if str(path.parent) != MESSAGES or not path.name.endswith(SCHEMA_SUFFIX):
             continue
         name = path.name.removesuffix(SCHEMA_SUFFIX)
         names.add(name)
@@ -173,4 +190,4 @@ def _messages(found: ProjectDraft) -> None:
         found.loose += diagnostics
         if schema is not None:
             found.messages[name] = schema
-    found.names["schemas/messages"] = frozenset(names)
+    found.names[MESSAGES] = frozenset(names)

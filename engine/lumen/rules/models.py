@@ -59,14 +59,15 @@ class _ModelReader:
         if fault:
             _say(self.draft, BROKEN_MODEL, name, *fault)
             return []
-        self.around.append(name)
-        self.named(name, elements)
-        self.around.pop()
+        if f"models/{name}" not in self.draft.lent:
+            self.around.append(name)
+            self.named(name, elements)
+            self.around.pop()
         return elements
 
     def content(self, file: str) -> bytes | None:
         """What a file holds; one in a folder within models/, too."""
-        content = self.draft.files.get(file)
+        content = self.draft.files.get(file, self.draft.lent.get(file))
         if content is None and self.draft.root:
             try:
                 return read_regular(self.draft.root / file, MAX_FILE_BYTES)

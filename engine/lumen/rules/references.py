@@ -68,9 +68,8 @@ def _published(draft: ProjectDraft, report: DocumentReport, path: NodePath, name
 
 
 def _model_file(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> None:
-    there = [
-        file.removeprefix("models/") for file in draft.files if file.startswith("models/") and file.endswith(".xml")
-    ]
+    files = (*draft.files, *draft.lent)
+    there = [file.removeprefix("models/") for file in files if file.startswith("models/") and file.endswith(".xml")]
     if name not in there:
         report(MISSING_FILE, path, f"there is no file models/{name}", did_you_mean(name, there, "models/ has"))
 

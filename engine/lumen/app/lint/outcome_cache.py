@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.language.projects import Project
+from lumen.loading.lending import MODELS, model_files
 from lumen.ports import Perform
 from lumen.robots.motion_codec import encode_motion
 from lumen.rules.physics import Case, Outcome
@@ -27,8 +28,9 @@ class OutcomeCache:
 
     def __init__(self, project: Project, files: Mapping[str, bytes]) -> None:
         self._folder = home_of(Path(project.root)) / "physics"
-        root = Path(project.root)
-        models = {path: path.read_bytes() for path in sorted(root.glob("models/**/*")) if path.is_file()}
+        robot, hall = model_files(project)
+        folders = {Path(project.root) / MODELS, robot, (robot / hall).parent}
+        models = {path: path.read_bytes() for each in folders for path in sorted(each.rglob("*")) if path.is_file()}
         passages = {file: content for file, content in files.items() if file.startswith("models/passages/")}
         shapes = [content for path, content in models.items() if path.parent.name != "passages"]
         self._models = _digest([*shapes, project.hall.encode(), engine().encode()])

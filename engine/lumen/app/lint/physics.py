@@ -10,6 +10,7 @@ from lumen.app.lint.outcome_cache import OutcomeCache
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
+from lumen.loading.lending import model_files
 from lumen.rules import check_files
 from lumen.rules.physics import Case, CaseResult, Outcome, SubjectFactory, attempt
 from lumen.rules.physics.cases import cases
@@ -97,5 +98,5 @@ def _attempt(case: Case, make: SubjectFactory, number: int) -> Outcome:
 def _maker(project: Project) -> SubjectFactory:
     from lumen.robots.simulation.subject import subject
 
-    models = Path(project.root) / "models"
-    return lambda number: subject(project.body, models, project.hall, number)
+    models, hall = model_files(project)
+    return lambda number: subject(project.body, models, hall, number)

@@ -35,7 +35,7 @@ class Variation:
 
 
 def load(body: Body, models: Path, hall: str, variation: Variation | None = None) -> mjcf.RootElement:
-    """The hall with the robot on its stage, free to fall.
+    """The hall with the robot on its stage, free to fall; `hall` is in `models`, or an absolute path.
 
     Raises RobotError where a file is no MJCF, or lacks what the simulation needs of it: all of that is listed.
     """
@@ -64,7 +64,8 @@ def physics(body: Body, models: Path, hall: str, variation: Variation | None = N
     A second robot of the same body and the same files in `models` is a copy of what was compiled for the first: a few
     milliseconds instead of 300. Raises RobotError as `load` does, and where MuJoCo can't build it.
     """
-    files = {path: _version(path) for path in models.rglob("*") if path.is_file()}
+    folders = {models, (models / hall).parent}
+    files = {path: _version(path) for folder in folders for path in folder.rglob("*") if path.is_file()}
     compiled = memoize(
         ("simulation", hall), (body, files, variation), lambda: _compiled(load(body, models, hall, variation))
     )

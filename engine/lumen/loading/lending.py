@@ -1,0 +1,58 @@
+"""What comes with Lumen: robots' bodies, a hall and message schemas that a project names and does not hold itself.
+
+Only what is named is lent, and only where the project has no file of that name: its own always counts.
+"""
+
+from collections.abc import Collection, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+
+from lumen.language.projects import Project
+from lumen.loading.messages import SCHEMA_SUFFIX
+from lumen.loading.packaged import shipped_root
+from lumen.loading.settings import Settings
+
+MODELS, MESSAGES, PASSAGES = "models", "schemas/messages", "models/passages"
+
+
+def lend(files: Mapping[str, bytes], settings: Settings, models: Collection[str]) -> dict[str, bytes]:
+    """The shipped files, by their path, that this project needs and does not hold.
+
+    `models` are the names of the bodies that are needed, and of the MJCF of its own bodies.
+    """
+    schemas = [f"{MESSAGES}/{route.schema}{SCHEMA_SUFFIX}" for route in settings.routes.values() if route.schema]
+    wanted = [*schemas, *(f"{MODELS}/{name}" for name in (settings.hall, *models) if name)]
+    if any(f"{MODELS}/{name}.yaml" not in files for name in models if f"{MODELS}/{name}.yaml" in shipped()):
+        wanted += _bodies(files)
+    return {file: shipped()[file].read_bytes() for file in wanted if file not in files and file in shipped()}
+
+
+def _bodies(files: Mapping[str, bytes]) -> Iterator[str]:
+    """Every body that comes with Lumen with its MJCF, since one may be like another, and the ways between postures."""
+    own = any(file.startswith(f"{PASSAGES}/") for file in files)
+    for file, path in shipped().items():
+        if file.startswith(f"{PASSAGES}/"):
+            if not own:
+                yield file
+        elif file.startswith(f"{MODELS}/") and path.with_suffix(".yaml").exists():
+            yield file
+
+
+def model_files(project: Project) -> tuple[Path, str]:
+    """The folder with the MJCF of its robot, and where from there its hall is: in the project, else with Lumen."""
+    own = Path(project.root) / MODELS
+    robot = own if (own / project.body.mjcf).exists() else shipped_root() / MODELS
+    hall = own if (own / project.hall).exists() else shipped_root() / MODELS
+    return robot, project.hall if hall == robot else str(hall.absolute() / project.hall)
+
+
+@cache
+def shipped() -> Mapping[str, Path]:
+    """All files that may be lent: what a project writes leads to no other."""
+    endings = {MODELS: (".yaml", ".xml"), MESSAGES: (SCHEMA_SUFFIX,), PASSAGES: (".yaml",)}
+    return {
+        f"{folder}/{file.name}": file
+        for folder, ends in endings.items()
+        for file in sorted((shipped_root() / folder).iterdir())
+        if file.name.endswith(ends)
+    }
