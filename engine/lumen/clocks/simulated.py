@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 from lumen.clocks.bell import Bell
 from lumen.clocks.pace import PaceMeter
+from lumen.language.nanoseconds import to_the_nanosecond
 
 MAX_ARREARS = 0.25
 """How far [s] the clock may be behind and still catch up: a tick that the machine held back costs no time."""
@@ -42,6 +43,7 @@ class SimulatedClock:
         self._bell.ring()
 
     def wait(self, until: float) -> None:
+        until = to_the_nanosecond(until)
         dt = until - self._now
         if dt <= 0:
             return

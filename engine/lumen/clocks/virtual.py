@@ -4,6 +4,7 @@ from math import inf
 from typing import Protocol
 
 from lumen.errors import UsageError
+from lumen.language.nanoseconds import to_the_nanosecond
 
 
 class Sleeper(Protocol):
@@ -22,7 +23,7 @@ class VirtualClock:
     """A clock that stands still between calls of `advance`."""
 
     def __init__(self, now: float = 0.0) -> None:
-        self._now = now
+        self._now = to_the_nanosecond(now)
         self._sleepers: list[Sleeper] = []
 
     def now(self) -> float:
@@ -38,7 +39,8 @@ class VirtualClock:
         self.wait(self._now + dt)
 
     def wait(self, until: float) -> None:
-        """Let time pass until `until` [s]."""
+        """Let time pass until `until` [s], to the nanosecond."""
+        until = to_the_nanosecond(until)
         while (sleeper := self._first(until)) is not None:
             self._now = max(self._now, sleeper.next_due() or 0.0)
             sleeper.wake()

@@ -100,7 +100,7 @@ class Runtime:
         return commands
 
     def _drop_timer(self, error: Exception) -> None:
-        first = min(self.snapshot.timers, key=lambda t: t.due)
+        first = min(self.snapshot.timers, key=lambda t: t.due_ns)
         _log.error("the timer `%s` is dropped: %s", first.event, error, exc_info=_ours(error))
         kept = tuple(timer for timer in self.snapshot.timers if timer is not first)
         self._snapshot = self.snapshot._replace(timers=kept)

@@ -28,13 +28,16 @@ class RestlessError(Exception):
 
 @dataclass
 class Waiting:
-    """A timer: of an `after` where it has a state, else of a `send`."""
+    """A timer: of an `after` where it has a state, else of a `send`; due [s] to the nanosecond."""
 
     event: str
     due: float
     data: Any = None
     state: str | None = None
     id: str = ""
+
+    def __post_init__(self) -> None:
+        self.due = round(self.due, 9)
 
 
 @dataclass

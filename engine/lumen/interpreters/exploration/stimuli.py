@@ -78,7 +78,7 @@ class StimulusFinder:
             at = max(timer.due, snapshot.at)
             event = Event(timer.event, timer.data, at, timer.id)
             unanswered = () if _is_wait(timer.id) else pending
-            overtaking = any(t.due < timer.due for t in snapshot.timers)
+            overtaking = any(t.due_ns < timer.due_ns for t in snapshot.timers)
             yield Stimulus(StimulusKind.TIME, event, at - snapshot.at, None, unanswered, overtaking)
         for name in self._events:
             yield from (
@@ -150,7 +150,7 @@ def _next(snapshot: Snapshot) -> Iterator[Timer]:
     """
     for timer in snapshot.timers:
         around = [t for t in snapshot.timers if t.kind == "after" and _within(timer.state, t.state)]
-        if timer.kind == "send" or not any(t.delay < timer.delay for t in around):
+        if timer.kind == "send" or not any(t.delay_ns < timer.delay_ns for t in around):
             yield timer
     for owner, child in snapshot.invoked.items():
         yield from (timer._replace(id=outer_id(timer.id, owner)) for timer in _next(child.snapshot))

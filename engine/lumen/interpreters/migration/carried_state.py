@@ -11,6 +11,7 @@ from lumen.interpreters.statechart.state_sets import EntrySet, StateSets
 from lumen.interpreters.statechart.type_checks import fits, type_name
 from lumen.interpreters.statechart.values import Halted, Timer
 from lumen.language.machines import StateKind
+from lumen.language.nanoseconds import nanoseconds
 
 
 class CarriedContext(NamedTuple):
@@ -56,21 +57,21 @@ def timers(timers: tuple[Timer, ...], kept: Mapping[StateNode, StateNode], at: f
     for node, image in kept.items():
         pending = {i: t for i, t in enumerate(timers) if t.kind == "after" and t.state == node.path}
         for event, delay, known in _afters(node, image):
-            place = next((i for i, t in pending.items() if not known or t.delay == delay), None)
+            place = next((i for i, t in pending.items() if not known or t.delay_ns == delay), None)
             if place is not None:
                 timer = pending.pop(place)
-                due = timer.due if known else timer.due - timer.delay + delay
+                due = timer.due_ns if known else timer.due_ns - timer.delay_ns + delay
                 going[place] = Timer(event, due, delay, event, None, image.path, "after")
             elif not known:
-                fresh.append(Timer(event, at + delay, delay, event, None, image.path, "after"))
+                fresh.append(Timer(event, nanoseconds(at) + delay, delay, event, None, image.path, "after"))
     for i, timer in enumerate(timers):
         if timer.kind != "after":
             going[i] = timer._replace(state=images[timer.state].path) if timer.kind == "wait" else timer
     return (*(timer for _, timer in sorted(going.items())), *fresh)
 
 
-def _afters(node: StateNode, image: StateNode) -> list[tuple[str, float, bool]]:
-    """The events and delays of a new state's `after`, those first (True) that the old one had."""
+def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int, bool]]:
+    """The events and delays [ns] of a new state's `after`, those first (True) that the old one had."""
     before = [delay for _, delay in node.afters]
     found = []
     for event, delay in image.afters:

@@ -9,6 +9,7 @@ from lumen.interpreters.statechart.do_actions import CompiledAction, compile_do
 from lumen.interpreters.statechart.type_checks import type_checks
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
+from lumen.language.nanoseconds import nanoseconds
 
 CompiledGuard = Callable[[Scope], bool]
 
@@ -23,7 +24,10 @@ class CompiledInvoke(NamedTuple):
 
 
 class StateNode:
-    """A state, with its neighbours at hand; compared by identity. `index` is its place in document order."""
+    """A state, with its neighbours at hand; compared by identity. `index` is its place in document order.
+
+    `afters` are the events of its `after`, each with its delay [ns].
+    """
 
     __slots__ = (
         "afters", "ancestors", "children", "do", "entry", "exit", "histories", "index", "initial", "invokes",
@@ -42,7 +46,7 @@ class StateNode:
         self.histories: list[StateNode] = []
         self.initial: tuple[StateNode, ...] = ()
         self.transitions: tuple[CompiledTransition, ...] = ()
-        self.afters: tuple[tuple[str, float], ...] = ()
+        self.afters: tuple[tuple[str, int], ...] = ()
         self.entry: CompiledBlock = compile_block(state.entry) if state else ()
         self.exit: CompiledBlock = compile_block(state.exit) if state else ()
         self.do: tuple[CompiledAction, ...] = compile_do(state.do) if state else ()
@@ -128,7 +132,9 @@ class Chart:
         node.transitions = tuple(
             CompiledTransition(t, node, tuple(self.nodes[path] for path in t.targets)) for t in node.state.transitions
         )
-        node.afters = tuple({t.event: t.delay for t in node.state.transitions if t.delay is not None}.items())
+        node.afters = tuple(
+            {t.event: nanoseconds(t.delay) for t in node.state.transitions if t.delay is not None}.items()
+        )
 
 
 def _invoke(invoke: Invoke) -> CompiledInvoke:

@@ -26,6 +26,7 @@ from lumen.interpreters.statechart.values import (
     Within,
 )
 from lumen.language.machines import MachineDefinition, State, StateKind
+from lumen.language.nanoseconds import nanoseconds
 
 SNAPSHOT_VERSION = 1
 
@@ -112,7 +113,7 @@ class _SnapshotReader:
             raise data["kind"].refused("should be `after`, `send` or `wait`")
         if kind != "send" and not self.active(state):
             raise data["state"].refused(f"names `{state}`, which is not active")
-        due, delay = data["due"].number(), data["delay"].number()
+        due, delay = nanoseconds(data["due"].number()), nanoseconds(data["delay"].number())
         event, content = data["event"].text(), data["data"].plain()
         return Timer(data["id"].text(), due, delay, event, content, state, kind)  # type: ignore[arg-type]  # one of three
 

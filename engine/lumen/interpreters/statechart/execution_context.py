@@ -16,6 +16,7 @@ from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.machines import Transition
+from lumen.language.nanoseconds import nanoseconds
 
 _new = tuple.__new__  # a third of the price of Scope(…), Snapshot(…), Step(…)
 
@@ -175,7 +176,9 @@ class ExecutionContext:
 
     def send(self, id: str, delay: float, event: str, data: Any) -> None:
         """A `send`: due after `delay` [s], at the earliest in the next macrostep (SCXML 6.2)."""
-        self.timers = (*self.timers, Timer(id or self._timer_id("s"), self.at + delay, delay, event, data))
+        length = nanoseconds(delay)
+        due = nanoseconds(self.at) + length
+        self.timers = (*self.timers, Timer(id or self._timer_id("s"), due, length, event, data))
 
     def cancel_send(self, id: str) -> None:
         """Take back what was sent under that id and is not due yet (SCXML 6.3)."""
@@ -183,8 +186,8 @@ class ExecutionContext:
 
     def wait(self, seconds: float) -> str:
         """A `wait` of the `do` of the state that is evaluated in; its id."""
-        id = self._timer_id("w")
-        timer = Timer(id, self.at + seconds, seconds, f"wait.{id}", None, self.node.path, "wait")
+        id, length = self._timer_id("w"), nanoseconds(seconds)
+        timer = Timer(id, nanoseconds(self.at) + length, length, f"wait.{id}", None, self.node.path, "wait")
         self.timers = (*self.timers, timer)
         return id
 

@@ -32,7 +32,7 @@ def _end_timer(context: ExecutionContext, event: Event) -> None:
         if owner in context.invocations.children:
             context.invocations.deliver(context, owner, event._replace(sendid=id))
         return
-    timer = min(ended, key=lambda t: t.due)
+    timer = min(ended, key=lambda t: t.due_ns)
     context.timers = _without(context.timers, timer)
     if timer.kind == "after":
         take_enabled(context, context.configuration.timed(timer.event))

@@ -20,6 +20,7 @@ from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.actions import Assign
 from lumen.language.events import Event
 from lumen.language.machines import State, Transition
+from lumen.language.nanoseconds import nanoseconds
 
 T = TypeVar("T")
 
@@ -27,15 +28,18 @@ _new = tuple.__new__  # a third of the price of Scope(…), Snapshot(…), Step(
 
 
 class AfterTimers(NamedTuple):
-    """The `after` timers that a step ends, by the paths of their states, and those that it sets: event, delay, path."""
+    """The `after` timers that a step ends, by the paths of their states, and those it sets: event, delay [ns], path."""
 
     ended: frozenset[str]
-    begun: tuple[tuple[str, float, str], ...]
+    begun: tuple[tuple[str, int, str], ...]
 
     def at(self, now: float, timers: tuple[Timer, ...]) -> tuple[Timer, ...]:
         """The timers after the step, made at `now` [s]."""
         kept = [timer for timer in timers if timer.kind != "after" or timer.state not in self.ended]
-        begun = [Timer(event, now + delay, delay, event, None, path, "after") for event, delay, path in self.begun]
+        if not self.begun:
+            return tuple(kept)
+        at = nanoseconds(now)
+        begun = [Timer(event, at + delay, delay, event, None, path, "after") for event, delay, path in self.begun]
         return (*kept, *begun)
 
 

@@ -13,6 +13,7 @@ from lumen.interpreters.statechart.values import Timer
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.machines import StateKind
+from lumen.language.nanoseconds import nanoseconds
 
 MAX_MICROSTEPS = 1000
 """How many microsteps, or internal events, a macrostep may take."""
@@ -110,9 +111,9 @@ def _restored(context: ExecutionContext, taken: tuple[CompiledTransition, ...]) 
 
 def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ...], restored: frozenset[str]) -> None:
     """`enterStates`, of one state; `done` are those whose end that is, the nearest first, `restored` by history."""
-    at = context.at
     for event, delay in node.afters:
-        context.timers = (*context.timers, Timer(event, at + delay, delay, event, None, node.path, "after"))
+        due = nanoseconds(context.at) + delay
+        context.timers = (*context.timers, Timer(event, due, delay, event, None, node.path, "after"))
     if node.entry:
         _execute(context, node.entry, node)
     if node.do or node.invokes:
@@ -120,7 +121,7 @@ def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ..
         halted = halted if node.path in restored else None
         context.beginnings += (Beginning(node, node.invokes, bool(node.do), halted),)
     for ended, parent in enumerate(done):
-        context.raise_event(Event(f"done.state.{parent.name}", None if ended else _output(context, node), at))
+        context.raise_event(Event(f"done.state.{parent.name}", None if ended else _output(context, node), context.at))
 
 
 def _execute(context: ExecutionContext, block: CompiledBlock, node: StateNode) -> None:

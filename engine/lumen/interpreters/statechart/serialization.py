@@ -8,6 +8,7 @@ from lumen.interpreters.statechart.deserialization import SNAPSHOT_VERSION
 from lumen.interpreters.statechart.json_cursor import plain
 from lumen.interpreters.statechart.values import Awaiting, Fork, Halted, Position, Snapshot, Timer, Within
 from lumen.language.machines import MachineDefinition
+from lumen.language.nanoseconds import nanoseconds
 
 TimerPolicy = Literal["deadline", "remaining", "restart"]
 
@@ -36,7 +37,7 @@ def _data(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
         "context": plain(snapshot.context, "context"),
         "at": snapshot.at,
         "language": snapshot.language,
-        "timers": [plain(timer._asdict(), timer.id) for timer in snapshot.timers],
+        "timers": [_timer(timer) for timer in snapshot.timers],
         "doing": {path: _position(position) for path, position in snapshot.doing.items()},
         "halted": {path: {"position": _position(p), "at": at} for path, (p, at) in snapshot.halted.items()},
         "history": {path: list(remembered) for path, remembered in snapshot.history.items()},
@@ -67,9 +68,10 @@ def retimed(snapshot: Snapshot, now: float, timing: TimerPolicy) -> Snapshot:
         case "deadline":
             return snapshot._replace(at=now)
         case "remaining":
-            return _shifted(snapshot, now, now - snapshot.at, lambda timer: timer.due + now - snapshot.at)
+            later = nanoseconds(now) - nanoseconds(snapshot.at)
+            return _shifted(snapshot, now, now - snapshot.at, lambda timer: timer.due_ns + later)
         case "restart":
-            return _shifted(snapshot, now, now - snapshot.at, lambda timer: now + timer.delay)
+            return _shifted(snapshot, now, now - snapshot.at, lambda timer: nanoseconds(now) + timer.delay_ns)
 
 
 def paused(snapshot: Snapshot, away: float) -> Snapshot:
@@ -80,11 +82,11 @@ def paused(snapshot: Snapshot, away: float) -> Snapshot:
     )
 
 
-def _shifted(snapshot: Snapshot, now: float, later: float, due: Callable[[Timer], float]) -> Snapshot:
+def _shifted(snapshot: Snapshot, now: float, later: float, due: Callable[[Timer], int]) -> Snapshot:
     return snapshot._replace(
         at=now,
         epoch=snapshot.epoch - later,
-        timers=tuple(timer._replace(due=due(timer)) for timer in snapshot.timers),
+        timers=tuple(timer._replace(due_ns=due(timer)) for timer in snapshot.timers),
         doing={path: moved(position, later) for path, position in snapshot.doing.items()},
         halted={path: Halted(moved(p, later), at + later) for path, (p, at) in snapshot.halted.items()},
         invoked={
@@ -107,6 +109,20 @@ def _moved(position: Position, later: float) -> Position:
             return moved(position, later)
         case Fork(branches):
             return Fork(tuple(branch and _moved(branch, later) for branch in branches))
+
+
+def _timer(timer: Timer) -> dict[str, Any]:
+    """A timer in [s], as everything in a snapshot."""
+    id, _, _, event, data, state, kind = timer
+    return {
+        "id": id,
+        "due": timer.due,
+        "delay": timer.delay,
+        "event": event,
+        "data": plain(data, id),
+        "state": state,
+        "kind": kind,
+    }
 
 
 def _position(position: Position) -> dict[str, Any]:

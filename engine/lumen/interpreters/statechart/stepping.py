@@ -15,6 +15,7 @@ from lumen.interpreters.statechart.type_checks import checked
 from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
+from lumen.language.nanoseconds import HALF
 
 
 def initial(
@@ -64,7 +65,7 @@ def due(snapshot: Snapshot) -> Event | None:
     """
     found = None
     if snapshot.timers:
-        timer = min(snapshot.timers, key=lambda t: t.due)
+        timer = min(snapshot.timers, key=lambda t: t.due_ns)
         found = Event(timer.event, timer.data, timer.due, timer.id)
     for owner, child in snapshot.invoked.items():
         event = due(child.snapshot)
@@ -86,7 +87,8 @@ def elapse(machine: MachineDefinition, current: Callable[[], Snapshot], until: f
     that were set before that time do not count.
     """
     left, last = MAX_MICROSTEPS, -inf
-    while (event := due(current())) and event.at <= until:
+    soon = until + HALF
+    while (event := due(current())) and event.at < soon:
         left = left - 1 if event.at == last else MAX_MICROSTEPS + waiting(current())
         last = event.at
         if left < 0:

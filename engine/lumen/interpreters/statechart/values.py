@@ -6,21 +6,32 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.machines import Transition
+from lumen.language.nanoseconds import in_seconds
 
 
 class Timer(NamedTuple):
-    """Something that happens at `due` [s], `delay` [s] after it was set.
+    """Something that happens at `due_ns` [ns], `delay_ns` [ns] after it was set: whole numbers, which add up exactly.
 
     An `after` and a `wait` (of a `do`) end with their state, whose path they hold; a `send` ends with `cancel`.
     """
 
     id: str
-    due: float
-    delay: float
+    due_ns: int
+    delay_ns: int
     event: str
     data: Any = None
     state: str = ""
     kind: Literal["after", "send", "wait"] = "send"
+
+    @property
+    def due(self) -> float:
+        """When it happens [s]."""
+        return in_seconds(self.due_ns)
+
+    @property
+    def delay(self) -> float:
+        """How long after it was set that is [s]."""
+        return in_seconds(self.delay_ns)
 
 
 class Awaiting(NamedTuple):
