@@ -96,3 +96,8 @@ def test_a_simulation_that_has_become_unstable_ends_instead_of_beginning_anew(ro
     robot.world.data.qvel[:] = np.nan
     with pytest.raises(RobotError, match="unstable"):
         robot.advance(0.2)
+
+
+def test_a_hall_in_degrees_is_told(body: Body, models: Path) -> None:
+    hall = changed(models, "hall.xml", ('angle="radian"', 'angle="degree"'))
+    assert "other_hall.xml does not go with the robot's nao.xml" in trouble(body, models, hall)

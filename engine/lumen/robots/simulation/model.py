@@ -42,7 +42,11 @@ def load(body: Body, models: Path, hall: str, variation: Variation | None = None
     robot, world = alone(body, models), _read(models / hall)
     _complain(hall, lacks_of_hall(world))
     stage = world.find("site", STAGE_SITE)
-    stage.attach(robot).add("freejoint")
+    try:
+        stage.attach(robot).add("freejoint")
+    except ValueError as error:
+        reason = " ".join(str(error).split())
+        raise RobotModelError(f"{Path(hall).name} does not go with the robot's {body.mjcf}: {reason}") from error
     if variation:
         _vary(world, variation)
     return world
