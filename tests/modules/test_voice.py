@@ -1,6 +1,7 @@
 """Speech as sound: by espeak-ng, on the bus and from the simulated robot."""
 
 import wave
+from array import array
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from lumen.app.voice import Speaker, voiced
 from lumen.cli.main import main
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import ModuleError, UsageError
-from lumen.language.commands import Say
+from lumen.language.commands import Say, Volume
 from lumen.language.projects import Project
 from lumen.modules.sound import Sound, sound_of, wav
 from lumen.modules.voice import Espeak, Voice, espeak
@@ -27,6 +28,12 @@ def loud(sound: Sound, begin: float, end: float) -> bool:
     """Whether anything is to be heard between these times [s]."""
     part = sound.samples[2 * round(begin * sound.rate) : 2 * round(end * sound.rate)]
     return any(part)
+
+
+def peak(sound: Sound, begin: float, end: float) -> int:
+    """The greatest sample between these times [s]."""
+    part = sound.samples[2 * round(begin * sound.rate) : 2 * round(end * sound.rate)]
+    return max(map(abs, array("h", part)), default=0)
 
 
 def test_says_a_text_and_a_longer_one_for_longer() -> None:
@@ -104,10 +111,24 @@ def test_the_simulated_robot_takes_as_long_as_its_voice(robot: SimulatedRobot, t
     assert sound.duration == pytest.approx(6.0, abs=0.05)
 
 
+def test_what_is_written_is_as_loud_as_the_robot_was_told(robot: SimulatedRobot, tmp_path: Path) -> None:
+    file = tmp_path / "said.wav"
+    end = voiced(Setup(robot, SimulatedClock(robot.advance, None), robot), "espeak", file, "en")
+    for begin, level in ((0.0, 1.0), (3.0, 0.25), (6.0, 0.0)):
+        robot.start("", Volume(level))
+        robot.start("", Say("Good morning!", "en"))
+        robot.advance(begin + 3.0 - robot.time)
+    end()
+    sound = wav(file.read_bytes())
+    loudest, quieter, silent = (peak(sound, begin, begin + 2.9) for begin in (0.0, 3.0, 6.0))
+    assert quieter == pytest.approx(0.25 * loudest, rel=0.01)
+    assert silent == 0
+
+
 def test_a_language_that_espeak_lacks_is_spoken_in_the_first(tmp_path: Path) -> None:
     speaker = Speaker("id", tmp_path / "a.wav")
     length = espeak().speak("Selamat pagi", "id").duration
-    assert speaker.begin("Selamat pagi", "xx", 0.0) == pytest.approx(length, abs=0.01)
+    assert speaker.begin("Selamat pagi", "xx", 1.0, 0.0) == pytest.approx(length, abs=0.01)
 
 
 @pytest.mark.slow
@@ -139,7 +160,7 @@ def _file(sound: Sound) -> bytes:
 
 def test_its_files_are_what_every_player_reads(tmp_path: Path) -> None:
     speaker = Speaker("en", tmp_path / "a.wav")
-    speaker.begin("Good morning!", "en", 0.5)
+    speaker.begin("Good morning!", "en", 1.0, 0.5)
     speaker.close()
     with wave.open(str(tmp_path / "a.wav")) as file:
         assert (file.getnchannels(), file.getsampwidth(), file.getframerate()) == (1, 2, espeak().rate)

@@ -266,6 +266,9 @@ class ALTextToSpeech:
         self._world = world
         self._saying: Blocked | None = None
 
+    def setVolume(self, volume: float) -> None:
+        self._world.note("setVolume", volume)
+
     def getAvailableLanguages(self) -> list[str]:
         return self._world.voices
 

@@ -6,7 +6,7 @@ from math import hypot, nan
 
 import pytest
 
-from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, Sense, Sonar
@@ -101,6 +101,13 @@ def test_lights_of_a_behaviour(robot: Lockstep, live: Live) -> None:
         ("FaceLeds", 0x663399, 0.5),
         ("LeftEarLeds", 0x000000, 0.5),
     ]
+
+
+def test_volume_is_that_of_its_speech(robot: Lockstep, live: Live) -> None:
+    robot.start("a", Volume(0.4))
+    robot.start("b", Volume(1.4))
+    assert sorted(answers(live(0.5))) == ["done.command.a", "error.command.b"]
+    assert robot.nao.world.called("setVolume") == [(0.4,)]
 
 
 def test_cancelled_lights_have_their_colours_at_once(robot: Lockstep, live: Live) -> None:

@@ -10,7 +10,7 @@ import pytest
 import lumen
 from lumen.bus import connect
 from lumen.buses.validated import validated
-from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Wake
+from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
@@ -115,6 +115,16 @@ def test_what_it_can_not_do_is_an_answer_and_not_an_exception(robot: Body) -> No
     [answer] = live(robot, 0.2)
     assert answer.name == "error.command.a"
     assert "Handstand" in answer.data["reason"]
+
+
+def test_its_volume_is_set_while_it_speaks(robot: Body) -> None:
+    robot.start("a", Say("A text that takes a while."))
+    live(robot, 0.2)
+    robot.start("b", Volume(0.4))
+    robot.start("c", Volume(1.01))
+    done, refused = [event for event in live(robot, 0.4) if "command" in event.name]
+    assert {done.name, refused.name} == {"done.command.b", "error.command.c"}
+    assert [name for name in names(live(robot, 6.0)) if "command" in name] == ["done.command.a"]
 
 
 def test_lights_take_their_time_and_leave_the_body_alone(robot: Body) -> None:

@@ -23,6 +23,7 @@ from lumen.language.commands import (
     Start,
     Stop,
     VerbCommand,
+    Volume,
     Wake,
 )
 from lumen.language.commands import Walk as WalkTo
@@ -67,6 +68,7 @@ SAMPLES: tuple[RobotCommand, ...] = (
     Move(0.05, 0.0, 0.1),
     Look(0.3, -0.1),
     Leds({"eyes": "rebeccapurple", "left_foot": "#12a0ff"}, 0.5),
+    Volume(0.6),
     Aim({"HeadYaw": 0.2}, 0.4),
     Record("voice", 2.0),
     Stop("say"),

@@ -39,11 +39,12 @@ class Speaker:
         """Whether nobody hears anything."""
         return self._file is None and self._player is None
 
-    def begin(self, text: str, language: str, now: float) -> float:
+    def begin(self, text: str, language: str, volume: float, now: float) -> float:
         try:
             sound = self._espeak.speak(text, language or self._language)
         except ModuleError:
             sound = self._espeak.speak(text, self._language)
+        sound = sound.at_volume(volume)
         self._saying = (sound, now)
         if self._player:
             self._play(self._player, sound)

@@ -72,6 +72,13 @@ class Leds:
 
 
 @dataclass(frozen=True, slots=True)
+class Volume:
+    """Speak with this volume from the next text on: 0 is silent, 1 the loudest; what is being said is said on."""
+
+    level: float
+
+
+@dataclass(frozen=True, slots=True)
 class Track:
     """Let a controller move its joints, or take them from it."""
 
@@ -123,7 +130,7 @@ class Log:
     text: str
 
 
-MotorCommand = Posture | Walk | Move | Look | Leds | Stop | Rest | Wake
+MotorCommand = Posture | Walk | Move | Look | Leds | Volume | Stop | Rest | Wake
 """What stands in the YAML as the robot performs it. A new one goes here, and into `verbs.py`."""
 
 VerbCommand = MotorCommand | Play | Track | Language

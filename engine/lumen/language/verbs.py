@@ -36,6 +36,7 @@ from lumen.language.commands import (
     Stop,
     Track,
     VerbCommand,
+    Volume,
     Wake,
     Walk,
 )
@@ -156,6 +157,13 @@ _LEDS = Verb(
     lambda c: f"lights {', '.join(f'{group} {colour}' for group, colour in c.colours.items())}",
     lambda c: f"lights {', '.join(f'{group} `{colour}`' for group, colour in c.colours.items())} in {c.duration:g} s",
 )
+_VOLUME = Verb(
+    "volume",
+    Volume,
+    (VerbField("level"),),
+    lambda c: f"speaks with volume {c.level:g} from now on",
+    lambda c: f"speaks with volume {c.level:g} from then on",
+)
 _TRACK = Verb(
     "track",
     Track,
@@ -178,7 +186,7 @@ _LANGUAGE = Verb(
 )
 
 VERBS: tuple[Verb[Any], ...] = (
-    _PLAY, _POSTURE, _MOVE, _WALK, _LOOK, _LEDS, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
+    _PLAY, _POSTURE, _MOVE, _WALK, _LOOK, _LEDS, _VOLUME, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
 )  # fmt: skip
 """Of those that share a name the last is meant where no field says which."""
 

@@ -3,7 +3,9 @@
 import base64
 import binascii
 import io
+import sys
 import wave
+from array import array
 from pathlib import Path
 from typing import IO, NamedTuple
 
@@ -27,6 +29,18 @@ class Sound(NamedTuple):
     def until(self, length: float) -> "Sound":
         """Its beginning, of this length [s] at most."""
         return Sound(self.rate, self.samples[: 2 * round(max(length, 0.0) * self.rate)])
+
+    def at_volume(self, volume: float) -> "Sound":
+        """The same sound, each sample times `volume`, from 0 to 1."""
+        if volume == 1.0:
+            return self
+        louder = array("h", self.samples)
+        if sys.byteorder == "big":
+            louder.byteswap()
+        quieter = array("h", (round(sample * volume) for sample in louder))
+        if sys.byteorder == "big":
+            quieter.byteswap()
+        return Sound(self.rate, quieter.tobytes())
 
     def text(self) -> str:
         """A WAV in base64."""

@@ -10,7 +10,7 @@ from math import hypot, inf
 from typing import Any, Generic, TypeVar, get_args
 
 from lumen.errors import BadCommandError
-from lumen.language.commands import Channel, Leds, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Channel, Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.lights import light_fault
 from lumen.language.robots import Body
@@ -113,6 +113,17 @@ def _leds(p: CommandParameters) -> Leds:
         {shown(str(light)): shown(str(colour)) for light, colour in colours.items()}, p.number("duration", 0.0)
     )
     _check_lights(command, p.project.body)
+    return command
+
+
+def _check_volume(command: Volume, body: Body) -> None:
+    if not 0 <= command.level <= 1:
+        raise BadCommandError(f"a volume lies between 0 and 1, not at {command.level:g}")
+
+
+def _volume(p: CommandParameters) -> Volume:
+    command = Volume(p.number("volume"))
+    _check_volume(command, p.project.body)
     return command
 
 
@@ -240,6 +251,19 @@ _LEDS = CommandRow(
     check=_check_lights,
     moves=False,
 )
+_VOLUME = CommandRow(
+    Volume,
+    "volume",
+    1,
+    "texttospeech",
+    "setVolume",
+    lambda c: {"volume": c.level},
+    _volume,
+    owns(),
+    lambda c: 0.0,
+    check=_check_volume,
+    moves=False,
+)
 _AIM = CommandRow(
     Aim,
     "aim",
@@ -253,7 +277,7 @@ _AIM = CommandRow(
 """Nobody waits for an aim, and it moves what no command owns."""
 
 COMMANDS: tuple[CommandRow[Any], ...] = (
-    _WAKE, _REST, _STOP, _POSTURE, _WALK, _MOVE, _SAY, _PERFORM, _RECORD, _LOOK, _LEDS, _AIM,
+    _WAKE, _REST, _STOP, _POSTURE, _WALK, _MOVE, _SAY, _PERFORM, _RECORD, _LOOK, _LEDS, _VOLUME, _AIM,
 )  # fmt: skip
 
 _BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMANDS}

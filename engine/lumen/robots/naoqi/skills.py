@@ -6,7 +6,7 @@ from math import inf, isfinite
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
-from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, Record, RobotCommand
@@ -64,6 +64,8 @@ class NaoqiSkills:
                 return CallSequence(self._wake(), lambda: [self._post("ALRobotPosture", "stopMove")])
             case Leds(colours, seconds):
                 return self._leds(colours, seconds)
+            case Volume(level):
+                return CallSequence(self._volume(level))
             case Stop() | Aim():
                 raise BadCommandError(f"{type(command).__name__} does not last")
         if self.fallen:
@@ -102,6 +104,9 @@ class NaoqiSkills:
             )  # fmt: skip
         if said := words(text):
             yield self._post("ALTextToSpeech", "say", said, *([name] if name else []))
+
+    def _volume(self, level: float) -> CallSteps:
+        yield self._post("ALTextToSpeech", "setVolume", level)
 
     def _leds(self, colours: Mapping[str, str], seconds: float) -> CallSequence:
         """A fade can't be called back: where it is cancelled, another one of no time takes its place."""

@@ -5,6 +5,7 @@ from math import isfinite
 
 from lumen.errors import BadCommandError
 from lumen.interpreters.trajectory import Trajectory
+from lumen.language.commands import Say
 from lumen.language.motions import Cue, MotionDefinition
 from lumen.robots.cues import CueNotifier, EventSink
 from lumen.robots.simulation.joint_transition import JointTransition
@@ -94,9 +95,9 @@ class MotionPlayback:
 class SpeechActivity:
     """Saying a text; the robot's ears glow meanwhile."""
 
-    def __init__(self, lights: Lights, voice: SpeechPlayback, text: str, language: str, now: float) -> None:
+    def __init__(self, lights: Lights, voice: SpeechPlayback, said: Say, volume: float, now: float) -> None:
         self._lights, self._voice, self._now = lights, voice, now
-        self._until = now + voice.begin(text, language, now)
+        self._until = now + voice.begin(said.text, said.language, volume, now)
         lights.speak(True)
 
     def advance(self, now: float) -> bool:

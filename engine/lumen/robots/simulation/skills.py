@@ -6,7 +6,7 @@ from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.postures import RESTFUL, UPRIGHT
-from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Wake, Walk
+from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import check_command, parts_of, row_of
@@ -25,6 +25,9 @@ from lumen.robots.simulation.world import World
 
 FALLEN_STIFFNESS = 0.1
 """Stiffness of a robot that has fallen."""
+
+FULL_VOLUME = 1.0
+"""How loud a robot speaks that nobody has told."""
 
 _LOOK_SPEED = 1.5
 _REST_SPEED, _WAKE_SPEED = 0.3, 0.4
@@ -56,6 +59,7 @@ class SimulatedSkills:
         self.playing: MotionPlayback | None = None
         self.awake, self.fallen = True, False
         self.voice: SpeechPlayback = SilentPlayback()
+        self.volume = FULL_VOLUME
 
     @property
     def upright(self) -> bool:
@@ -81,8 +85,8 @@ class SimulatedSkills:
         if row_of(command).moves and not isinstance(command, Wake | Posture):
             self._ready()
         match command:
-            case Say(text, language):
-                return SpeechActivity(self._lights, self.voice, text, language, now)
+            case Say():
+                return SpeechActivity(self._lights, self.voice, command, self.volume, now)
             case Record(_, duration):
                 return SilentRecording(command, now + duration, self._notice)
             case Perform():
@@ -93,6 +97,9 @@ class SimulatedSkills:
                 return self._look(yaw, pitch, now)
             case Leds(colours, seconds):
                 return LightFade(self._lights, colours, seconds, now)
+            case Volume(level):
+                self.volume = level
+                return JointTransition(self._motors, {}, now, 0.01)
             case Rest():
                 return self._rest(now)
             case Wake():

@@ -8,8 +8,8 @@ from lumen.robots.command_table import speech_duration
 class SpeechPlayback(Protocol):
     """Says texts in simulated time."""
 
-    def begin(self, text: str, language: str, now: float) -> float:
-        """Say it from `now` [s] on; how long that takes [s]."""
+    def begin(self, text: str, language: str, volume: float, now: float) -> float:
+        """Say it from `now` [s] on, with a `volume` from 0 to 1; how long that takes [s]."""
         ...
 
     def end(self, now: float) -> None:
@@ -20,7 +20,7 @@ class SpeechPlayback(Protocol):
 class SilentPlayback:
     """Says nothing, and takes its time for that."""
 
-    def begin(self, text: str, language: str, now: float) -> float:
+    def begin(self, text: str, language: str, volume: float, now: float) -> float:
         return speech_duration(text)
 
     def end(self, now: float) -> None:
