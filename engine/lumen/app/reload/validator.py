@@ -1,6 +1,7 @@
 """Saved files on trial: loaded, linted, compared with what runs, and played on the recording robot."""
 
 import logging
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -58,20 +59,27 @@ class Validation:
 
 
 class BundleValidator:
-    """Judges files against the bundle that runs, which `running` tells; called on a thread that may take its time.
+    """Judges files against the bundle that runs, which `running` tells; called on threads that may take their time.
 
-    `worker` loads files and plays stories, in another process.
+    `worker` loads files and plays stories, in another process: for one thread at a time, since it plays what it loaded
+    last.
     """
 
     def __init__(self, worker: FileJudge, running: Callable[[], Project], budget: float = BUDGET) -> None:
         self._worker, self._running, self._budget = worker, running, budget
+        self._turn, self._loaded = threading.Lock(), ""
 
     def __call__(self, saved: SavedFiles) -> Validation:
         """What came of them; nothing here raises for what they say."""
+        with self._turn:
+            return self._validate(saved)
+
+    def _validate(self, saved: SavedFiles) -> Validation:
         hash, began = "", time.perf_counter()
         try:
             hash = fingerprint(saved.files)
             project, diagnostics = self._worker.load(saved.files)
+            self._loaded = hash
             if project is None:
                 return Validation(saved, hash, None, diagnostics, loading=time.perf_counter() - began)
             compiled(project.machine)
@@ -91,7 +99,8 @@ class BundleValidator:
         if not validation.good or validation.project is None:
             return []
         others = _touched_stories(validation.project, validation.changes, validation.saved.changed)
-        return list(self._play(validation.project, others, urgent))
+        with self._turn:
+            return list(self._play(validation.project, others, urgent)) if self._loaded == validation.hash else []
 
     def _play(
         self, project: Project, stories: Iterable[Story], urgent: Callable[[], bool] = lambda: False

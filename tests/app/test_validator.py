@@ -1,0 +1,54 @@
+"""A program that reloads beside the watcher: the process that judges serves one thread at a time."""
+
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+
+import lumen
+from lumen.app.rehearsal import Rehearsal
+from lumen.app.reload.validation_worker import Loaded
+from lumen.app.reload.validator import BundleValidator
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+from lumen.runtime.watcher import SavedFiles
+
+ROOT = Path(__file__).parents[2]
+
+
+class SlowJudge:
+    """Waits, while it is asked, for whoever might ask besides; counts how many were there at once."""
+
+    def __init__(self) -> None:
+        self.most, self._here, self._count = 0, threading.Semaphore(0), threading.Lock()
+        self._now = 0
+
+    def begin(self) -> None: ...
+
+    def close(self) -> None: ...
+
+    def load(self, files: Mapping[str, bytes]) -> Loaded:
+        with self._count:
+            self._now += 1
+            self.most = max(self.most, self._now)
+        self._here.acquire(timeout=0.3)  # a second one would come within that time
+        found = check_files(ROOT, files)
+        with self._count:
+            self._now -= 1
+        return found
+
+    def play(self, project: Project, story: str, seconds: float) -> Rehearsal | None:
+        return None
+
+
+def test_two_threads_are_judged_one_after_the_other() -> None:
+    judge, project = SlowJudge(), lumen.load(ROOT)
+    validator, found = BundleValidator(judge, lambda: project), list[bool]()
+    saved = SavedFiles(read_files(ROOT), (), 0.0, 0.0, None)
+    threads = [threading.Thread(target=lambda: found.append(validator(saved).good)) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == [True, True]
+    assert judge.most == 1
