@@ -270,6 +270,16 @@ def test_a_route_that_is_given_up_leaves_no_queue(opened: Open, stranger: Any) -
         stranger.queue_declare("lumen.queue.avatar.K.command", passive=True)
 
 
+@pytest.mark.parametrize("carried", list(Carried))
+def test_keys_of_an_exhibition_s_own_are_carried_as_lumen_s(opened: Open, carried: Carried) -> None:
+    way = route(f"museum.lamp.{carried}", carried)
+    bus, sender, seen = opened(way), opened(way), Collector()
+    undo = bus.subscribe(way.key, seen)
+    sender.publish(way.key, {"level": 0.5})
+    assert seen.wait(1) == [{"level": 0.5}]
+    undo()
+
+
 @pytest.mark.parametrize("carried", [Carried.COMMAND, Carried.JOURNAL])
 def test_who_leaves_takes_nothing_from_who_stays(opened: Open, carried: Carried) -> None:
     way = route(f"avatar.O.{carried}", carried)

@@ -12,6 +12,7 @@ from jsonschema import Draft202012Validator
 from lumen.bus import BusError, connect
 from lumen.buses.checking import SchemaCheck
 from lumen.interpreters.json_schema import JsonSchema
+from lumen.language.routes import Direction, Route
 from tests.exhibits import messages, project
 from tests.waiting import Collector
 
@@ -57,10 +58,19 @@ def test_a_refusal_is_logged_where_nobody_else_is_told(caplog: pytest.LogCapture
 
 
 @pytest.mark.parametrize("key", ["visitor.here", "", "lumenary.x", "Avatar.NAO"])
-def test_keys_begin_with_avatar_or_lumen(key: str) -> None:
+def test_keys_of_no_route_begin_with_avatar_or_lumen(key: str) -> None:
     bus = connect("memory://", project())
-    with pytest.raises(BusError, match="`avatar` nor `lumen`"):
+    with pytest.raises(BusError, match=r"no route .* has this key"):
         bus.publish(key, 1)
+
+
+def test_a_route_may_have_any_key() -> None:
+    lamp = Route("lamp", "museum.{robot}.lamp", Direction.OUT)
+    before = project()
+    bus, seen = connect("memory://", replace(before, routes={**before.routes, "lamp": lamp})), Collector()
+    bus.subscribe("museum.*.lamp", seen)
+    bus.publish("museum.NAO.lamp", {"level": 0.5})
+    assert seen.bodies == [{"level": 0.5}]
 
 
 def test_a_key_without_a_route_passes() -> None:

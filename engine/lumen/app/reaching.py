@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 from lumen.bus import connect
 from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.errors import BusUnreachableError
+from lumen.language.routing_keys import default_key
 from lumen.loading.packaged import find_project
 from lumen.loading.project import main_settings
 from lumen.ports import Bus
-from lumen.robots.robot_routes import COMMAND_ROUTE, DEFAULT_KEYS, STOP_ROUTE
+from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
 from lumen.runtime.home import ADDRESS_FILE, Home, home_of, homes
 
 
@@ -75,7 +76,7 @@ def _keys(root: Path, found: dict[str, Any] | None) -> tuple[str, str]:
     robot = settings.robot if settings else "NAO"
     rows = settings.routes if settings else {}
     command, stop = (
-        rows[route].key_for(robot) if route in rows else DEFAULT_KEYS[route].replace("{robot}", robot)
+        rows[route].key_for(robot) if route in rows else default_key(route, robot)
         for route in (COMMAND_ROUTE, STOP_ROUTE)
     )
     return command, stop

@@ -21,8 +21,6 @@ MAX_KEY_BYTES = 255
 """How long a routing key may be [bytes]: AMQP's bound on a short string."""
 MAX_TTL = 10 * 365 * 24 * 3600
 """How long a message may be of use [s]."""
-KEY_PREFIXES = ("avatar", "lumen")
-"""What every key of ours begins with."""
 TEXT = "text/plain"
 JSON = "application/json"
 

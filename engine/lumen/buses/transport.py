@@ -4,7 +4,7 @@ import time
 import uuid
 from typing import Any
 
-from lumen.buses.bodies import JSON, KEY_PREFIXES, MAX_BODY_BYTES, TEXT, encode
+from lumen.buses.bodies import JSON, MAX_BODY_BYTES, TEXT, encode
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import OutageLog
 from lumen.buses.consumer import Consumer
@@ -14,6 +14,7 @@ from lumen.buses.publisher import Publisher
 from lumen.buses.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY
 from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery
+from lumen.language.routing_keys import KEY_PREFIXES
 from lumen.upkeep.drops import DropLog
 
 ASIDE_RATE = 10.0

@@ -4,11 +4,11 @@ import logging
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from lumen.buses.bodies import KEY_PREFIXES
 from lumen.buses.checking import BodyCheck, body_checks
 from lumen.errors import BadMessageError, Refused
 from lumen.language.projects import Project
 from lumen.language.routes import Route
+from lumen.language.routing_keys import KEY_PREFIXES
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.upkeep.drops import ReasonLog
 
@@ -23,7 +23,7 @@ class ValidatedBus:
 
     A body of our own that does not is our own fault: `publish` raises BusError. One that comes in is not handed to the
     subscriber: `on_refused` is called, the bus puts it aside and answers the sender. Keys without a route pass
-    unchecked, keys that begin with neither `avatar` nor `lumen` don't pass. `use` takes another bundle of the project
+    unchecked where they begin with `avatar` or `lumen`, else they don't pass. `use` takes another bundle of the project
     while messages flow.
     """
 
@@ -31,6 +31,7 @@ class ValidatedBus:
         self._bus = bus
         self._on_refused = on_refused or ReasonLog(_log, "a message on `%(key)s` was refused: %(reason)s")
         self._checks: dict[str, BodyCheck] = {}
+        self._routed: frozenset[str] = frozenset()
         self.use(project)
 
     @property
@@ -46,8 +47,9 @@ class ValidatedBus:
 
     def use(self, project: Project) -> None:
         """Check against the routes and schemas of this project from now on."""
-        self._checks = body_checks(project)
-        self._bus.carry(by_key(project))
+        routes = by_key(project)
+        self._checks, self._routed = body_checks(project), frozenset(routes)
+        self._bus.carry(routes)
 
     def carry(self, routes: Mapping[str, Route]) -> None:
         self._bus.carry(routes)
@@ -81,7 +83,8 @@ class ValidatedBus:
         check = self._checks.get(key)
         if check is not None:
             return check(body)
-        return "" if key.split(".", 1)[0] in KEY_PREFIXES else "its key begins with neither `avatar` nor `lumen`"
+        known = key in self._routed or key.split(".", 1)[0] in KEY_PREFIXES
+        return "" if known else "no route of lumen.yaml has this key, and it begins with neither `avatar` nor `lumen`"
 
 
 def by_key(project: Project) -> dict[str, Route]:

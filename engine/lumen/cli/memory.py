@@ -13,12 +13,12 @@ from lumen.app.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
 from lumen.cli.reach import reach
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.people import name_key
+from lumen.language.routing_keys import default_key
 from lumen.loading.packaged import find_project
 from lumen.loading.project import main_settings
 from lumen.loading.settings import Settings
 from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
-from lumen.modules.module import DEFAULT_KEYS
 from lumen.ports import Bus
 from lumen.runtime.home import home_of
 
@@ -125,7 +125,7 @@ def _ask(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
 
 def _key(settings: Settings, route: str) -> str:
     row = settings.routes.get(route)
-    return row.key_for(settings.robot) if row else DEFAULT_KEYS[route].replace("{robot}", settings.robot)
+    return row.key_for(settings.robot) if row else default_key(route, settings.robot)
 
 
 def _told(found: Forgetting) -> dict[str, object]:

@@ -10,37 +10,10 @@ from typing import Any
 from lumen.errors import BusError, ModuleError
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
+from lumen.language.routing_keys import default_key
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
-
-DEFAULT_KEYS: Mapping[str, str] = {
-    "image": "avatar.{robot}.data.image",
-    "joint": "avatar.{robot}.data.joint",
-    "sonar": "avatar.{robot}.data.sonar",
-    "tactile": "avatar.{robot}.data.tactile",
-    "battery": "avatar.{robot}.data.battery",
-    "recording": "avatar.{robot}.data.recording",
-    "command": "avatar.{robot}.command",
-    "heard": "lumen.audio.speech.recognition",
-    "gender": "lumen.audio.gender.identification",
-    "wav_stream": "lumen.audio.wav.stream",
-    "text_stream": "lumen.audio.text.stream",
-    "text_to_speech": "lumen.audio.text.to.speech",
-    "face": "lumen.visual.face.detection",
-    "recognised": "lumen.visual.face.recognition",
-    "face_tracking": "lumen.visual.face.tracking",
-    "human": "lumen.visual.human.detection",
-    "visual_command": "lumen.visual.command",
-    "social_perception": "lumen.{robot}.social.perception",
-    "social_expression": "lumen.{robot}.social.expression",
-    "fact": "lumen.{robot}.persistence.fact",
-    "forgotten": "lumen.{robot}.persistence.forgotten",
-    "journal": "lumen.{robot}.persistence.journal",
-    "state": "lumen.state",
-    "trouble": "lumen.trouble",
-}
-"""Under which keys modules talk, where the project's routes do not say otherwise."""
 
 MAX_WAITING_MESSAGES = 1_000
 """Messages that wait for a module; then the oldest are dropped."""
@@ -131,7 +104,7 @@ class Module:
     def key(self, route: str) -> str:
         """The routing key of a route."""
         row = self.project.routes.get(route)
-        return row.key_for(self.project.robot) if row else DEFAULT_KEYS[route].replace("{robot}", self.project.robot)
+        return row.key_for(self.project.robot) if row else default_key(route, self.project.robot)
 
     def tell(self, text: str) -> None:
         """A line to the operator, once until `well`."""

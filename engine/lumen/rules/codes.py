@@ -33,7 +33,7 @@ from lumen.loading import (
     yaml_errors,
     yaml_reader,
 )  # fmt: skip
-from lumen.rules import aims, ignores, lookups, on_request, rulebooks, surfaces
+from lumen.rules import aims, ignores, lookups, on_request, routing_keys, rulebooks, surfaces
 from lumen.rules import shapes as controller_shapes
 from lumen.rules.checks import CHECKS
 
@@ -44,7 +44,7 @@ LOADERS = (
 )  # fmt: skip
 """What reads files and declares codes."""
 
-HELPERS = (aims, controller_shapes, ignores, lookups, on_request, rulebooks, surfaces)
+HELPERS = (aims, controller_shapes, ignores, lookups, on_request, routing_keys, rulebooks, surfaces)
 """What rules, or others, ask and what declares codes."""
 
 FAMILY_ORDER = (

@@ -1,11 +1,10 @@
 """The route table: keys, schemas, events."""
 
-import re
 from collections.abc import Mapping
 from urllib.parse import urlsplit
 
 from lumen.language.commands import Track
-from lumen.language.diagnostics import ERROR, WARNING, Code, did_you_mean, has_errors
+from lumen.language.diagnostics import ERROR, WARNING, Code, has_errors
 from lumen.language.routes import (
     COMMAND,
     HEARD,
@@ -23,6 +22,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
 from lumen.rules.lookups import References
 from lumen.rules.references import WRONG_DIRECTION
+from lumen.rules.routing_keys import check_key
 from lumen.rules.walk import action_sites
 
 DUPLICATE_ROUTE = Code("duplicate-route", "routes", ERROR, "two routes carry the same key to the same event")
@@ -34,15 +34,7 @@ LOSSY_JOURNAL = Code(
 )
 BEYOND_CAMERA = Code("beyond-camera", "routes", ERROR, "images are asked for that the robot's camera does not take")
 PASSWORD_IN_FILE = Code("password-in-file", "routes", ERROR, "a name and a password stand in the project")
-ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has a form that no message could have")
 UNUSED_ROUTE = Code("unused-route", "routes", WARNING, "the messages of a route become an event that nothing waits for")
-
-
-KEY_PREFIXES = ("avatar", "lumen")
-MAX_ROUTING_KEY_BYTES = 255
-"""Of a routing key (AMQP 0-9-1, 3.1.1: a short string)."""
-
-_WORD = re.compile(r"[^\s.*#{}]+|\{robot\}")
 
 
 def check(draft: ProjectDraft) -> None:
@@ -55,7 +47,7 @@ def check(draft: ProjectDraft) -> None:
     references = References(draft)
     events: dict[tuple[str, str], str] = {}
     for name, route in settings.routes.items():
-        if not _key(report, route):
+        if not check_key(report, route, settings):
             continue
         _ways(draft, report, route)
         _carried(report, route)
@@ -119,32 +111,6 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
                 message = f"`{behavior}` {what}, and there is no route `{name}`: {MEANINGS[name]}"
                 hint, cause = f"write a row `{name}:`", f"name {name}"
                 report(MISSING_ROUTE, ("routes",), message, hint, key=True, cause=cause)
-
-
-def _key(report: DocumentReport, route: Route) -> bool:
-    """Whether the routing key could be a message's."""
-    message, hint = _fault(route.key)
-    if message:
-        report(ROUTE_KEY, (*route.where, "key"), message, hint)
-    return not message
-
-
-def _fault(key: str) -> tuple[str, str]:
-    words = key.split(".")
-    if "*" in key or "#" in key:
-        return f"`{key}` holds a wildcard, and a message has one certain key", "write the whole key"
-    if key != key.strip() or any(not word for word in words):
-        return f"`{key}` has an empty word", "write words with single dots between them"
-    if " " in key:
-        return f"`{key}` holds a blank", f"write dots between its words: {'.'.join(key.replace('.', ' ').split())}"
-    if bad := [word for word in words if not _WORD.fullmatch(word)]:
-        return f"`{bad[0]}` can't be a word of a routing key", "`{robot}` stands for the robot's name, as a whole word"
-    if words[0] not in KEY_PREFIXES:
-        hint = did_you_mean(words[0], KEY_PREFIXES)
-        return f"`{key}` begins with `{words[0]}`", hint if "mean" in hint else "keys begin with `avatar` or `lumen`"
-    if len(key.encode("utf-8", "replace")) > MAX_ROUTING_KEY_BYTES:
-        return f"the key is longer than {MAX_ROUTING_KEY_BYTES} bytes", "shorten it"
-    return "", ""
 
 
 def _ways(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:

@@ -7,10 +7,11 @@ from typing import Any
 from lumen.errors import BusError
 from lumen.language.commands import Track
 from lumen.language.projects import Project
+from lumen.language.routing_keys import default_key
 from lumen.ports import Bus, Perform
 from lumen.runtime.tracking import LocalTracking
 
-MOTION_KEY, MOTION_ROUTE = "lumen.motion.{robot}.command", "motion"
+MOTION_ROUTE = "motion"
 MOTION_TTL = 2.0
 
 _log = logging.getLogger(__name__)
@@ -19,7 +20,7 @@ _log = logging.getLogger(__name__)
 def motion_key(project: Project) -> str:
     """Under which key the motion module of a project's robot takes requests."""
     row = project.routes.get(MOTION_ROUTE)
-    return row.key_for(project.robot) if row else MOTION_KEY.replace("{robot}", project.robot)
+    return row.key_for(project.robot) if row else default_key(MOTION_ROUTE, project.robot)
 
 
 class DelegatedTracking:

@@ -13,9 +13,11 @@ from typing import Any
 from lumen.errors import BusError
 from lumen.language.events import Event
 from lumen.language.modules import MODULES
+from lumen.language.routing_keys import DEFAULT_KEYS
 from lumen.ports import Bus, Message
 
-PRESENCE_KEY, PRESENCE_ROUTE = "lumen.presence", "presence"
+PRESENCE_ROUTE = "presence"
+PRESENCE_KEY = DEFAULT_KEYS[PRESENCE_ROUTE]
 ROBOT_PART, BRAIN, MOTION, VISITOR = PROCESS_PARTS = ("robot", "brain", "motion", "visitor")
 PRESENCE_PERIOD = 0.5
 """How often a process says that it is there [s]."""

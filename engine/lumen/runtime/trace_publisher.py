@@ -11,10 +11,12 @@ from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.language.commands import Command, Log, Publish, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.language.routing_keys import DEFAULT_KEYS
 from lumen.ports import Bus
 from lumen.runtime.loop import Observer
 
-TRACE_KEY, TRACE_ROUTE = "lumen.state", "state"
+TRACE_ROUTE = "state"
+TRACE_KEY = DEFAULT_KEYS[TRACE_ROUTE]
 TRACE_TTL = 10.0
 
 _log = logging.getLogger(__name__)

@@ -8,7 +8,7 @@ from lumen.app.parts.part import Part
 from lumen.language.events import Event
 from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
-from lumen.modules.module import DEFAULT_KEYS
+from lumen.language.routing_keys import default_key
 from lumen.ports import Bus, Message
 from lumen.upkeep.drops import DropLog
 
@@ -36,7 +36,7 @@ class ForgettingPart(Part):
         self._waiting: dict[str, str] = {}
         self._drops, self._last = DropLog(_log), -FORGETTING_SPACING
         row = project.routes.get(ROUTE)
-        key = row.key_for(project.robot) if row else DEFAULT_KEYS[ROUTE].replace("{robot}", project.robot)
+        key = row.key_for(project.robot) if row else default_key(ROUTE, project.robot)
         self._unsubscribe = bus.subscribe(key, self._messages.append)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:

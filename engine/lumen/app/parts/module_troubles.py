@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from lumen.app.parts.part import Part
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.modules.module import DEFAULT_KEYS
+from lumen.language.routing_keys import default_key
 from lumen.ports import Bus, Message
 
 MAX_PENDING_TROUBLES = 100
@@ -20,7 +20,7 @@ class ModuleTroublesPart(Part):
         self._messages: deque[Message] = deque(maxlen=MAX_PENDING_TROUBLES)
         row = project.routes.get("trouble")
         self._unsubscribe = bus.subscribe(
-            row.key_for(project.robot) if row else DEFAULT_KEYS["trouble"], self._messages.append
+            row.key_for(project.robot) if row else default_key("trouble", project.robot), self._messages.append
         )
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:

@@ -1,0 +1,50 @@
+"""The routing keys that Lumen itself uses; every other key is free for an exhibition's own messages."""
+
+from collections.abc import Mapping
+
+KEY_PREFIXES = ("avatar", "lumen")
+"""What every key of ours begins with: `avatar` those of robots, `lumen` those of what thinks for them."""
+
+DEFAULT_KEYS: Mapping[str, str] = {
+    "image": "avatar.{robot}.data.image",
+    "joint": "avatar.{robot}.data.joint",
+    "sonar": "avatar.{robot}.data.sonar",
+    "tactile": "avatar.{robot}.data.tactile",
+    "battery": "avatar.{robot}.data.battery",
+    "recording": "avatar.{robot}.data.recording",
+    "command": "avatar.{robot}.command",
+    "stop": "avatar.{robot}.stop",
+    "aim": "avatar.{robot}.aim",
+    "report": "avatar.{robot}.event.command",
+    "noticed": "avatar.{robot}.event.noticed",
+    "hall": "avatar.{robot}.hall",
+    "seen": "avatar.{robot}.hall.seen",
+    "presence": "lumen.presence",
+    "state": "lumen.state",
+    "motion": "lumen.motion.{robot}.command",
+    "heard": "lumen.audio.speech.recognition",
+    "gender": "lumen.audio.gender.identification",
+    "wav_stream": "lumen.audio.wav.stream",
+    "text_stream": "lumen.audio.text.stream",
+    "text_to_speech": "lumen.audio.text.to.speech",
+    "face": "lumen.visual.face.detection",
+    "recognised": "lumen.visual.face.recognition",
+    "face_tracking": "lumen.visual.face.tracking",
+    "human": "lumen.visual.human.detection",
+    "visual_command": "lumen.visual.command",
+    "social_perception": "lumen.{robot}.social.perception",
+    "social_expression": "lumen.{robot}.social.expression",
+    "fact": "lumen.{robot}.persistence.fact",
+    "forgotten": "lumen.{robot}.persistence.forgotten",
+    "journal": "lumen.{robot}.persistence.journal",
+    "trouble": "lumen.trouble",
+}
+"""The routes that Lumen and its modules use, and the key of each where lumen.yaml does not say otherwise."""
+
+INTERNAL_KEYS = ("lumen.config.command", "lumen.config.status", "lumen.operator.answer")
+"""Keys of ours that have no route: orders to reload, what comes of them, and answers to who typed a command."""
+
+
+def default_key(route: str, robot: str) -> str:
+    """The key of one of our routes for that robot, where lumen.yaml does not say otherwise."""
+    return DEFAULT_KEYS[route].replace("{robot}", robot)

@@ -1,0 +1,74 @@
+"""Routing keys: their form, and which are Lumen's own."""
+
+import re
+from collections.abc import Mapping
+from difflib import get_close_matches
+
+from lumen.language.diagnostics import ERROR, WARNING, Code
+from lumen.language.routes import Direction, Route
+from lumen.language.routing_keys import DEFAULT_KEYS, INTERNAL_KEYS, KEY_PREFIXES
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.settings import Settings
+
+ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has a form that no message could have")
+TAKEN_KEY = Code("taken-key", "routes", ERROR, "a route sends under a key that Lumen itself uses for something else")
+NEAR_KEY = Code("near-key", "routes", WARNING, "a routing key begins nearly as Lumen's own do")
+
+MAX_ROUTING_KEY_BYTES = 255
+"""Of a routing key (AMQP 0-9-1, 3.1.1: a short string)."""
+NEAR = 0.8
+"""How like a prefix of ours a word has to be to be taken for a slip of it, as difflib measures."""
+
+_WORD = re.compile(r"[^\s.*#{}]+|\{robot\}")
+
+
+def check_key(report: DocumentReport, route: Route, settings: Settings) -> bool:
+    """Whether the routing key could be a message's of that exhibition; what is wrong or odd is reported."""
+    path = (*route.where, "key")
+    message, hint = _fault(route.key)
+    if message:
+        report(ROUTE_KEY, path, message, hint)
+        return False
+    if route.direction is Direction.OUT and _taken(report, route, settings):
+        return False
+    first = route.key.split(".")[0]
+    near = get_close_matches(first.lower(), KEY_PREFIXES, n=1, cutoff=NEAR)
+    if first not in KEY_PREFIXES and near:
+        message = f"`{route.key}` begins with `{first}`, nearly as keys of Lumen do"
+        report(NEAR_KEY, path, message, f"did you mean `{near[0]}`? else choose another first word")
+    return True
+
+
+def _fault(key: str) -> tuple[str, str]:
+    words = key.split(".")
+    if "*" in key or "#" in key:
+        return f"`{key}` holds a wildcard, and a message has one certain key", "write the whole key"
+    if key != key.strip() or any(not word for word in words):
+        return f"`{key}` has an empty word", "write words with single dots between them"
+    if " " in key:
+        return f"`{key}` holds a blank", f"write dots between its words: {'.'.join(key.replace('.', ' ').split())}"
+    if bad := [word for word in words if not _WORD.fullmatch(word)]:
+        return f"`{bad[0]}` can't be a word of a routing key", "`{robot}` stands for the robot's name, as a whole word"
+    if len(key.encode("utf-8", "replace")) > MAX_ROUTING_KEY_BYTES:
+        return f"the key is longer than {MAX_ROUTING_KEY_BYTES} bytes", "shorten it"
+    return "", ""
+
+
+def _taken(report: DocumentReport, route: Route, settings: Settings) -> bool:
+    """Whether Lumen itself uses that key for something else, which is reported."""
+    key = route.key_for(settings.robot)
+    owner = _owners(settings).get(key, route.name)
+    message, cause = f"`{key}` is the key of Lumen's own route `{owner}`", f"name {owner}"
+    if key in INTERNAL_KEYS:
+        message, cause = f"`{key}` is one of Lumen's own keys, which no route can have", f"key {key}"
+    elif owner == route.name:
+        return False
+    hint = f"choose a key of your own, such as `museum.{route.name}`"
+    report(TAKEN_KEY, (*route.where, "key"), message, hint, cause=cause)
+    return True
+
+
+def _owners(settings: Settings) -> Mapping[str, str]:
+    """The names of Lumen's own routes by the keys that they have in this exhibition."""
+    keys = {name: settings.routes[name].key if name in settings.routes else key for name, key in DEFAULT_KEYS.items()}
+    return {key.replace("{robot}", settings.robot): name for name, key in keys.items()}
