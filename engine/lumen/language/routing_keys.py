@@ -41,6 +41,12 @@ DEFAULT_KEYS: Mapping[str, str] = {
 }
 """The routes that Lumen and its modules use, and the key of each where lumen.yaml does not say otherwise."""
 
+SHARED_ROUTES = frozenset((
+    "heard", "gender", "wav_stream", "text_stream", "text_to_speech", "face", "recognised", "face_tracking", "human",
+    "visual_command", "social_perception", "social_expression", "fact", "forgotten", "journal",
+))  # fmt: skip
+"""Where modules and behaviours speak with each other: any route may send under their keys, whatever its name."""
+
 INTERNAL_KEYS = ("lumen.config.command", "lumen.config.status", "lumen.operator.answer")
 """Keys of ours that have no route: orders to reload, what comes of them, and answers to who typed a command."""
 

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 
 from lumen.language.diagnostics import ERROR, WARNING, Code
 from lumen.language.routes import Direction, Route
-from lumen.language.routing_keys import DEFAULT_KEYS, INTERNAL_KEYS, KEY_PREFIXES
+from lumen.language.routing_keys import DEFAULT_KEYS, INTERNAL_KEYS, KEY_PREFIXES, SHARED_ROUTES
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.settings import Settings
 
@@ -69,6 +69,7 @@ def _taken(report: DocumentReport, route: Route, settings: Settings) -> bool:
 
 
 def _owners(settings: Settings) -> Mapping[str, str]:
-    """The names of Lumen's own routes by the keys that they have in this exhibition."""
-    keys = {name: settings.routes[name].key if name in settings.routes else key for name, key in DEFAULT_KEYS.items()}
+    """The names of the routes that are Lumen's alone by the keys that they have in this exhibition."""
+    own = {name: key for name, key in DEFAULT_KEYS.items() if name not in SHARED_ROUTES}
+    keys = {name: settings.routes[name].key if name in settings.routes else key for name, key in own.items()}
     return {key.replace("{robot}", settings.robot): name for name, key in keys.items()}
