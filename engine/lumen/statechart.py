@@ -34,7 +34,7 @@ class Machine(machines.MachineDefinition):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The machine in a file; behaviours that it invokes stand beside it.
+        """The machine in a file; behaviours that it invokes stand beside it, words files in `words/`.
 
         Raises UsageError where a file can't be read, ProjectError for what they say.
         """
@@ -42,13 +42,17 @@ class Machine(machines.MachineDefinition):
 
     @classmethod
     def from_dict(
-        cls, data: Mapping[str, Any], name: str = "machine", behaviors: Mapping[str, Mapping[str, Any]] | None = None
+        cls,
+        data: Mapping[str, Any],
+        name: str = "machine",
+        behaviors: Mapping[str, Mapping[str, Any]] | None = None,
+        words: Mapping[str, Mapping[str, Any]] | None = None,
     ) -> Self:
         """The machine that a dict of the file's shape describes; raises ProjectError.
 
-        `behaviors` are those that it may invoke, each a dict of its own, by their names.
+        `behaviors` are those that it may invoke, each a dict of its own, by their names; `words` the words files.
         """
-        return cls._derived(machine_from_dict(data, name, behaviors or {}), {})
+        return cls._derived(machine_from_dict(data, name, behaviors or {}, words or {}), {})
 
     @classmethod
     def _derived(cls, machine: machines.MachineDefinition, known: dict[str, Self]) -> Self:

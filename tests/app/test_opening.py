@@ -93,7 +93,9 @@ def test_files_are_taken_refused_and_named(copy: Path) -> None:
     with lumen.open(copy) as exhibition:
         exhibition.run(seconds=1)
         assert exhibition.reload().verdict == "unchanged"
-        file.write_text(text.replace("a little more than five kilograms", "five kilograms"), "utf-8")
+        words = copy / "behaviors" / "words" / "faq.yaml"
+        answers = words.read_text("utf-8")
+        words.write_text(answers.replace("a little more than five kilograms", "five kilograms"), "utf-8")
         report = exhibition.reload()
         assert report.verdict == "applied"
         assert [change.kind for change in report.changes] == ["text"]

@@ -141,6 +141,15 @@ def test_a_folder_that_comes_later_is_watched(watched: Watched) -> None:
     assert watched.next().files["fuzzy/head.yaml"] == b"newer"
 
 
+def test_words_that_come_later_are_watched(watched: Watched) -> None:
+    words = watched.root / "behaviors" / "words" / "faq.yaml"
+    words.parent.mkdir()
+    words.write_text("new", "utf-8")
+    assert watched.next().changed == ("behaviors/words/faq.yaml",)
+    words.write_text("newer", "utf-8")
+    assert watched.next().files["behaviors/words/faq.yaml"] == b"newer"
+
+
 def test_what_can_not_be_read_is_told_and_mended(watched: Watched) -> None:
     (watched.root / TOUR).unlink()
     (watched.root / TOUR).mkdir()

@@ -19,6 +19,7 @@ from tests.mutation.mutants import Nursery
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = Analysis(ROOT, read_files(ROOT))
+FAQ = "behaviors/words/faq.yaml"
 TOUR, VISITOR = "behaviors/tour.yaml", "behaviors/stories/visitor.yaml"
 
 
@@ -57,6 +58,10 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
         (TOUR, "context.name_tries < 2", "context.|", ["visitor", "battery"], ["name"]),
         (TOUR, "event.data.gender == 'male'\"", "event.data.|", ["gender"], ["result", "visitor"]),
         (TOUR, "heard(event.data.result, 'english')\"", "heard(event.data.result, '|", ["dance", "no_more"], ["faq"]),
+        (TOUR, "lookup(event.data.result, 'faq')", "lookup(event.data.result, '|", ["faq", "explanations"], ["dance"]),
+        (TOUR, "words: faq", "words: |", ["faq"], ["tour"]),
+        (FAQ, "answers:\n", "|\nanswers:\n", ["phrases: "], ["states: "]),
+        (FAQ, "- phrases:", "- |", ["phrases: "], ["say: "]),
         (TOUR, "How are you, {{ context.visitor }}?", "How are you, {{ context.|", ["title_en"], ["heard("]),
         (TOUR, "            onDone: offer\n", "            onDone: offer\n            |\n", ["always: "], ["onDone: "]),
         (VISITOR, "expect: {state: greet", "expect: {state: |", ["greet", "offer"], ["#greet"]),
@@ -90,6 +95,8 @@ def test_completion(file: str, old: str, new: str, some: list[str], none: list[s
         (TOUR, "context.name_|tries <", f"{TOUR}: name_tries:"),
         (TOUR, "heard(event.data.result, 'engl|ish')", f"{TOUR}: english:"),
         (TOUR, "heard(event.data.result, 'dan|ce')", f"{TOUR}: dance:"),
+        (TOUR, "lookup(event.data.result, 'f|aq')", f"{FAQ}: faq:"),
+        (TOUR, "words: f|aq", FAQ),
         ("motions/goodbye.yaml", "pose: hand_|out", "motions/goodbye.yaml: hand_out:"),
         ("lumen.yaml", "schema: ima|ge", "schemas/messages/image.schema.json"),
         ("fuzzy/head.yaml", "FaceXLoc: fa|ce.x", "lumen.yaml: face:"),
@@ -135,6 +142,8 @@ def test_hover_over_a_finding_shows_its_rule() -> None:
         (TOUR, "target: how_are|_you", "mood", 38, None),
         (TOUR, "context.name_|tries <", "tries", 8, None),
         (TOUR, "heard(event.data.result, 'engl|ish')", "inggris", 6, None),
+        (TOUR, "lookup(event.data.result, 'f|aq')", "questions", 5, None),
+        (TOUR, "words: f|aq", "said", 1, (FAQ, "behaviors/words/said.yaml")),
         (VISITOR, "played: dan|ce", "horse", 3, ("motions/dance.yaml", "motions/horse.yaml")),
         ("lumen.yaml", "  jour|nal: {key", "diary", 1, None),
         ("motions/goodbye.yaml", "pose: hand_|out", "out", 3, None),
@@ -156,6 +165,7 @@ def test_rename(file: str, text: str, name: str, edits: int, moved: tuple[str, s
         (TOUR, "target: how_are|_you", "greet", "already"),
         (TOUR, "target: how_are|_you", "two words", "without spaces"),
         (TOUR, "context.name_|tries <", "visitor", "already"),
+        (TOUR, "lookup(event.data.result, 'f|aq')", "explanations", "already"),
         (TOUR, "context.name_|tries <", "1st", "letters"),
         (TOUR, "context.name_|tries <", "null", "can't be"),
         ("lumen.yaml", "  fa|ce: {key", "gesicht", "means something to Lumen itself"),
@@ -181,7 +191,8 @@ def test_every_state_key_phrase_and_route_can_be_renamed() -> None:
 def test_uses_and_symbols() -> None:
     assert len(uses(SHIPPED, *place(SHIPPED, VISITOR, "played: dan|ce"))) == 3
     tree = {symbol.name: symbol for symbol in symbols(SHIPPED, TOUR)}
-    assert {"visitor", "english", "faq", "guide", "safety"} <= tree.keys()
+    assert {"visitor", "english", "guide", "safety"} <= tree.keys()
+    assert {symbol.name for symbol in symbols(SHIPPED, FAQ)} == {"faq", "explanations"}
     assert {child.name for child in tree["guide"].children} == {"idle", "talking", "paused", "interrupted"}
     assert tree["guide"].whole.end_line > tree["guide"].place.line + 100
 

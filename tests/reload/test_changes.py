@@ -25,6 +25,7 @@ from tests.tour.names import ROOT
 
 FILES = read_files(ROOT)
 TOUR = "behaviors/tour.yaml"
+FAQ = "behaviors/words/faq.yaml"
 ASK_NAME = ("          ask_name:\n            id: ask_name", "          asking:\n            id: asking")
 RENAMING = [
     (TOUR, *ASK_NAME),
@@ -58,9 +59,15 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     ),
     (
         "an answer",
-        [(TOUR, "I weigh a little more than five kilograms.", "Five kilograms.")],
+        [(FAQ, "I weigh a little more than five kilograms.", "Five kilograms.")],
         ["`faq` answers “Five kilograms.” now"],
         Risk.COSMETIC,
+    ),
+    (
+        "another order of answers",
+        [(FAQ, "[how heavy, your weight, ", "[how heavy, ")],
+        ["`faq` listens for other phrases, or in another order"],
+        Risk.BEHAVIOR,
     ),
     ("a motion", [(TOUR, "{play: dance}", "{play: photo}")], ["state `dance` now plays `photo`"], Risk.BEHAVIOR),
     (

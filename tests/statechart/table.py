@@ -24,7 +24,7 @@ def play(case: Mapping[str, Any]) -> list[tuple[Mapping[str, Any], Mapping[str, 
 
     Steps are `start` (again, from the beginning), `send` with `data`, and `wait` [s].
     """
-    machine = Machine.from_dict(case["machine"], behaviors=case.get("behaviors"))
+    machine = Machine.from_dict(case["machine"], behaviors=case.get("behaviors"), words=case.get("words"))
     steps: list[Step] = []
     found = []
     interpreter: Interpreter | None = None

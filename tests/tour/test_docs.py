@@ -31,7 +31,8 @@ def test_the_state_that_the_tutorial_shows_is_the_one_in_the_tour() -> None:
 
 
 def test_the_tutorials_question_can_be_added(copy: Path) -> None:
-    change(copy, "\ntype: parallel\n", f"{BLOCKS[1]}\ntype: parallel\n")
+    words = copy / "behaviors" / "words" / "faq.yaml"
+    words.write_text(words.read_text("utf-8") + BLOCKS[1], "utf-8")
     assert lumen.check(copy) == []
     row = lumen.load(copy).machine.answers["faq"][-1]
     assert "your favourite colour" in row.phrases["en"]

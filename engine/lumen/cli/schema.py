@@ -16,6 +16,7 @@ from lumen.loading.schema import FILE_KINDS, load_schema
 FILES: Mapping[str, tuple[str, ...]] = {
     "lumen": (MAIN_FILE,),
     "behavior": ("behaviors/*.yaml",),
+    "words": ("behaviors/words/*.yaml",),
     "story": ("behaviors/stories/*.yaml",),
     "controller": ("fuzzy/*.yaml",),
     "motion": ("motions/*.yaml", "models/passages/*.yaml"),

@@ -102,7 +102,9 @@ class Answer:
 class MachineDefinition:
     """A whole statechart; `states` maps paths to states in document order, the root under the empty path.
 
-    `invoked` holds the machines that its states invoke, by the names of their behaviours.
+    `phrases` and `answers` are its own and those of its `words` files; `borrowed` says of those from which file each
+    comes: `("answers", "faq")` from `museum`. `invoked` holds the machines that its states invoke, by the names of
+    their behaviours.
     """
 
     id: str
@@ -112,6 +114,8 @@ class MachineDefinition:
     events: Mapping[str, Any] = field(default_factory=dict)
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
     answers: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
+    words: tuple[str, ...] = ()
+    borrowed: Mapping[tuple[str, str], str] = field(default_factory=dict)
     renamed: Mapping[str, str] = field(default_factory=dict)
     hash: str = ""
     invoked: Mapping[str, "MachineDefinition"] = field(default_factory=dict, repr=False)

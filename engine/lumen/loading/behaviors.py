@@ -2,16 +2,18 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
+from types import MappingProxyType
 from typing import Any
 
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
-from lumen.language.machines import Answer, MachineDefinition, State, StateKind
+from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.loading.actions import Actions
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import check_ids, invocations
+from lumen.loading.known_words import WordFiles, known_words
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.shapes import check_shapes
 from lumen.loading.transitions import TransitionReader
@@ -23,14 +25,22 @@ CONTEXT_PREFIX = "context"
 """How `renamed` calls keys of the context: `context.name: context.visitor`."""
 
 
-def build_machine(data: Any, report: DocumentReport, *, name: str) -> MachineDefinition | None:
+def build_machine(
+    data: Any,
+    report: DocumentReport,
+    *,
+    name: str,
+    words: WordFiles = MappingProxyType({}),
+    known: Collection[str] = (),
+) -> MachineDefinition | None:
     """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
 
-    `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out.
+    `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out. `words` are the
+    words files that it may name, `known` the names of all, those that can't be read among them.
     """
     if not isinstance(data, Mapping) or not data.get("states"):
         return None
-    return MachineDefinition(**_Builder(data, report, name).fields())
+    return MachineDefinition(**_Builder(data, report, name, words, known or words.keys()).fields())
 
 
 def fingerprint(data: Any) -> str:
@@ -42,10 +52,13 @@ def fingerprint(data: Any) -> str:
 class _Builder:
     """Reads one file: first the tree of its states, then what stands in each."""
 
-    def __init__(self, data: Mapping[str, Any], report: DocumentReport, name: str) -> None:
-        self.data, self.report = data, report
+    def __init__(
+        self, data: Mapping[str, Any], report: DocumentReport, name: str, words: WordFiles, known: Collection[str]
+    ) -> None:
+        self.data, self.report, self.files = data, report, words
+        self.words = known_words(data, report, words, known)
         self.outline = BehaviorOutline(data, name, report)
-        self.expressions = Expressions(report, data, {*self.outline.entries, *self.outline.aliases})
+        self.expressions = Expressions(report, data, self.words, {*self.outline.entries, *self.outline.aliases})
         self.actions = Actions(report, self.expressions, data.get("units") or {})
         self.transitions = TransitionReader(report, self.outline, self.actions, self.expressions)
         self.beginnings: dict[str, tuple[str, ...]] = {}
@@ -61,11 +74,16 @@ class _Builder:
             "context": dict(data.get("context") or {}),
             "types": {k: v for k, v in (data.get("types") or {}).items() if self.expressions.key(k, ("types", k))},
             "events": dict(data.get("events") or {}),
-            "phrases": {key: _phrases(body) for key, body in (data.get("phrases") or {}).items()},
-            "answers": {key: _answers(rows) for key, rows in (data.get("answers") or {}).items()},
+            **self.words.tables,
+            "words": self.words.files,
+            "borrowed": self.words.borrowed,
             "renamed": {was: now for was in data.get("renamed") or {} if (now := self.renamed(was))},
-            "hash": fingerprint(data),
+            "hash": fingerprint([data, *self.borrowed()] if self.words.files else data),
         }
+
+    def borrowed(self) -> Iterator[Any]:
+        """What the words files say that it names, as data."""
+        yield from (self.files[name].data for name in self.words.files if name in self.files)
 
     def state(self, entry: OutlinedState) -> State:
         data, where = entry.data, entry.where
@@ -173,12 +191,3 @@ def _children(entry: OutlinedState) -> tuple[str, ...]:
 
 def _child(target: str) -> str:
     return target if target.startswith(("#", ".")) else f".{target}"
-
-
-def _phrases(body: Any) -> dict[str, tuple[str, ...]]:
-    table = body if isinstance(body, Mapping) else {"": body}
-    return {language: (rows,) if isinstance(rows, str) else tuple(rows) for language, rows in table.items()}
-
-
-def _answers(rows: Any) -> tuple[Answer, ...]:
-    return tuple(Answer(_phrases(row["phrases"]), row["value"]) for row in rows)

@@ -29,12 +29,15 @@ class BuiltFile(NamedTuple, Generic[T]):
     built: T | None
 
 
-def read_file(file: str, content: bytes, kind: str, build: Build[T]) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
+def read_file(
+    file: str, content: bytes, kind: str, build: Build[T], around: object = None
+) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
     """What a file holds, None where it can't be read at all, and what is wrong with its text.
 
     Its report is the caller's own, to which more may be said; all else is shared with whoever reads the same.
+    `around` is what else the building depends on.
     """
-    read, found = memoize(("file", file), content, lambda: _read(file, content, kind, build))
+    read, found = memoize(("file", file), (content, around), lambda: _read(file, content, kind, build))
     return read and read._replace(report=read.report.copy()), found
 
 

@@ -11,6 +11,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.language.stories import Story
+from lumen.language.words import Words
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.settings import Settings
@@ -32,6 +33,7 @@ class ProjectDraft:
     settings: Settings | None = None
     bodies: dict[str, Body] = field(default_factory=dict)
     behaviors: dict[str, MachineDefinition] = field(default_factory=dict)
+    words: dict[str, Words] = field(default_factory=dict)
     controllers: dict[str, ControllerDefinition] = field(default_factory=dict)
     motions: dict[str, MotionDefinition] = field(default_factory=dict)
     stories: dict[str, Story] = field(default_factory=dict)

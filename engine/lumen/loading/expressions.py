@@ -9,6 +9,7 @@ from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import NodePath, Place, did_you_mean
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.known_words import KnownWords
 from lumen.loading.numbers import finite
 from lumen.loading.scalars import within
 
@@ -19,13 +20,14 @@ class Expressions:
     What is told here needs no knowledge of types: syntax, functions, and the names that the file itself declares.
     """
 
-    def __init__(self, report: DocumentReport, data: Mapping[str, Any], states: Iterable[str]) -> None:
+    def __init__(
+        self, report: DocumentReport, data: Mapping[str, Any], words: KnownWords, states: Iterable[str]
+    ) -> None:
         self.report = report
         self.keys = frozenset(data.get("context") or ())
         self.names: dict[str, Any] = {
             "context": {key: {} for key in self.keys},
-            "phrases": tuple(data.get("phrases") or ()),
-            "answers": tuple(data.get("answers") or ()),
+            **{key: tuple(table) if words.whole else None for key, table in words.tables.items()},
             "states": tuple(states),
         }
 

@@ -25,6 +25,7 @@ LEADS_OUT = b"it is a link that leads out of the project"
 _READ: Mapping[str, tuple[str, ...]] = {
     "behaviors": (".yaml", ".yml"),
     "behaviors/stories": (".yaml", ".yml"),
+    "behaviors/words": (".yaml", ".yml"),
     "fuzzy": (".yaml", ".yml"),
     "motions": (".yaml", ".yml"),
     "models": (".yaml", ".yml", ".xml"),

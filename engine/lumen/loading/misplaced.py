@@ -11,17 +11,38 @@ MISPLACED_FILE = Code("misplaced-file", "text", ERROR, "a file stands in the fol
 
 
 class _Kind(NamedTuple):
-    """What such a file is called, where it stands, and the keys by which one knows it, or else a single one."""
+    """What such a file is called, where it stands, and the keys by which one knows it, or else a single one.
+
+    Of a kind that has `only` keys that others have as well, one knows it by their being alone.
+    """
 
     name: str
     folder: str
     marks: frozenset[str]
     alone: str = ""
+    only: frozenset[str] = frozenset()
+
+    @property
+    def keys(self) -> frozenset[str]:
+        return self.only or self.marks | {self.alone}
+
+    def owns(self, data: Mapping[str, Any]) -> bool:
+        """Whether data is of this kind, at least in part."""
+        return data.keys() <= self.only if self.only else not self.keys.isdisjoint(data)
+
+    def is_meant(self, data: Mapping[str, Any]) -> bool:
+        """Whether data, which belongs somewhere else, is of this kind."""
+        if self.only:
+            return self.owns(data) and bool(data)
+        return self.marks <= data.keys() or self.alone in data
 
 
 _KINDS: Mapping[str, _Kind] = {
     "lumen": _Kind("an exhibition", "the project's folder, as lumen.yaml", frozenset(("robot", "languages"))),
     "behavior": _Kind("a behaviour", "behaviors/", frozenset(("states",))),
+    "words": _Kind(
+        "a words file", "behaviors/words/", frozenset(), only=frozenset(("description", "phrases", "answers"))
+    ),
     "story": _Kind("a story", "behaviors/stories/", frozenset(("steps",))),
     "controller": _Kind("a controller", "fuzzy/", frozenset(("inputs", "outputs"))),
     "motion": _Kind("a motion", "motions/", frozenset(("keyframes",))),
@@ -33,13 +54,13 @@ _KINDS: Mapping[str, _Kind] = {
 def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
     """Whether the data is that of another kind of file, and has nothing that makes one of this kind; it is reported."""
     own = _KINDS[kind]
-    if not isinstance(data, Mapping) or {*own.marks, own.alone} & data.keys():
+    if not isinstance(data, Mapping) or own.owns(data):
         return False
-    meant = next((n for n, other in _KINDS.items() if other.marks <= data.keys() or other.alone in data), None)
+    meant = next((name for name, other in _KINDS.items() if other is not own and other.is_meant(data)), None)
     if meant is None:
         return False
     other, file = _KINDS[meant], PurePosixPath(report.document.file)
-    where = next(key for key in data if key in {*other.marks, other.alone})
+    where = next(key for key in data if key in other.keys)
     message = f"this is {other.name}, where {own.name} should stand"
     hint = f"its place is {other.folder}"
     report(MISPLACED_FILE, (where,), message, hint=hint, key=True, cause=f"{meant} {file.stem}")

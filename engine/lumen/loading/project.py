@@ -2,10 +2,12 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, has_errors
+from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
@@ -22,6 +24,7 @@ from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
 from lumen.loading.settings import Settings, build_settings
 from lumen.loading.stories import build_story
+from lumen.loading.words import WORDS_FOLDER, build_words
 
 MISSING_FILE = Code("missing-file", "text", ERROR, "a file that is needed is not there")
 NOT_READ = Code("not-read", "text", WARNING, "a file ends in .yml and is not read")
@@ -33,6 +36,7 @@ T = TypeVar("T")
 _KINDS: Mapping[str, str] = {
     "behaviors": "behavior",
     "behaviors/stories": "story",
+    WORDS_FOLDER: "words",
     "fuzzy": "controller",
     "motions": "motion",
     PASSAGES: "motion",
@@ -48,7 +52,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
         found.say(MISSING_FILE, MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
     elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
         found.settings = main.built
-    models, behaviors = _each(found, MODELS, build_body), _each(found, "behaviors", build_machine)
+    models, behaviors = _each(found, MODELS, build_body), _behaviors(found)
     if found.settings:
         found.lent = lend(files, found.settings, [*_wanted(found.settings, models)])
         models |= _each(found, MODELS, build_body, found.lent)
@@ -113,10 +117,27 @@ def _wanted(settings: Settings, models: Mapping[str, BuiltFile[Body]]) -> Iterat
             yield from (name for key in ("like", "mjcf") if isinstance(name := file.data.get(key), str))
 
 
+def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
+    """The behaviours, each with the words files that it names."""
+    words = _each(found, WORDS_FOLDER, build_words)
+    found.words = _built(words)
+    known = found.names[WORDS_FOLDER]
+    contents = {name: found.files[f"{WORDS_FOLDER}/{name}.yaml"] for name in known}
+    return _each(found, "behaviors", partial(build_machine, words=words, known=known), around=contents)
+
+
 def _each(
-    found: ProjectDraft, folder: str, build: Build[T], files: Mapping[str, bytes] | None = None
+    found: ProjectDraft,
+    folder: str,
+    build: Build[T],
+    files: Mapping[str, bytes] | None = None,
+    *,
+    around: object = None,
 ) -> dict[str, BuiltFile[T]]:
-    """What the documents of a folder hold, by name: of the project's own files, if not others are given."""
+    """What the documents of a folder hold, by name: of the project's own files, if not others are given.
+
+    `around` is what else `build` depends on.
+    """
     names, read = set(), dict[str, BuiltFile[T]]()
     for file, content in (found.files if files is None else files).items():
         path = PurePosixPath(file)
@@ -127,7 +148,7 @@ def _each(
             found.say(NOT_READ, file, "files that end in .yml are not read", hint)
             continue
         names.add(path.stem)
-        if (each := _read(found, file, content, _KINDS[folder], build)) is not None:
+        if (each := _read(found, file, content, _KINDS[folder], build, around)) is not None:
             read[path.stem] = each
     found.names[folder] = found.names.get(folder, frozenset()) | names
     return read
@@ -147,13 +168,15 @@ def _folders(found: ProjectDraft) -> None:
             found.missing |= {folder for folder in FOLDERS if folder == name or folder.startswith(f"{name}/")}
 
 
-def _read(found: ProjectDraft, file: str, content: bytes, kind: str, build: Build[T]) -> BuiltFile[T] | None:
+def _read(
+    found: ProjectDraft, file: str, content: bytes, kind: str, build: Build[T], around: object = None
+) -> BuiltFile[T] | None:
     """What one document holds, None where it can't be read at all."""
     if isinstance(content, Unreadable):
         hint = "put a readable file there, or delete it"
         found.say(UNREADABLE_FILE, file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)
         return None
-    read, diagnostics = read_file(file, content, kind, build)
+    read, diagnostics = read_file(file, content, kind, build, around)
     found.loose += diagnostics
     if read is not None:
         found.reports[file] = read.report

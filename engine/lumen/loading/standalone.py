@@ -2,12 +2,15 @@
 
 from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple, Self
 
 from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import MachineDefinition
+from lumen.language.words import Words
 from lumen.loading.behaviors import build_machine
+from lumen.loading.built_file import BuiltFile
 from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.context import check_memory
 from lumen.loading.document import Document
@@ -17,6 +20,7 @@ from lumen.loading.linking import link
 from lumen.loading.plain import plain_document
 from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
+from lumen.loading.words import build_words
 from lumen.loading.yaml_reader import parse
 
 ReadDocument = Callable[[str], tuple[Document | None, list[Diagnostic]]]
@@ -27,31 +31,53 @@ def machine_from_file(path: Path) -> MachineDefinition:
 
     Raises UsageError where a file can't be read, ProjectError for what they say.
     """
-    files = {file.stem: file for file in sorted(path.parent.glob("*.yaml"))} | {path.stem: path}
-
-    def read(name: str) -> tuple[Document | None, list[Diagnostic]]:
-        try:
-            return parse(str(files[name]), read_regular(files[name], MAX_FILE_BYTES))
-        except OSError as error:
-            raise UsageError(f"can't read {files[name]}: {(error.strerror or str(error)).lower()}") from None
-
-    return _Family(read, files.keys()).head(path.stem)
+    beside, words = _yaml_files(path.parent), _yaml_files(path.parent / "words")
+    return _Family(_Shelf.of_files(beside | {path.stem: path}), _Shelf.of_files(words)).head(path.stem)
 
 
-def machine_from_dict(data: Mapping[str, Any], name: str, behaviors: Mapping[str, Any]) -> MachineDefinition:
+def machine_from_dict(
+    data: Mapping[str, Any], name: str, behaviors: Mapping[str, Any], words: Mapping[str, Any] = MappingProxyType({})
+) -> MachineDefinition:
     """The machine that a dict of a file's shape describes; `behaviors` are those that it may invoke, by name.
 
-    Raises ProjectError.
+    `words` are the words files that they may name. Raises ProjectError.
     """
-    every = {**behaviors, name: data}
-    return _Family(lambda each: plain_document(each, every[each]), every.keys()).head(name)
+    return _Family(_Shelf.of_dicts({**behaviors, name: data}), _Shelf.of_dicts(words)).head(name)
+
+
+def _yaml_files(folder: Path) -> dict[str, Path]:
+    return {file.stem: file for file in sorted(folder.glob("*.yaml"))}
+
+
+class _Shelf(NamedTuple):
+    """Documents of one kind that may be read by their names."""
+
+    read: ReadDocument
+    names: Collection[str]
+
+    @classmethod
+    def of_files(cls, files: Mapping[str, Path]) -> Self:
+        """Those in files; reading one raises UsageError where that can't be done."""
+
+        def read(name: str) -> tuple[Document | None, list[Diagnostic]]:
+            try:
+                return parse(str(files[name]), read_regular(files[name], MAX_FILE_BYTES))
+            except OSError as error:
+                raise UsageError(f"can't read {files[name]}: {(error.strerror or str(error)).lower()}") from None
+
+        return cls(read, files.keys())
+
+    @classmethod
+    def of_dicts(cls, dicts: Mapping[str, Any]) -> Self:
+        return cls(lambda name: plain_document(name, dicts[name]), dicts.keys())
 
 
 class _Family:
-    """A behaviour, those that it invokes, and those that they invoke."""
+    """A behaviour, those that it invokes, and those that they invoke; `words` are the words files beside them."""
 
-    def __init__(self, read: ReadDocument, names: Collection[str]) -> None:
-        self.read, self.names = read, names
+    def __init__(self, behaviors: _Shelf, words: _Shelf) -> None:
+        self.read, self.names = behaviors
+        self.shelf, self.words = words, dict[str, BuiltFile[Words]]()
         self.machines: dict[str, MachineDefinition] = {}
         self.reports: dict[str, DocumentReport] = {}
         self.loose: list[Diagnostic] = []
@@ -64,7 +90,8 @@ class _Family:
             if each in self.names and each not in self.reports:
                 waiting += self.build(each)
         linked = link(self.machines, self.reports, self.names)
-        found = [*self.loose, *(d for report in self.reports.values() for d in report.diagnostics)]
+        reports = [*self.reports.values(), *(file.report for file in self.words.values())]
+        found = [*self.loose, *(d for r in reports for d in r.diagnostics if not r.follows(d.code, d.message))]
         if name not in linked or has_errors(found):
             raise ProjectError(found)
         return linked[name]
@@ -76,7 +103,9 @@ class _Family:
         report = self.reports[name] = DocumentReport(document or Document(name, None))
         if document is None:
             return []
-        machine = build_machine(check_schema(document, "behavior", report), report, name=name)
+        data = check_schema(document, "behavior", report)
+        self.name_words(data)
+        machine = build_machine(data, report, name=name, words=self.words, known=self.shelf.names)
         if machine is None:
             if not has_errors([*diagnostics, *report.diagnostics]):
                 report(MISSING_KEY, (), "a behaviour needs `states`", hint="write `states:` with at least one state")
@@ -84,3 +113,15 @@ class _Family:
         check_memory(machine, report)
         self.machines[name] = machine
         return [invoke.behavior for state in machine.states.values() for invoke in state.invoke]
+
+    def name_words(self, data: Any) -> None:
+        """Build the words files that a behaviour names."""
+        written = data.get("words") if isinstance(data, Mapping) else None
+        for name in [written] if isinstance(written, str) else written or ():
+            if name in self.shelf.names and name not in self.words:
+                document, diagnostics = self.shelf.read(name)
+                self.loose += diagnostics
+                if document is not None:
+                    report = DocumentReport(document)
+                    data = check_schema(document, "words", report)
+                    self.words[name] = BuiltFile(data, report, build_words(data, report, name=name))

@@ -102,7 +102,7 @@ class _Completion:
             case _:
                 scope = self.scope if kind in (NameKind.CONTEXT, NameKind.PHRASE, NameKind.ANSWERS) else ""
                 scope = stem(self.file) if kind is NameKind.POSE else scope
-                yield from ((name, "") for name in self.index.names(kind, scope))
+                yield from ((name, "") for name in self.index.known(kind, scope))
 
     def states(self, path: NodePath) -> Iterator[tuple[str, str]]:
         """What a target may say: states beside this one, children, and all others by their ids."""
@@ -147,7 +147,7 @@ class _Completion:
     def expression(self, before: str, path: NodePath) -> Iterator[Item]:
         if call := _CALL.search(before):
             kind = _NAMED[call[1]]
-            names = self.index.names(kind, self.scope)
+            names = self.index.known(kind, self.scope)
             if kind is NameKind.STATE and (tree := self.index.outlines.get(self.scope)):
                 names = [entry.name for entry in tree.entries.values() if entry.parent]
             yield from (Item(name, str(kind), len(call[2])) for name in names)

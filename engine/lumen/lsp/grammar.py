@@ -11,6 +11,7 @@ from lumen.lsp.names import NameKind
 FOLDER_KINDS: Mapping[str, str] = {
     "behaviors": "behavior",
     "behaviors/stories": "story",
+    "behaviors/words": "words",
     "fuzzy": "controller",
     "motions": "motion",
     "models": "body",
@@ -40,6 +41,13 @@ def _field_names() -> Table:
     return found
 
 
+_WORD_LANGUAGES: Table = {
+    ("phrases", "*", "*"): NameKind.LANGUAGE,
+    ("phrases", "*"): NameKind.LANGUAGE,
+    ("value", "*"): NameKind.LANGUAGE,
+}
+_WORD_TABLES: Table = {("phrases", "*"): NameKind.PHRASE, ("answers", "*"): NameKind.ANSWERS}
+
 _KEYS: Mapping[str, Table] = {
     "behavior": {
         ("states", "*"): NameKind.STATE,
@@ -47,10 +55,9 @@ _KEYS: Mapping[str, Table] = {
         ("assign", "*"): NameKind.CONTEXT,
         ("say", "*"): NameKind.LANGUAGE,
         **_pair_names(),
-        ("phrases", "*", "*"): NameKind.LANGUAGE,
-        ("phrases", "*"): NameKind.LANGUAGE,
-        ("value", "*"): NameKind.LANGUAGE,
+        **_WORD_LANGUAGES,
     },
+    "words": _WORD_LANGUAGES,
     "story": {("context", "*"): NameKind.CONTEXT},
     "controller": {("sweep", "*"): NameKind.JOINT, ("ahead", "*"): NameKind.JOINT},
     "motion": {("joints", "*"): NameKind.JOINT, ("handles", "*"): NameKind.JOINT},
@@ -60,10 +67,10 @@ _ROOT_KEYS: Mapping[str, Table] = {
     "behavior": {
         ("context", "*"): NameKind.CONTEXT,
         ("types", "*"): NameKind.CONTEXT,
-        ("phrases", "*"): NameKind.PHRASE,
-        ("answers", "*"): NameKind.ANSWERS,
+        **_WORD_TABLES,
         ("events", "*"): NameKind.EVENT,
     },
+    "words": _WORD_TABLES,
     "lumen": {("routes", "*"): NameKind.ROUTE},
     "motion": {("poses", "*"): NameKind.POSE},
     "body": {("joints", "*"): NameKind.JOINT, ("postures", "*"): NameKind.POSTURE},
@@ -95,6 +102,7 @@ _VALUES: Mapping[str, Table] = {
         ("send", "event"): NameKind.EVENT,
         ("invoke",): NameKind.BEHAVIOR,
         ("invoke", "behavior"): NameKind.BEHAVIOR,
+        ("words",): NameKind.WORDS,
     },
     "story": {
         ("expect", "state"): NameKind.STATE,
@@ -136,6 +144,7 @@ _VALUES: Mapping[str, Table] = {
 }
 _DEFINING = {
     "behavior": frozenset(("context", "phrases", "answers", "events")),
+    "words": frozenset(("phrases", "answers")),
     "lumen": frozenset(("routes", "languages")),
     "motion": frozenset(("poses",)),
     "body": frozenset(("joints", "postures", "tactile")),

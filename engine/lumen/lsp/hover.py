@@ -7,6 +7,7 @@ from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.loading.draft import ProjectDraft
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import kind_of
+from lumen.lsp.index import WORDS_SCOPE
 from lumen.lsp.names import NameKind, NameUse, covers
 from lumen.lsp.schemas import description_at
 from lumen.rules.codes import CODES
@@ -65,8 +66,8 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
             event = f", becomes the event `{route.event}`" if route and route.event else ""
             return f"`{route.key}` ({route.direction}){event}" if route else ""
         case NameKind.PHRASE:
-            machine = draft.behaviors.get(use.scope)
-            rows = machine.phrases.get(use.name, {}) if machine else {}
+            holder = draft.words.get(use.scope.removeprefix(WORDS_SCOPE)) or draft.behaviors.get(use.scope)
+            rows = holder.phrases.get(use.name, {}) if holder else {}
             return "\n".join(f"- {language or 'any'}: {', '.join(said)}" for language, said in rows.items())
         case NameKind.EVENT:
             routes = draft.settings.routes.values() if draft.settings else ()

@@ -14,6 +14,12 @@ from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
 from lumen.lsp.locating import DocumentText, NameInText, in_expression, in_template
 from lumen.lsp.names import KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers
 
+WORDS_SCOPE = "words/"
+"""What stands before the name of a words file where it is the scope of names."""
+
+WORD_KINDS: Mapping[NameKind, str] = {NameKind.PHRASE: "phrases", NameKind.ANSWERS: "answers"}
+"""What words files hold, each with its key."""
+
 
 class NameIndex:
     """All uses of names in a project, from its documents by file; files that are no YAML have none.
@@ -51,8 +57,31 @@ class NameIndex:
             dict.fromkeys(use.name for use in self.uses if use.kind is kind and use.scope == scope and use.defines)
         )
 
+    def known(self, kind: NameKind, scope: str) -> list[str]:
+        """The names that are known in a scope: its own, and those of the words files that a behaviour names."""
+        scopes = (scope, *self.words.get(scope, ())) if kind in WORD_KINDS else (scope,)
+        return list(dict.fromkeys(name for each in scopes for name in self.names(kind, each)))
+
+    def home(self, kind: NameKind, name: str, scope: str) -> str:
+        """The scope in which a name that a behaviour uses is made known: its own, or that of a words file."""
+        if kind not in WORD_KINDS or name in _entries(self.data(scope), kind):
+            return scope
+        return next((w for w in self.words.get(scope, ()) if name in _entries(self.data(w), kind)), scope)
+
+    def data(self, scope: str) -> Any:
+        """The data of the behaviour or words file whose scope that is."""
+        document = self.documents.get(f"behaviors/{scope}.yaml")
+        return document.data if document else None
+
+    @cached_property
+    def words(self) -> Mapping[str, tuple[str, ...]]:
+        """The scopes of the words files that each behaviour names."""
+        return {stem(file): _words(d.data) for file, d in self.documents.items() if kind_of(file) == "behavior"}
+
     def behavior(self, file: str) -> str:
         """The behaviour that the names in a file are about: its own, or the one that a story plays."""
+        if kind_of(file) == "words":
+            return WORDS_SCOPE + stem(file)
         if kind_of(file) != "story":
             return stem(file)
         document = self.documents.get(file)
@@ -64,7 +93,7 @@ class _Reader:
     """Finds the names in one document."""
 
     def __init__(self, index: NameIndex, document: Document) -> None:
-        self.document, self.kind = document, kind_of(document.file)
+        self.index, self.document, self.kind = index, document, kind_of(document.file)
         self.lines = DocumentText(document)
         self.scope = index.behavior(document.file)
         self.outline = index.outlines.get(self.scope)
@@ -148,13 +177,27 @@ class _Reader:
             yield self.use(NameKind.STATE, _state_at(path), value, place)
 
     def use(self, kind: NameKind, name: str, text: str, place: Place, *, defining: bool = False) -> NameUse:
-        return NameUse(kind, self.scope if kind in SCOPED_KINDS else "", name, text, place, defining)
+        scope = self.index.home(kind, name, self.scope) if kind in SCOPED_KINDS else ""
+        return NameUse(kind, scope, name, text, place, defining)
 
 
 def stem(file: str) -> str:
     """What a file's thing is called."""
     name = PurePosixPath(file).name
     return name.removesuffix(SCHEMA_SUFFIX) if name.endswith(SCHEMA_SUFFIX) else PurePosixPath(file).stem
+
+
+def _entries(data: Any, kind: NameKind) -> Any:
+    """The names of a kind that a file's data makes known."""
+    table = data.get(WORD_KINDS[kind]) if isinstance(data, dict) else None
+    return table if isinstance(table, dict) else ()
+
+
+def _words(data: Any) -> tuple[str, ...]:
+    """The scopes of the words files that a behaviour's data names."""
+    written = data.get("words") if isinstance(data, dict) else None
+    rows = [written] if isinstance(written, str) else written if isinstance(written, list) else []
+    return tuple(f"{WORDS_SCOPE}{name}" for name in rows)
 
 
 def _state_at(path: NodePath) -> str:

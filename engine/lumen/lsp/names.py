@@ -21,6 +21,7 @@ class NameKind(StrEnum):
     POSTURE = "posture"
     CONTROLLER = "controller"
     BEHAVIOR = "behaviour"
+    WORDS = "words file"
     STORY = "story"
     MODEL = "robot"
     JOINT = "joint"
@@ -33,6 +34,7 @@ class NameKind(StrEnum):
 
 KIND_FOLDERS = {
     NameKind.BEHAVIOR: "behaviors",
+    NameKind.WORDS: "behaviors/words",
     NameKind.STORY: "behaviors/stories",
     NameKind.MOTION: "motions",
     NameKind.CONTROLLER: "fuzzy",

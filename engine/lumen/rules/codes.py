@@ -16,6 +16,7 @@ from lumen.loading import (
     complaints,
     document,
     keyframes,
+    known_words,
     linking,
     messages,
     misplaced,
@@ -38,9 +39,9 @@ from lumen.rules import shapes as controller_shapes
 from lumen.rules.checks import CHECKS
 
 LOADERS = (
-    actions, behaviors, bindings, bodies, complaints, document, expression_findings, keyframes, linking, messages,
-    misplaced, numbers, outline, poses, project, rulebook, settings, shapes, terms, transitions, units, variables,
-    yaml_errors, yaml_reader,
+    actions, behaviors, bindings, bodies, complaints, document, expression_findings, keyframes, known_words,
+    linking, messages, misplaced, numbers, outline, poses, project, rulebook, settings, shapes, terms, transitions,
+    units, variables, yaml_errors, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 

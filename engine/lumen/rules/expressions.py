@@ -29,7 +29,7 @@ def check(draft: ProjectDraft) -> None:
 class _Expressions:
     def __init__(self, draft: ProjectDraft, name: str, machine: MachineDefinition, report: DocumentReport) -> None:
         self.machine, self.report = machine, report
-        self.known = draft.settings is not None
+        self.known, self.whole = draft.settings is not None, draft.words.keys() >= set(machine.words)
         self.events = declared(draft, machine)
         for event in raised(report.document.data):
             self.events[event] = None
@@ -48,8 +48,8 @@ class _Expressions:
         around: dict[str, Any] = {
             "context": self.context,
             "events": self.possible(spot.transition),
-            "phrases": self.machine.phrases,
-            "answers": self.machine.answers,
+            "phrases": self.machine.phrases if self.whole else None,
+            "answers": self.machine.answers if self.whole else None,
             "states": self.states,
         }
         if isinstance(spot.text, Template):

@@ -12,6 +12,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
+from lumen.rules.word_tables import WordTables, word_tables
 
 UNKNOWN_LANGUAGE = Code("unknown-language", "references", ERROR, "a language is named that the project does not speak")
 SHADOWED_ANSWER = Code(
@@ -43,6 +44,8 @@ def check(draft: ProjectDraft) -> None:
         speech.lost |= {meant}
     for name, machine in draft.behaviors.items():
         speech.behavior(machine, draft.report("behaviors", name))
+    for tables in word_tables(draft):
+        speech.tables(tables)
     for name, motion in draft.motions.items():
         report = draft.report("motions", name)
         for cue in motion.cues:
@@ -58,12 +61,10 @@ def _silent(draft: ProjectDraft, languages: tuple[str, ...]) -> dict[str, tuple[
     """The languages in which no text is, where others have some; each with the one meant instead, and a place of it."""
     found: dict[str, Place] = {}
     count = 0
-    for name, machine in draft.behaviors.items():
-        report = draft.report("behaviors", name)
-        for where in _spoken(machine):
-            count += 1
-            for language in _written(report, where):
-                found.setdefault(language, report.document.place((*where, language), key=True))
+    for report, where in _spoken(draft):
+        count += 1
+        for language in _written(report, where):
+            found.setdefault(language, report.document.place((*where, language), key=True))
     spoken = found.keys() - {"", "any"}
     strangers = sorted(spoken - set(languages))
     silent = [language for language in languages if language not in spoken]
@@ -78,11 +79,15 @@ def _silent(draft: ProjectDraft, languages: tuple[str, ...]) -> dict[str, tuple[
     }
 
 
-def _spoken(machine: MachineDefinition) -> Iterator[NodePath]:
-    """Where texts stand that the machine says or answers."""
-    yield from ((*s.step.where, "say") for s in action_sites(machine) if isinstance(s.step.action, SayText))
-    for table, rows in machine.answers.items():
-        yield from (("answers", table, i, "value") for i, row in enumerate(rows) if isinstance(row.value, Mapping))
+def _spoken(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
+    """Where texts stand that are said or answered."""
+    for name, machine in draft.behaviors.items():
+        said = (s.step.where for s in action_sites(machine) if isinstance(s.step.action, SayText))
+        yield from ((draft.report("behaviors", name), (*where, "say")) for where in said)
+    for report, _, answers in word_tables(draft):
+        for table, rows in answers.items():
+            texts = (i for i, row in enumerate(rows) if isinstance(row.value, Mapping))
+            yield from ((report, ("answers", table, i, "value")) for i in texts)
 
 
 def _silence(report: DocumentReport, path: NodePath, message: str, hint: str, related: list[Related]) -> Diagnostic:
@@ -100,9 +105,12 @@ class _Speech:
                     self.texts(report, (*site.step.where, "say"), texts)
                 case Language(language):
                     self.known(report, (*site.step.where, "language"), language)
-        for name, phrases in machine.phrases.items():
+
+    def tables(self, tables: WordTables) -> None:
+        report = tables.report
+        for name, phrases in tables.phrases.items():
             self.each(report, ("phrases", name), phrases)
-        for table, rows in machine.answers.items():
+        for table, rows in tables.answers.items():
             _late(report, table, rows)
             for i, row in enumerate(rows):
                 self.each(report, ("answers", table, i, "phrases"), row.phrases)

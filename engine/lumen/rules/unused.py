@@ -1,7 +1,7 @@
 """What is declared and never used, and names that differ by case only."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from lumen.interpreters.expressions import expression_findings
@@ -12,17 +12,23 @@ from lumen.language.stories import Expect
 from lumen.language.verbs import names_in
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.words import WORDS_FOLDER
 from lumen.rules.events import UNUSED_EVENT, descriptors, hears
 from lumen.rules.walk import action_sites
+from lumen.rules.word_tables import word_tables
 
 SAME_BUT_CASE = Code("same-but-case", "references", WARNING, "two names differ in capital letters only")
 UNUSED_ANSWERS = Code("unused-answers", "references", WARNING, "answers are written that nothing looks up")
 UNUSED_CONTEXT_KEY = Code("unused-context-key", "references", WARNING, "a key of the context is never read")
 UNUSED_FILE = Code("unused-file", "references", INFO, "a motion, behaviour or controller is named nowhere")
 UNUSED_PHRASES = Code("unused-phrases", "references", WARNING, "phrases are written that nothing listens for")
+UNUSED_WORDS = Code("unused-words", "references", WARNING, "no behaviour names a words file")
 
 
-_DECLARED = ("context", "types", "phrases", "events", "answers", "description", "units", "renamed")
+_ASKED = {"phrases": ("heard", UNUSED_PHRASES), "answers": ("lookup", UNUSED_ANSWERS)}
+"""The tables, the function that asks for each, and what is said where nothing does."""
+
+_DECLARED = ("context", "types", "words", "phrases", "events", "answers", "description", "units", "renamed")
 _FIELD = re.compile(r"context\s*(?:\.\s*(\w+)|\[\s*['\"]([^'\"]+)['\"])")
 _WHOLE = re.compile(r"\bcontext\b(?!\s*\.)(?!\s*\[\s*['\"])")
 _EXPRESSION_CODES = {c for c in vars(expression_findings).values() if isinstance(c, Code)} - {UNKNOWN_STATE}
@@ -31,33 +37,61 @@ _NAME = re.compile(r"['\"]([^'\"]+)['\"]")
 
 def check(draft: ProjectDraft) -> None:
     """Report what nothing uses, where nothing is broken that could: in a file, and in the whole project."""
+    sound = set()
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         _alike_inside(machine, report)
         if report.whole and not any(d.code in _EXPRESSION_CODES for d in report.diagnostics):
+            sound.add(name)
             _inside(draft, name, machine, report)
+    _words(draft, sound)
+    for report, phrases, answers in word_tables(draft):
+        _say_alike(report, ("phrases",), phrases)
+        _say_alike(report, ("answers",), answers)
     _alike_files(draft)
     if draft.settings and not has_errors(draft.diagnostics):
         _files(draft)
 
 
 def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: DocumentReport) -> None:
-    said = "\n".join(_texts({k: v for k, v in report.document.data.items() if k not in _DECLARED}))
+    said = _said(report)
     everywhere = f"{said}\n" + "\n".join(_texts(report.document.data.get("answers", {})))
     if not _WHOLE.search(everywhere):
         _context(machine, report, {a or b for a, b in _FIELD.findall(everywhere)} | _expected(draft, name))
-    named = set(_NAME.findall(said))
-    for part, what, code in (("phrases", "heard", UNUSED_PHRASES), ("answers", "lookup", UNUSED_ANSWERS)):
-        for key in getattr(machine, part).keys() - named:
-            hint = f"ask `{what}(event.data.result, '{key}')` somewhere, or delete them"
-            message = f"nothing asks for the {part} `{key}`"
-            report(code, (part, key), message, hint, key=True, root=_states_of(report))
+    own = {part: {key for key in getattr(machine, part) if (part, key) not in machine.borrowed} for part in _ASKED}
+    _unasked(report, own, set(_NAME.findall(said)), _states_of(report))
     waited = set(descriptors(machine))
     for event in machine.events:
         if not (any(hears(d, event) for d in waited) or nearest(event, report.missed)):
             message = f"nothing waits for the event `{event}`"
             hint = "react to it with `on:`, or delete it"
             report(UNUSED_EVENT, ("events", event), message, hint, key=True, root=_states_of(report))
+
+
+def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
+    """Words files that no behaviour names, and what stands in the others and is asked for by none of these."""
+    for name, words in draft.words.items():
+        report, users = draft.report(WORDS_FOLDER, name), [n for n, m in draft.behaviors.items() if name in m.words]
+        if not users and report.whole and all(draft.report("behaviors", each).whole for each in draft.behaviors):
+            message, hint = f"no behaviour names the words `{name}`", f"write `words: {name}` at the top of one"
+            draft.say(UNUSED_WORDS, report.document.file, message, f"{hint}, or delete the file")
+        elif users and all(user in sound for user in users):
+            named = {said for user in users for said in _NAME.findall(_said(draft.report("behaviors", user)))}
+            _unasked(report, {part: set(getattr(words, part)) for part in _ASKED}, named, "")
+
+
+def _unasked(report: DocumentReport, own: Mapping[str, Collection[str]], named: Collection[str], root: str) -> None:
+    """Report phrases and answers of a file whose name stands in no expression."""
+    for part, (what, code) in _ASKED.items():
+        for key in own[part]:
+            if key not in named:
+                hint = f"ask `{what}(event.data.result, '{key}')` somewhere, or delete them"
+                report(code, (part, key), f"nothing asks for the {part} `{key}`", hint, key=True, root=root)
+
+
+def _said(report: DocumentReport) -> str:
+    """All texts of a behaviour beside what it declares."""
+    return "\n".join(_texts({k: v for k, v in report.document.data.items() if k not in _DECLARED}))
 
 
 def _context(machine: MachineDefinition, report: DocumentReport, read: set[str]) -> None:
@@ -136,7 +170,7 @@ def _alike_files(draft: ProjectDraft) -> None:
 
 
 def _alike_inside(machine: MachineDefinition, report: DocumentReport) -> None:
-    for part in ("context", "phrases", "answers", "events"):
+    for part in ("context", "events"):
         _say_alike(report, (part,), getattr(machine, part))
     for state in machine.states.values():
         _say_alike(report, (*state.where, "states"), [path.rpartition(".")[2] for path in state.children])

@@ -23,8 +23,10 @@ class _Comparison:
         identity = Identity(old, new)
         self.images = {path: identity.state(path) if path else "" for path in old.states}
 
-    def change(self, kind: str, about: str, sentence: str, risk: Risk = Risk.BEHAVIOR) -> Change:
-        return Change(kind, about, sentence, risk, self.file)
+    def change(self, kind: str, about: str, sentence: str, risk: Risk = Risk.BEHAVIOR, part: str = "") -> Change:
+        """A change; of what a words file holds under the key `part`, in that file."""
+        words = self.new.borrowed.get((part, about)) or self.old.borrowed.get((part, about))
+        return Change(kind, about, sentence, risk, f"behaviors/words/{words}.yaml" if words else self.file)
 
     def title(self, state: State) -> str:
         return f"state `{state.name}`" if state.path else f"`{self.name}`"
@@ -134,17 +136,17 @@ class _Comparison:
                 for one, other in zip(before, after, strict=True):
                     if one.value != other.value:
                         said = f"`{table}` answers {quoted(_example(other.value))} now"
-                        yield self.change("text", table, said, Risk.COSMETIC)
+                        yield self.change("text", table, said, Risk.COSMETIC, "answers")
             else:
                 rows = f"{how_many(len(after), 'row')}, not {len(before)}" if len(before) != len(after) else ""
                 how = f"has {rows}" if rows else "listens for other phrases, or in another order"
-                yield self.change("answers", table, f"`{table}` {how}")
+                yield self.change("answers", table, f"`{table}` {how}", part="answers")
 
     def named(self, kind: str, old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[Change]:
         for key in dict.fromkeys((*old, *new)):
             if key not in new or key not in old or old[key] != new[key]:
                 how = "added" if key not in old else "removed" if key not in new else "changed"
-                yield self.change(kind, key, f"{kind} `{key}` {how}")
+                yield self.change(kind, key, f"{kind} `{key}` {how}", part=kind)
 
 
 def _below(parent: str | None, path: str) -> str:

@@ -22,8 +22,11 @@ _SELF = ("root", "hash", "documents")
 
 
 def changes(old: Project, new: Project) -> tuple[Change, ...]:
-    """What differs in meaning, in the order of the files; nothing where only comments or the layout do."""
-    return tuple(_changes(old, new))
+    """What differs in meaning, in the order of the files; nothing where only comments or the layout do.
+
+    What several behaviours have from one words file is told once.
+    """
+    return tuple(dict.fromkeys(_changes(old, new)))
 
 
 def risk(found: Sequence[Change]) -> Risk:

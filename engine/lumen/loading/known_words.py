@@ -1,0 +1,86 @@
+"""What a behaviour knows by name: its own phrases and answers, and those of the words files that it names."""
+
+from collections.abc import Collection, Mapping
+from typing import Any, NamedTuple
+
+from lumen.language.diagnostics import ERROR, Code, NodePath, Place, Related, did_you_mean
+from lumen.language.words import Words
+from lumen.loading.built_file import BuiltFile
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.words import WORDS_FOLDER, tables
+
+UNKNOWN_WORDS = Code("unknown-words", "references", ERROR, "a words file is named that is not in behaviors/words/")
+DUPLICATE_WORDS = Code(
+    "duplicate-words", "references", ERROR, "a name is given twice: in two words files, or in one and the behaviour"
+)
+
+WordFiles = Mapping[str, BuiltFile[Words]]
+"""The words files that can be read, by name."""
+
+
+class KnownWords(NamedTuple):
+    """The tables by their keys, each from name to content; `files` are those named under `words`.
+
+    `borrowed` says of (key, name) from which of them it comes. Unless `whole`, one of them can't be read, and a name
+    that is not known may stand there.
+    """
+
+    tables: Mapping[str, Mapping[str, Any]]
+    files: tuple[str, ...]
+    borrowed: Mapping[tuple[str, str], str]
+    whole: bool
+
+
+def known_words(
+    data: Mapping[str, Any], report: DocumentReport, files: WordFiles, names: Collection[str]
+) -> KnownWords:
+    """All that a behaviour knows; a file that is not there and a name that is given twice are reported.
+
+    `names` are all words files, those that can't be read among them.
+    """
+    return _Gatherer(data, report, files, names).gather()
+
+
+class _Gatherer:
+    def __init__(
+        self, data: Mapping[str, Any], report: DocumentReport, files: WordFiles, names: Collection[str]
+    ) -> None:
+        self.data, self.report, self.files, self.names = data, report, files, names
+        self.tables: dict[str, dict[str, Any]] = tables(data)
+        self.borrowed: dict[tuple[str, str], str] = {}
+
+    def gather(self) -> KnownWords:
+        written = self.data.get("words") or ()
+        rows = [written] if isinstance(written, str) else list(dict.fromkeys(written))
+        for i, name in enumerate(rows):
+            where: NodePath = ("words",) if isinstance(written, str) else ("words", i)
+            if name in self.files:
+                self.take(name, self.files[name])
+            elif name not in self.names:
+                hint = did_you_mean(name.removesuffix(".yaml"), self.names, f"{WORDS_FOLDER}/ has")
+                self.report(UNKNOWN_WORDS, where, f"there is no words file `{name}`", hint, cause=f"words {name}")
+        whole = all(name in self.files and self.files[name].built for name in rows)
+        return KnownWords(self.tables, tuple(rows), self.borrowed, whole)
+
+    def take(self, name: str, file: BuiltFile[Words]) -> None:
+        """The tables of a file, without names that are given already."""
+        self.report.lost |= file.report.lost
+        for key, table in self.tables.items():
+            for entry, content in getattr(file.built, key, {}).items():
+                if entry in table:
+                    self.twice(key, entry, file)
+                else:
+                    table[entry], self.borrowed[key, entry] = content, name
+
+    def twice(self, key: str, entry: str, file: BuiltFile[Words]) -> None:
+        """Report a name that a file gives, and this behaviour or a file before gave."""
+        other = self.borrowed.get((key, entry))
+        first = self.place(self.files[other].report if other else self.report, key, entry)
+        second = self.place(file.report, key, entry)
+        message = f"the {key} `{entry}` are given twice: in {first.file} and in {second.file}"
+        related = Related(second, "they are given again here")
+        hint = "give one of them another name, or join them"
+        self.report.diagnostics.append(DUPLICATE_WORDS.at(first, message, hint, (related,)))
+
+    def place(self, report: DocumentReport, key: str, entry: str) -> Place:
+        return report.document.place((key, entry), key=True)

@@ -1,0 +1,32 @@
+"""A words file, `behaviors/words/NAME.yaml`, from its plain data to `Words`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.machines import Answer
+from lumen.language.words import Words
+from lumen.loading.document_report import DocumentReport
+
+WORDS_FOLDER = "behaviors/words"
+
+
+def build_words(data: Any, report: DocumentReport, *, name: str) -> Words | None:
+    """What the data of `behaviors/words/NAME.yaml` holds, None where that is no map."""
+    return Words(name, **tables(data)) if isinstance(data, Mapping) else None
+
+
+def tables(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables that a words file and a behaviour may both hold, each by its key."""
+    return {
+        "phrases": {key: _phrases(body) for key, body in (data.get("phrases") or {}).items()},
+        "answers": {key: _answers(rows) for key, rows in (data.get("answers") or {}).items()},
+    }
+
+
+def _phrases(body: Any) -> dict[str, tuple[str, ...]]:
+    table = body if isinstance(body, Mapping) else {"": body}
+    return {language: (rows,) if isinstance(rows, str) else tuple(rows) for language, rows in table.items()}
+
+
+def _answers(rows: Any) -> tuple[Answer, ...]:
+    return tuple(Answer(_phrases(row["phrases"]), row["value"]) for row in rows)

@@ -1,0 +1,30 @@
+"""The phrases and answers of every file, behaviours and words files alike, where they stand."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from lumen.language.machines import Answer
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.words import WORDS_FOLDER
+
+
+class WordTables(NamedTuple):
+    """What one file gives names to, with the file's report."""
+
+    report: DocumentReport
+    phrases: Mapping[str, Mapping[str, tuple[str, ...]]]
+    answers: Mapping[str, tuple[Answer, ...]]
+
+
+def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
+    """Those of each file; a behaviour's without what it has from words files."""
+    for name, machine in draft.behaviors.items():
+
+        def own(key: str, table: Mapping[str, Any], borrowed: Any = machine.borrowed) -> dict[str, Any]:
+            return {entry: content for entry, content in table.items() if (key, entry) not in borrowed}
+
+        phrases, answers = own("phrases", machine.phrases), own("answers", machine.answers)
+        yield WordTables(draft.report("behaviors", name), phrases, answers)
+    for name, words in draft.words.items():
+        yield WordTables(draft.report(WORDS_FOLDER, name), words.phrases, words.answers)
