@@ -14,6 +14,7 @@ from lumen.errors import LumenError, ProjectError
 from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event
+from lumen.language.nanoseconds import to_the_nanosecond
 from lumen.statechart import Interpreter, Machine
 from tests.statechart.oracle.generating import Data, happenings, machine_data
 
@@ -24,7 +25,7 @@ Happenings = list[tuple[str, Any] | None]
 def happen(snapshot: Snapshot, happening: tuple[str, Any] | None, number: int) -> Event:
     """An event from outside, or by turns the next timer, an answer and a refusal of the last command awaited."""
     if happening is not None:
-        return Event(*happening, snapshot.at + 0.05)
+        return Event(*happening, to_the_nanosecond(snapshot.at + 0.05))  # as a clock shows it
     if number % 3 == 0 and (event := due(snapshot)):
         return event
     kind = "done" if number % 3 == 1 else "error"

@@ -84,8 +84,9 @@ class BehaviorOutline:
             hint = hint.replace("`.", "`")
         meant = self._meant(source, nearest(target, known))
         related = [(meant.where, f"`{meant.name}` stands here")] if meant and "mean" in hint else []
-        cause = f"{self.report.document.file} state {target.lstrip('#.')}"
-        self.report(UNKNOWN_STATE, where, message, hint=hint, related=related, cause=cause)
+        file = self.report.document.file
+        cause, root = f"{file} state {target.lstrip('#.')}", f"the states of {file}"
+        self.report(UNKNOWN_STATE, where, message, hint=hint, related=related, cause=cause, root=root)
 
     def _known(self, source: OutlinedState, target: str) -> list[str]:
         """What could have been written in place of a target."""

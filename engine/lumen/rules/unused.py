@@ -70,9 +70,12 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
 
 def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
     """Words files that no behaviour names, and what stands in the others and is asked for by none of these."""
+    read = draft.names.get("behaviors", frozenset()) <= {
+        n for n in draft.behaviors if draft.report("behaviors", n).whole
+    }
     for name, words in draft.words.items():
         report, users = draft.report(WORDS_FOLDER, name), [n for n, m in draft.behaviors.items() if name in m.words]
-        if not users and report.whole and all(draft.report("behaviors", each).whole for each in draft.behaviors):
+        if not users and report.whole and read:
             message, hint = f"no behaviour names the words `{name}`", f"write `words: {name}` at the top of one"
             draft.say(UNUSED_WORDS, report.document.file, message, f"{hint}, or delete the file")
         elif users and all(user in sound for user in users):
