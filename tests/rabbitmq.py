@@ -207,11 +207,11 @@ def _script() -> str:
 
 
 def _free_ports(count: int) -> list[int]:
-    """Below those that the system gives to who connects: one of these would take the port of a broker that was killed."""
+    """Below those that the system gives to clients: one of these would take the port of a broker that was killed."""
     with ExitStack() as held:
         ports: list[int] = []
         while len(ports) < count:
-            port = random.randrange(10_000, 32_768)
+            port = random.SystemRandom().randrange(10_000, 32_768)
             with suppress(OSError):
                 held.enter_context(socket.socket()).bind(("127.0.0.1", port))
                 ports.append(port)
