@@ -39,7 +39,7 @@ def reach_exhibition(project: str | None, bus: str | None) -> Reached:
         if settings and not settings.bus.startswith("memory:"):
             return Reached(connect(settings.bus), *_keys(root, None), settings.bus)
         raise BusUnreachableError(
-            f"no exhibition of {root} runs on this machine: start it with `lumen run`, or say --bus URL"
+            f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`, or say --bus URL"
         )
     return Reached(LocalBusClient(LocalAddress.of(found)), *_keys(root, found))
 

@@ -55,7 +55,7 @@ def _running(root: Path) -> tuple[StoredSnapshot, Mapping[str, bytes]]:
     keeper = SnapshotStore(home)
     kept = keeper.kept()
     if kept is None or not home.held():
-        raise UsageError(f"no exhibition of {root} runs on this machine: start it with `lumen run`")
+        raise UsageError(f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`")
     files = keeper.files(kept.bundle)
     if files is None:
         raise UsageError(f"the files that run are not in {home.folder} any more")
