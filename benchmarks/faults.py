@@ -60,7 +60,11 @@ SPOKEN = {
     "any_question": "How tall are you?",
 }
 """What the visitor says in a state, on the way to a moment."""
-WISHES = {"explain": "Tell me about this stand", "dance": "dance", "sing": "sing", "photo": "photo", "goodbye": "no"}
+WISHES = {
+    "explain": "Tell me about this stand", "dance": "dance", "sing": "sing", "photo": "photo", "goodbye": "no",
+    "idle": "no", "greet": "no", "ask_name": "no", "how_are_you": "no",
+}  # fmt: skip
+"""What they ask for at an offer or a question, to get to a moment; "no" for those of the next visit."""
 MOMENTS = ("idle", "greet", "ask_name", "how_are_you", "offer", "explain", "any_question", "answer", "dance", "goodbye")
 BACK = {
     "idle": ("idle", "greet"), "greet": ("greet", "ask_name"), "explain": ("explain", "any_question"),
@@ -221,8 +225,6 @@ class Exhibition:
             time.sleep(0.05)
             if moment == "idle":
                 self.publish("avatar.NAO.hall", {"visitor": None})
-                if state in ("offer", "any_question"):
-                    self.say("no")
 
     def fault(self, part: str, fault: str) -> float:
         """Let it happen, and be over; when it was over [s]."""
