@@ -27,7 +27,7 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -91,21 +91,22 @@ class Part:
         self.name, self.told = name, list[Told]()
         self._command = command
         self.process: Guarded[str] | None = None
-        self._begun = 0.0
+        self.begun = 0.0
 
     @property
     def age(self) -> float:
         """How long it has lived [s]."""
-        return time.monotonic() - self._begun
+        return time.monotonic() - self.begun
 
     def begin(self) -> None:
-        self._begun = time.monotonic()
+        self.begun = time.monotonic()
         self.process = Guarded(self._command, text=True, stdin=DEVNULL, stdout=PIPE, stderr=STDOUT, bufsize=1)
         threading.Thread(target=self._read, args=(self.process,), daemon=True).start()
 
     def signal(self, number: int) -> None:
         assert self.process
-        os.killpg(self.process.pid, number)
+        with suppress(ProcessLookupError):  # it ended by itself: told by `until`, and by what comes of the fault
+            os.killpg(self.process.pid, number)
 
     def end(self) -> None:
         if self.process:
@@ -162,8 +163,9 @@ class Exhibition:
 
     @property
     def state(self) -> str:
-        """The innermost state of the guide, as the brain told last; empty where something else is on."""
-        for told in reversed(self.parts["brain"].told):
+        """The innermost state of the guide, as the brain told last since it began; empty where something else is on."""
+        brain = self.parts["brain"]
+        for told in reversed(brain.since(brain.begun)):
             if told.who == "state":
                 names = told.text.partition("  (")[0].split(", ")
                 for name in reversed(names):
