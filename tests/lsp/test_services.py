@@ -20,6 +20,7 @@ from tests.mutation.mutants import Nursery
 ROOT = Path(__file__).parents[2]
 SHIPPED = Analysis(ROOT, read_files(ROOT))
 FAQ = "behaviors/words/faq.yaml"
+VISITORS = "behaviors/words/visitors.yaml"
 TOUR, VISITOR = "behaviors/tour.yaml", "behaviors/stories/visitor.yaml"
 
 
@@ -59,7 +60,7 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
         (TOUR, "event.data.gender == 'male'\"", "event.data.|", ["gender"], ["result", "visitor"]),
         (TOUR, "heard(event.data.result, 'english')\"", "heard(event.data.result, '|", ["dance", "no_more"], ["faq"]),
         (TOUR, "lookup(event.data.result, 'faq')", "lookup(event.data.result, '|", ["faq", "explanations"], ["dance"]),
-        (TOUR, "words: faq", "words: |", ["faq"], ["tour"]),
+        (TOUR, "words: [faq, visitors]", "words: [|", ["faq", "visitors"], ["tour"]),
         (FAQ, "answers:\n", "|\nanswers:\n", ["phrases: "], ["states: "]),
         (FAQ, "- phrases:", "- |", ["phrases: "], ["say: "]),
         (TOUR, "How are you, {{ context.visitor }}?", "How are you, {{ context.|", ["title_en"], ["heard("]),
@@ -93,10 +94,10 @@ def test_completion(file: str, old: str, new: str, some: list[str], none: list[s
         (VISITOR, "{state: gr|eet", f"{TOUR}: greet:"),
         (VISITOR, "played: dan|ce", "motions/dance.yaml"),
         (TOUR, "context.name_|tries <", f"{TOUR}: name_tries:"),
-        (TOUR, "heard(event.data.result, 'engl|ish')", f"{TOUR}: english:"),
-        (TOUR, "heard(event.data.result, 'dan|ce')", f"{TOUR}: dance:"),
+        (TOUR, "heard(event.data.result, 'engl|ish')", f"{VISITORS}: english:"),
+        (TOUR, "heard(event.data.result, 'dan|ce')", f"{VISITORS}: dance:"),
         (TOUR, "lookup(event.data.result, 'f|aq')", f"{FAQ}: faq:"),
-        (TOUR, "words: f|aq", FAQ),
+        (TOUR, "words: [f|aq", FAQ),
         ("motions/goodbye.yaml", "pose: hand_|out", "motions/goodbye.yaml: hand_out:"),
         ("lumen.yaml", "schema: ima|ge", "schemas/messages/image.schema.json"),
         ("fuzzy/head.yaml", "FaceXLoc: fa|ce.x", "lumen.yaml: face:"),
@@ -143,7 +144,7 @@ def test_hover_over_a_finding_shows_its_rule() -> None:
         (TOUR, "context.name_|tries <", "tries", 8, None),
         (TOUR, "heard(event.data.result, 'engl|ish')", "inggris", 6, None),
         (TOUR, "lookup(event.data.result, 'f|aq')", "questions", 5, None),
-        (TOUR, "words: f|aq", "said", 1, (FAQ, "behaviors/words/said.yaml")),
+        (TOUR, "words: [f|aq", "said", 1, (FAQ, "behaviors/words/said.yaml")),
         (VISITOR, "played: dan|ce", "horse", 3, ("motions/dance.yaml", "motions/horse.yaml")),
         ("lumen.yaml", "  jour|nal: {key", "diary", 1, None),
         ("motions/goodbye.yaml", "pose: hand_|out", "out", 3, None),
@@ -182,7 +183,7 @@ def test_names_that_can_not_be_given(file: str, text: str, name: str, reason: st
 @pytest.mark.slow
 def test_every_state_key_phrase_and_route_can_be_renamed() -> None:
     """A sample of all words that can: the project after it says the same, so it has no findings."""
-    uses = [w for w in SHIPPED.index.uses if w.defines and w.text and w.place.file in (TOUR, "lumen.yaml")]
+    uses = [w for w in SHIPPED.index.uses if w.defines and w.text and w.place.file in (TOUR, VISITORS, "lumen.yaml")]
     chosen = Random(1).sample([w for w in uses if w.kind in (NameKind.STATE, NameKind.CONTEXT, NameKind.PHRASE)], 5)
     for word in chosen:
         assert not applied(SHIPPED, rename(SHIPPED, word, "renamed_thing")).diagnostics
@@ -191,7 +192,7 @@ def test_every_state_key_phrase_and_route_can_be_renamed() -> None:
 def test_uses_and_symbols() -> None:
     assert len(uses(SHIPPED, *place(SHIPPED, VISITOR, "played: dan|ce"))) == 3
     tree = {symbol.name: symbol for symbol in symbols(SHIPPED, TOUR)}
-    assert {"visitor", "english", "guide", "safety"} <= tree.keys()
+    assert {"visitor", "battery", "guide", "safety"} <= tree.keys()
     assert {symbol.name for symbol in symbols(SHIPPED, FAQ)} == {"faq", "explanations"}
     assert {child.name for child in tree["guide"].children} == {"idle", "talking", "paused", "interrupted"}
     assert tree["guide"].whole.end_line > tree["guide"].place.line + 100

@@ -26,6 +26,7 @@ from tests.tour.names import ROOT
 FILES = read_files(ROOT)
 TOUR = "behaviors/tour.yaml"
 FAQ = "behaviors/words/faq.yaml"
+VISITORS = "behaviors/words/visitors.yaml"
 ASK_NAME = ("          ask_name:\n            id: ask_name", "          asking:\n            id: asking")
 RENAMING = [
     (TOUR, *ASK_NAME),
@@ -88,7 +89,7 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
         ["state `how_are_you` goes to `offer` on `heard` if `heard(event.data.result, 'fine')` now, not `fine`"],
         Risk.BEHAVIOR,
     ),
-    ("phrases", [(TOUR, "en: [dance, dancing]", "en: [dance]")], ["phrases `dance` changed"], Risk.BEHAVIOR),
+    ("phrases", [(VISITORS, "en: [dance, dancing]", "en: [dance]")], ["phrases `dance` changed"], Risk.BEHAVIOR),
     (
         "a route",
         [("lumen.yaml", "ttl: 2s, keep: 10", "ttl: 3s, keep: 10")],
