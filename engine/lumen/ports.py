@@ -44,12 +44,24 @@ class Image:
     pixels: PixelSource
 
 
+class Whereabouts(NamedTuple):
+    """Where a robot believes to be, from where it started: x forward, y left [m], theta to the left [rad].
+
+    It adds up its steps, and looks at nothing: it may really be `doubt` [m] from there.
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+    theta: float = 0.0
+    doubt: float = 0.0
+
+
 @dataclass(frozen=True, slots=True)
 class Joints:
     """Measured angles [rad, hands 0..1] and stiffness [0..1], in the order of `names`.
 
     What a robot feels of itself besides, where it does: each motor's `temperature` [degrees Celsius] in that order, its
-    inertial unit and the weight on its soles, by ALMemory's names and in its units.
+    inertial unit and the weight on its soles, by ALMemory's names and in its units; and where it believes to be.
     """
 
     time: float
@@ -59,6 +71,7 @@ class Joints:
     temperature: tuple[float, ...] = ()
     inertial: Mapping[str, float] = field(default_factory=dict)
     fsr: Mapping[str, float] = field(default_factory=dict)
+    position: Whereabouts | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ from lumen.errors import (
 )
 from lumen.language.commands import Posture, Rest, Walk
 from lumen.language.projects import Project
-from lumen.ports import RobotCommand
+from lumen.ports import RobotCommand, Whereabouts
 from lumen.robots.command_codec import decode_command
 from lumen.robots.naoqi import NaoqiRobot
 from lumen.robots.naoqi.sensors import NaoqiSensors
@@ -82,7 +82,7 @@ def no_such_service(project: Project) -> None:
 
 def no_sonars(project: Project) -> None:
     with session(project) as (_, one):
-        NaoqiSensors(one, project.body, time.monotonic).sonar()
+        NaoqiSensors(one, project.body, time.monotonic, lambda _: Whereabouts()).sonar()
 
 
 def begin(project: Project, command: RobotCommand, *, empty: bool = False, hall: str = "hall.xml") -> None:

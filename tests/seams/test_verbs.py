@@ -14,9 +14,11 @@ from lumen.language.actions import Action, ComputedAction
 from lumen.language.commands import (
     BodyCommand,
     Command,
+    GoTo,
     Leds,
     Look,
     Move,
+    Play,
     Posture,
     Rest,
     Say,
@@ -45,6 +47,7 @@ from lumen.ports import (
     Sense,
     Sonar,
     Tactile,
+    Whereabouts,
 )
 from lumen.robots.body_parts import PARTS
 from lumen.robots.command_codec import decode_command, encode_command
@@ -78,7 +81,13 @@ SAMPLES: tuple[RobotCommand, ...] = (
 """Each command that robots perform."""
 
 READINGS: tuple[NumericReading, ...] = (
-    Joints(1.0, tuple(BODY.joints), (0.1,) * len(BODY.joints), (1.0,) * len(BODY.joints)),
+    Joints(
+        1.0,
+        tuple(BODY.joints),
+        (0.1,) * len(BODY.joints),
+        (1.0,) * len(BODY.joints),
+        position=Whereabouts(1.0, -0.5, 0.3, 0.04),
+    ),
     Sonar(1.0, 0.5, 2.5),
     Tactile(1.0, BODY.tactile, (1,) * len(BODY.tactile)),
     Battery(1.0, 80, plugged=True, charging=False),
@@ -126,7 +135,7 @@ def test_the_fields_of_a_row_are_those_of_the_command_and_of_the_schema(verb: An
             measured = field.quantity in (Quantity.LENGTH, Quantity.ANGLE)
             assert (field.quantity is Quantity.DURATION) == (said[field.name].items() >= DURATIONS.items())
             assert not measured or said[field.name]["type"] == "number"
-    assert verb.instant == (verb.command not in get_args(RobotCommand)) or verb.name == "play"
+    assert verb.instant == (verb.command not in get_args(RobotCommand)) or verb.command in (Play, GoTo)
 
 
 def test_the_schemas_the_loader_and_the_docs_know_every_verb() -> None:

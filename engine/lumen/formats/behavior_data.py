@@ -82,7 +82,7 @@ def plain_action(action: Action) -> ActionData:
 
 def _written(quantity: Quantity, value: Any) -> Any:
     match quantity:
-        case Quantity.PLAIN | Quantity.LENGTH | Quantity.ANGLE:
+        case Quantity.PLAIN | Quantity.TEMPLATE | Quantity.LENGTH | Quantity.ANGLE:
             return value
         case Quantity.DURATION:
             return duration(value * 1000)

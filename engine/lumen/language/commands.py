@@ -44,6 +44,16 @@ class Walk:
 
 
 @dataclass(frozen=True, slots=True)
+class GoTo:
+    """Walk to the place of that name, one of `places` in lumen.yaml.
+
+    Where it stands in the YAML, `to` may hold `{{ expression }}`, which a step fills in.
+    """
+
+    to: str
+
+
+@dataclass(frozen=True, slots=True)
 class Move:
     """Walk on: `vx` forward, `vy` to the left [m/s], `vtheta` to the left [rad/s].
 
@@ -133,8 +143,8 @@ class Log:
 MotorCommand = Posture | Walk | Move | Look | Leds | Volume | Stop | Rest | Wake
 """What stands in the YAML as the robot performs it. A new one goes here, and into `verbs.py`."""
 
-VerbCommand = MotorCommand | Play | Track | Language
-"""Verbs of the YAML that are their own commands, for they hold no expressions."""
+VerbCommand = MotorCommand | Play | Track | Language | GoTo
+"""Verbs of the YAML that are their own commands, for they hold no expressions but a place's name."""
 
 BodyCommand = VerbCommand | Say
 """What a robot performs, or the parts of the runtime that move it."""

@@ -37,6 +37,13 @@ It is for who runs the exhibition, not for its behaviour, which hears no such ev
 RECORDED = "recorded"
 """What a robot raises when it has listened: the body of the route `recording`. It is for modules, and no behaviour."""
 
+ARRIVED, LEFT, DOUBTFUL = "arrived", "left", "doubtful"
+"""What is raised when the robot has come to one of the places, when it is no longer there, and where it can't tell.
+
+`place` is which one, `doubt` how far from where it believes to be it may really be [m]: `doubtful` says that this is
+more than the place's `within`.
+"""
+
 ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "touched": _object(sensor={"type": "string"}),
     "released": _object(sensor={"type": "string"}),
@@ -44,6 +51,9 @@ ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "battery.low": _object(percentage={"type": "integer"}),
     "battery.full": _object(percentage={"type": "integer"}),
     "motors.hot": _object(joint={"type": "string"}, temperature={"type": "number"}),
+    ARRIVED: _object(place={"type": "string"}, doubt={"type": "number"}),
+    LEFT: _object(place={"type": "string"}, doubt={"type": "number"}),
+    DOUBTFUL: _object(place={"type": "string"}, doubt={"type": "number"}),
     "brain.lost": _object(seconds={"type": "number"}),
     "robot.lost": _object(seconds={"type": "number"}),
     "robot.back": _object(seconds={"type": "number"}),

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from lumen.language.alerts import Alerts
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
+from lumen.language.hall_places import HallPlace
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import ModuleSettings
 from lumen.language.motions import MotionDefinition
@@ -32,7 +33,7 @@ class Project:
     `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has
     the default first; `messages` maps a message's name to its JSON Schema; `documents`
     know where in each file what stands. `patience` [s] is how long saved files wait for what is under way; `alerts`
-    are told of what goes wrong.
+    are told of what goes wrong; `places` are those of the hall that the robot knows by name.
     """
 
     root: str
@@ -54,6 +55,7 @@ class Project:
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     alerts: Alerts = field(default_factory=Alerts)
+    places: Mapping[str, HallPlace] = field(default_factory=dict)
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

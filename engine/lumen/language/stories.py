@@ -73,7 +73,7 @@ class Expect:
 
     `states` are active together; `said` is part of a text said and `said_exactly` the whole of one, `played` a motion
     finished, `published` a route on which a message was sent whose body has at least what `body` has (None: any), all
-    since the last `expect` that held; `context` maps keys to values.
+    since the last `expect` that held; `context` maps keys to values, `place` is where the robot is, by its odometry.
     """
 
     states: tuple[str, ...] = ()
@@ -83,6 +83,7 @@ class Expect:
     published: str | None = None
     body: Any = None
     context: Mapping[str, Any] = field(default_factory=dict)
+    place: str | None = None
     within: float = 30.0
 
 

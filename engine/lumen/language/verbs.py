@@ -26,6 +26,7 @@ from lumen.language.actions import (
     Wait,
 )
 from lumen.language.commands import (
+    GoTo,
     Language,
     Leds,
     Look,
@@ -51,14 +52,15 @@ class Quantity(Enum):
     LENGTH = "in the file's unit of length, [m] in the command; per second, [m/s]"
     ANGLE = "in the file's unit of angles, [rad] in the command; per second, [rad/s]"
     DURATION = "a number and its unit, `500ms`, [s] in the command"
+    TEMPLATE = "a text that may hold `{{ expression }}`, which the step that begins the command fills in"
 
 
 @dataclass(frozen=True, slots=True)
 class VerbField:
     """A field of a command, under the name that it has in the YAML and in the dataclass.
 
-    `names` is the kind of thing that it is the name of: `motion`, `posture`, `controller` or `language`. One for the
-    `others` is a map of all keys that are no field's name.
+    `names` is the kind of thing that it is the name of: `motion`, `posture`, `controller`, `language` or `place`. One
+    for the `others` is a map of all keys that are no field's name.
     """
 
     name: str
@@ -72,9 +74,9 @@ class Verb(Generic[C]):
     """A verb that is a command: `name` in the YAML, where two commands may share one, and the command's class.
 
     Behind it stands a map from fields to values, or the first field's value alone; without fields `true`. A `pair` is
-    written as the first field's value with the second's behind it: `track: {head: false}`. An `instant` one ends as it
-    begins, and no robot performs it. `transcript` says what the robot does (`plays dance`), `change` what a
-    behaviour does from now on (“`greet` now … on entering”).
+    written as the first field's value with the second's behind it: `track: {head: false}`. A `mapped` one is a map with
+    its one field, too: `walk: {to: organ}`. An `instant` one ends as it begins, and no robot performs it. `transcript`
+    says what the robot does (`plays dance`), `change` what a behaviour does from now on (“`greet` now … on entering”).
     """
 
     name: str
@@ -83,6 +85,7 @@ class Verb(Generic[C]):
     transcript: Callable[[C], str]
     change: Callable[[C], str]
     pair: bool = False
+    mapped: bool = False
     instant: bool = False
 
     def arguments(self, data: Any) -> Iterator[tuple[VerbField, tuple[str, ...], Any]]:
@@ -106,7 +109,7 @@ class Verb(Generic[C]):
     def data(self, command: C, written: Callable[[Quantity, Any], Any]) -> Any:
         """What stands behind the verb in the YAML for this command; `written` makes data of a field's value."""
         values = {field.name: written(field.quantity, getattr(command, field.name)) for field in self.fields}
-        if len(values) < 2:
+        if len(values) < 2 and not self.mapped:
             return next(iter(values.values()), True)
         if self.pair:
             name, value = values.values()
@@ -135,6 +138,14 @@ _MOVE = Verb(
     (VerbField("vx", Quantity.LENGTH), VerbField("vy", Quantity.LENGTH), VerbField("vtheta", Quantity.ANGLE)),
     lambda c: f"walks on at {c.vx:g} m/s, {c.vy:g} m/s, {c.vtheta:.2f} rad/s",
     lambda c: f"walks on at x {c.vx:g} m/s, y {c.vy:g} m/s, theta {c.vtheta:.3g} rad/s",
+)
+_GO_TO = Verb(
+    "walk",
+    GoTo,
+    (VerbField("to", Quantity.TEMPLATE, names="place"),),
+    lambda c: f"walks to {c.to}",
+    lambda c: f"walks to `{c.to}`",
+    mapped=True,
 )
 _WALK = Verb(
     "walk",
@@ -186,7 +197,7 @@ _LANGUAGE = Verb(
 )
 
 VERBS: tuple[Verb[Any], ...] = (
-    _PLAY, _POSTURE, _MOVE, _WALK, _LOOK, _LEDS, _VOLUME, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
+    _PLAY, _POSTURE, _GO_TO, _MOVE, _WALK, _LOOK, _LEDS, _VOLUME, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
 )  # fmt: skip
 """Of those that share a name the last is meant where no field says which."""
 

@@ -95,6 +95,8 @@ class Actions:
                 return value * self.angle
             case Quantity.DURATION:
                 return self.duration(value, where)
+            case Quantity.TEMPLATE:
+                return value if self.expressions.template(value, where) else None
             case _:
                 assert_never(quantity)
 

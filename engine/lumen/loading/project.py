@@ -104,6 +104,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         patience=settings.patience,
         modules=settings.modules,
         alerts=settings.alerts,
+        places=settings.places,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )

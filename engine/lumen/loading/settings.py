@@ -7,13 +7,15 @@ from typing import Any
 
 from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import ERROR, Code
+from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
 from lumen.loading.alerts import build_alerts
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.numbers import finite
 from lumen.loading.routes import build_routes, duration
-from lumen.loading.units import LENGTHS
+from lumen.loading.units import ANGLES, LENGTHS
 
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the stage does not hold the place where the robot starts")
 
@@ -35,6 +37,7 @@ class Settings:
     patience: float = DEFAULT_PATIENCE
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     alerts: Alerts = field(default_factory=Alerts)
+    places: Mapping[str, HallPlace] = field(default_factory=dict)
 
 
 def build_settings(data: Any, report: DocumentReport) -> Settings:
@@ -56,6 +59,7 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         patience=_patience(data, report),
         modules={name: _module(row) for name, row in data.get("modules", {}).items()},
         alerts=build_alerts(data.get("alerts", {}), report),
+        places=_places(data, report),
     )
 
 
@@ -81,3 +85,20 @@ def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:
             return None
         spans.append((low * unit, high * unit))
     return Stage(*spans)
+
+
+def _places(data: Mapping[str, Any], report: DocumentReport) -> Mapping[str, HallPlace]:
+    """The places whose numbers can be used; headings are in degrees where the file does not say."""
+    units = data.get("units", {})
+    length, angle = LENGTHS[units.get("length", "m")], ANGLES[units.get("angle", "deg")]
+    found = {}
+    for name, row in data.get("places", {}).items():
+        if not all(finite(value, report, ("places", name, key)) for key, value in row.items()):
+            continue
+        found[name] = HallPlace(
+            x=row["x"] * length,
+            y=row["y"] * length,
+            heading=row["heading"] * angle if "heading" in row else None,
+            within=row["within"] * length if "within" in row else DEFAULT_WITHIN,
+        )
+    return found

@@ -100,5 +100,6 @@ def _expect(body: Mapping[str, Any], report: DocumentReport, where: NodePath) ->
         published=message["route"],
         body=message.get("body"),
         context=body.get("context", {}),
+        place=body.get("place"),
         within=DEFAULT_WITHIN if within is None else within,
     )

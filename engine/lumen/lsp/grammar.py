@@ -36,7 +36,7 @@ def _field_names() -> Table:
         for i, field in enumerate(verb.fields):
             if field.names:
                 found[verb.name, field.name] = NameKind(field.names)
-                if i == 0:
+                if i == 0 and not verb.mapped:
                     found[(verb.name,)] = NameKind(field.names)
     return found
 
@@ -71,7 +71,7 @@ _ROOT_KEYS: Mapping[str, Table] = {
         ("events", "*"): NameKind.EVENT,
     },
     "words": _WORD_TABLES,
-    "lumen": {("routes", "*"): NameKind.ROUTE},
+    "lumen": {("routes", "*"): NameKind.ROUTE, ("places", "*"): NameKind.PLACE},
     "motion": {("poses", "*"): NameKind.POSE},
     "body": {("joints", "*"): NameKind.JOINT, ("postures", "*"): NameKind.POSTURE},
 }
@@ -108,6 +108,7 @@ _VALUES: Mapping[str, Table] = {
         ("expect", "state"): NameKind.STATE,
         ("never",): NameKind.STATE,
         ("played",): NameKind.MOTION,
+        ("expect", "place"): NameKind.PLACE,
         ("published",): NameKind.ROUTE,
         ("published", "route"): NameKind.ROUTE,
         ("message", "route"): NameKind.ROUTE,
@@ -145,7 +146,7 @@ _VALUES: Mapping[str, Table] = {
 _DEFINING = {
     "behavior": frozenset(("context", "phrases", "answers", "events")),
     "words": frozenset(("phrases", "answers")),
-    "lumen": frozenset(("routes", "languages")),
+    "lumen": frozenset(("routes", "languages", "places")),
     "motion": frozenset(("poses",)),
     "body": frozenset(("joints", "postures", "tactile")),
 }

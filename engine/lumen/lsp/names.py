@@ -27,6 +27,7 @@ class NameKind(StrEnum):
     JOINT = "joint"
     SENSOR = "sensor"
     LANGUAGE = "language"
+    PLACE = "place"
     EXPRESSION = "expression"
     TEMPLATE = "text"
     FIELD = "field"

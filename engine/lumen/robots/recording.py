@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from math import hypot, inf, isfinite
 
 from lumen.errors import RobotFailedError, UsageError
+from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import seen
-from lumen.language.commands import Look, Posture
+from lumen.language.commands import Look, Move, Posture, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
@@ -55,6 +56,25 @@ class _Playing(_Lasting):
         return over
 
 
+class _Walking(_Lasting):
+    """A walk that comes on evenly, wherever it is ended."""
+
+    def __init__(self, until: float, begin: float, command: Walk | Move, reckoning: DeadReckoning) -> None:
+        super().__init__(until)
+        self._begin, self._reckoning, self._start = begin, reckoning, reckoning.whereabouts
+        match command:
+            case Walk(x, y, theta):
+                self._way, self._takes, self._most = (x, y, theta), until - begin, 1.0
+            case Move(vx, vy, vtheta):
+                self._way, self._takes, self._most = (vx, vy, vtheta), 1.0, inf
+
+    def advance(self, now: float) -> bool:
+        part = min((now - self._begin) / self._takes, self._most) if self._takes else 1.0
+        x, y, theta = (each * part for each in self._way)
+        self._reckoning.follow(*beyond(self._start, x, y, theta))
+        return super().advance(now)
+
+
 class RecordingRobot:
     """Every command takes as long as the real one would: a motion its duration, speech 0.4 s and 0.06 s a character.
 
@@ -73,6 +93,7 @@ class RecordingRobot:
         self._plugged = False
         self._visitor: Visitor | None = None
         self._noticed: list[Event] = []
+        self._reckoning = DeadReckoning()
         self._executor = Executor(self._begin, lambda command: parts_of(command, body))
         self._part = part_of(body)
 
@@ -102,7 +123,7 @@ class RecordingRobot:
             case Sense.JOINT:
                 names = tuple(self.body.joints)
                 angles = tuple(self._angles.get(name, 0.0) for name in names)
-                return Joints(self.time, names, angles, (1.0,) * len(names))
+                return Joints(self.time, names, angles, (1.0,) * len(names), position=self._reckoning.whereabouts)
             case Sense.SONAR:
                 distance = hypot(self._visitor.x, self._visitor.y) if self._visitor else 2.55
                 return Sonar(self.time, distance, distance)
@@ -156,6 +177,8 @@ class RecordingRobot:
         until = now + (inf if behaves == "hangs" else usual if behaves is None else float(behaves))
         if isinstance(command, Perform):
             return _Playing(until, now, CueNotifier(command.motion, self._notice))
+        if isinstance(command, Walk | Move):
+            return _Walking(until, now, command, self._reckoning)
         if isinstance(command, Record):
             return SilentRecording(command, until, self._notice)
         return _Lasting(until)

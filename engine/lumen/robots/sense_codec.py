@@ -7,7 +7,7 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, assert_never
 
 from lumen.language.routes import Size
-from lumen.ports import Battery, Image, Joints, NumericReading, Reading, Sense, Sonar, Tactile
+from lumen.ports import Battery, Image, Joints, NumericReading, Reading, Sense, Sonar, Tactile, Whereabouts
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,7 +23,10 @@ def encode_reading(reading: NumericReading) -> dict[str, Any]:
     match reading:
         case Joints(time, names, angles, stiffness):
             body = {"name": list(names), "angle": list(angles), "stiffness": list(stiffness), "time": time}
-            felt = {"temperature": list(reading.temperature), "inertial": reading.inertial, "fsr": reading.fsr}
+            felt: dict[str, Any] = {"temperature": list(reading.temperature)}
+            felt |= {"inertial": reading.inertial, "fsr": reading.fsr}
+            if reading.position:
+                felt["position"] = reading.position._asdict()
             return body | {name: dict(v) if isinstance(v, Mapping) else v for name, v in felt.items() if v}
         case Sonar(time, left, right):
             return {"rightSensor": right, "leftSensor": left, "time": time}
@@ -50,7 +53,7 @@ def decode_reading(sense: Sense, body: Any, names: Sequence[str]) -> Reading | N
                 stiffness = tuple(map(float, body["stiffness"]))
                 whole = known == tuple(names) and len(angles) == len(stiffness) == len(known)
                 felt = _felt(body, len(known))
-                return Joints(time, known, angles, stiffness, *felt) if whole else None
+                return Joints(time, known, angles, stiffness, *felt, _position(body)) if whole else None
             case Sense.SONAR:
                 return Sonar(time, float(body["leftSensor"]), float(body["rightSensor"]))
             case Sense.TACTILE:
@@ -75,6 +78,12 @@ def _felt(body: Mapping[str, Any], count: int) -> tuple[tuple[float, ...], dict[
     temperature = tuple(map(float, body.get("temperature", ())))
     inertial, fsr = ({str(k): float(v) for k, v in dict(body.get(name, {})).items()} for name in ("inertial", "fsr"))
     return temperature if len(temperature) == count else (), inertial, fsr
+
+
+def _position(body: Mapping[str, Any]) -> Whereabouts | None:
+    """Where the robot believes to be; None where it does not say."""
+    said = body.get("position")
+    return Whereabouts(*(float(said[name]) for name in Whereabouts._fields)) if isinstance(said, Mapping) else None
 
 
 def image_body(image: Image, number: int, date: str, size: Size | None = None) -> dict[str, Any]:

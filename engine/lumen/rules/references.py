@@ -89,7 +89,7 @@ def _names(
 ) -> None:
     """Each field of a command that names something, which stands alone behind the verb or under its key."""
     verb = verb_of(command)
-    for field in verb.fields:
+    for field in (field for field in verb.fields if field.names != "place"):
         name = getattr(command, field.name)
         short, long = (*where, verb.name), (*where, verb.name, name if verb.pair else field.name)
         path = first(report, long, short)

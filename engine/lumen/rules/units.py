@@ -24,7 +24,7 @@ MAX_WALK_DISTANCE = 20.0
 SPEED_TOLERANCE = 1.05
 """How far a speed may lie above the greatest: people round."""
 
-_PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for digits in (2, 3, 4))
+HALF_TURN_PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for digits in (2, 3, 4))
 """Parts of a half turn as people write them in radians."""
 
 
@@ -42,7 +42,7 @@ def _radians(report: DocumentReport) -> None:
     if value_at(report, ("units", "angle")) != "deg":
         return
     angles = [(path, angle) for path, angle in _angles(report.document.data, ()) if angle]
-    small = [(path, angle) for path, angle in angles if round(abs(angle), 4) in _PARTS]
+    small = [(path, angle) for path, angle in angles if round(abs(angle), 4) in HALF_TURN_PARTS]
     if not small:
         return
     if all(abs(angle) <= pi + 0.01 for _, angle in angles) and len(angles) > 1:

@@ -18,6 +18,7 @@ from lumen.language.actions import (
     Send,
     Template,
 )
+from lumen.language.commands import GoTo
 from lumen.language.machines import Invoke, MachineDefinition, State, Transition
 
 
@@ -99,6 +100,8 @@ def _spots(site: ActionSite) -> Iterator[ExpressionSite]:
             yield from (ExpressionSite(text, transition) for said in texts.values() for text in said)
         case LogText(text):
             yield ExpressionSite(text, transition)
+        case GoTo(to):
+            yield ExpressionSite(Template(to, (*site.step.where, "walk", "to")), transition)
         case PublishBody(body=value) | Raise(data=value) | Send(data=value):
             yield from (ExpressionSite(text, transition) for text in _values(value))
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.statechart import Step
-from lumen.language.commands import Command, Move, Play, Posture, Rest, Start, Track, Wake, Walk
+from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot
@@ -125,6 +125,7 @@ class BehaviorLoop:
             self.inbox.listen(project)
             self.tracking.reload(project)
             self.runtime.apply(project, plan.snapshot)
+            self.performer.navigator.renew()
         except Exception:
             self.inbox.listen(old)
             self.tracking.reload(old)
@@ -140,15 +141,19 @@ class BehaviorLoop:
             observer.stepped(step)
 
     def _gather(self, now: float) -> list[Event]:
-        answers = list(self.robot.poll())
+        ended, self.performer.events = self.performer.events, []
+        answers = self.performer.navigator.tick(
+            self.project, self.runtime.snapshot.place, [*ended, *self.robot.poll()], now
+        )
         for event in answers:
+            if event in ended:
+                continue
             for observer in self.observers:
                 observer.answered(event)
             self._perform(self._cues.answered(event, self.project, self.runtime.snapshot.language), now)
         happened, self._events = self._events, []
-        ended, self.performer.events = self.performer.events, []
         heard = [event for event in answers if _ours(event) and not self._known(event, now)]
-        own = [*ended, *heard, *(event._replace(at=now) for event in happened)]
+        own = [*heard, *(event._replace(at=now) for event in happened)]
         own.sort(key=lambda event: event.name not in CAUSES)
         return [*own, *self.inbox.drain(now)]
 
@@ -175,7 +180,7 @@ class BehaviorLoop:
         match command:
             case Start(_, Rest()):
                 self.rests = True
-            case Start(_, Wake() | Posture() | Walk() | Move() | Play()):
+            case Start(_, Wake() | Posture() | Walk() | Move() | GoTo() | Play()):
                 self.rests = False
 
     def _recover(self, error: Exception, now: float) -> None:

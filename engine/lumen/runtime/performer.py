@@ -3,10 +3,24 @@
 import logging
 from collections.abc import Callable
 
-from lumen.language.commands import BodyCommand, Cancel, Command, Language, Log, Play, Publish, Start, Track
+from lumen.language.commands import (
+    BodyCommand,
+    Cancel,
+    Command,
+    GoTo,
+    Language,
+    Log,
+    Play,
+    Publish,
+    Rest,
+    Start,
+    Stop,
+    Track,
+)
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Perform, Robot, RobotCommand
+from lumen.runtime.navigator import Navigator
 from lumen.runtime.sending import send
 
 _log = logging.getLogger(__name__)
@@ -17,11 +31,13 @@ class Performer:
 
     `track` switches a controller on or off. `events` are answers for the next tick: of commands that end at once, and
     of those that can't even begin: `refuse` gives the reason why the robot may not begin one, empty where it may.
+    `navigator` makes single walks of the walks to places.
     """
 
     def __init__(self, robot: Robot, bus: Bus, track: Callable[[Track], None]) -> None:
         self._robot, self._bus, self._track = robot, bus, track
         self.events: list[Event] = []
+        self.navigator = Navigator(robot, self._begin)
         self.refuse: Callable[[RobotCommand], str] = lambda _: ""
 
     def perform(self, project: Project, command: Command, now: float) -> None:
@@ -29,7 +45,8 @@ class Performer:
             case Start(id, wanted):
                 self._start(project, id, wanted, now)
             case Cancel(id):
-                self._robot.cancel(id)
+                if not self.navigator.cancel(id):
+                    self._robot.cancel(id)
             case Publish(name, body):
                 if reason := send(self._bus, project, name, body):
                     self.events.append(Event("error.communication", {"route": name, "reason": reason}, now))
@@ -47,10 +64,14 @@ class Performer:
                 self._answer("done", id, now)
             case Language():
                 self._answer("done", id, now)
+            case GoTo(place):
+                self.navigator.start(id, place, now)
             case _:
                 self._begin(id, wanted, now)
 
     def _begin(self, id: str, command: RobotCommand, now: float) -> None:
+        if isinstance(command, Rest) or (isinstance(command, Stop) and command.what in ("all", "walk")):
+            self.navigator.stop()
         if reason := self.refuse(command):
             self._answer("error", id, now, reason)
         else:

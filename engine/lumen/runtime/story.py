@@ -60,10 +60,13 @@ def staged(project: Project, story: Story | None) -> Project:
 
 @dataclass
 class StoryObservations:
-    """What has been seen: the states now, and since the last expectation that held what was said, played, published."""
+    """What has been seen: the states now, where the robot is, and since the last expectation that held what was said,
+    played and published.
+    """
 
     states: frozenset[str] = frozenset()
     context: dict[str, object] = field(default_factory=dict)
+    place: str = ""
     said: list[str] = field(default_factory=list)
     played: list[str] = field(default_factory=list)
     published: list[tuple[str, Any]] = field(default_factory=list)
@@ -73,6 +76,8 @@ class StoryObservations:
         """The first thing of `expected` that does not hold."""
         if missing := [s for s in expected.states if s not in self.states]:
             return UnmetExpectation(f"state `{missing[0]}`", f"active are {_names(self.states)}")
+        if expected.place is not None and expected.place != self.place:
+            return UnmetExpectation(f"the robot at `{expected.place}`", f"it is {_at(self.place)}")
         return self._unheard(expected) or self._unsent(expected) or self._unlike(expected.context)
 
     def _unheard(self, expected: Expect) -> UnmetExpectation | None:
@@ -153,11 +158,13 @@ class StoryPlayer(Observer):
         self._since = now
 
     def stepped(self, step: Step) -> None:
-        self.see(active_names(step.snapshot), entered_names(step), step.snapshot.context)
+        self.see(active_names(step.snapshot), entered_names(step), step.snapshot.context, step.snapshot.place)
 
-    def see(self, states: frozenset[str], entered: Iterable[str], context: Mapping[str, Any]) -> None:
-        """These states are active now, after those were entered, and that is what the behaviour remembers."""
-        self._witness.states, self._witness.context = states, dict(context)
+    def see(self, states: frozenset[str], entered: Iterable[str], context: Mapping[str, Any], place: str = "") -> None:
+        """These states are active now, after those were entered; that is what the behaviour remembers, and the place
+        where it knows the robot to be.
+        """
+        self._witness.states, self._witness.context, self._witness.place = states, dict(context), place
         if bad := states.union(entered).intersection(self.story.never):
             self.fail(UnmetExpectation(f"never state {_names(bad)}", "it was entered"))
 
@@ -241,6 +248,10 @@ def _holds(body: Any, wanted: Any) -> bool:
 def _names(names: object) -> str:
     listed = ", ".join(f"`{n}`" for n in sorted(names))  # type: ignore[call-overload]
     return listed or "nothing"
+
+
+def _at(place: str) -> str:
+    return f"at `{place}`" if place else "at none of the places"
 
 
 def _texts(texts: list[str]) -> str:

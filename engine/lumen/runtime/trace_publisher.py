@@ -30,13 +30,13 @@ class TracePublisher(Observer):
 
     def __init__(self, bus: Bus, project: Callable[[], Project], now: Callable[[], float]) -> None:
         self._bus, self._project, self._now = bus, project, now
-        self._context: dict[str, Any] | None = None
+        self._told: tuple[dict[str, Any], str] | None = None
 
     def stepped(self, step: Step) -> None:
         came, gone, context = list(entered_names(step)), list(step.exited), dict(step.snapshot.context)
-        if not came and not gone and context == self._context:
+        if not came and not gone and (context, step.snapshot.place) == self._told:
             return
-        self._context = context
+        self._told = context, step.snapshot.place
         event = step.event.name if step.event else ""
         self._tell({**_standing(step.snapshot), "entered": came, "exited": gone, "event": event})
 
@@ -77,4 +77,4 @@ class TracePublisher(Observer):
 
 
 def _standing(snapshot: Snapshot) -> dict[str, Any]:
-    return {"states": sorted(active_names(snapshot)), "context": dict(snapshot.context)}
+    return {"states": sorted(active_names(snapshot)), "context": dict(snapshot.context), "place": snapshot.place}

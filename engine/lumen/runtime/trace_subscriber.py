@@ -23,7 +23,9 @@ _COMMANDS: Mapping[str, type] = {kind.__name__.lower(): kind for kind in get_arg
 class TraceListener(Protocol):
     """Whoever is called with what is seen."""
 
-    def see(self, states: frozenset[str], entered: tuple[str, ...], context: Mapping[str, Any]) -> None: ...
+    def see(
+        self, states: frozenset[str], entered: tuple[str, ...], context: Mapping[str, Any], place: str = ""
+    ) -> None: ...
 
     def performing(self, command: Command, now: float) -> None: ...
 
@@ -61,7 +63,8 @@ class TraceSubscriber:
 def _tell(watcher: TraceListener, body: dict[str, Any], now: float) -> None:
     match body:
         case {"states": list(states), "context": dict(context)}:
-            watcher.see(frozenset(map(str, states)), tuple(map(str, body.get("entered", ()))), context)
+            entered, place = tuple(map(str, body.get("entered", ()))), str(body.get("place", ""))
+            watcher.see(frozenset(map(str, states)), entered, context, place)
         case {"command": dict(said)} if (command := _command(said)) is not None:
             watcher.performing(command, now)
         case {"answer": {"id": str(id), "kind": str(kind)} as answer}:

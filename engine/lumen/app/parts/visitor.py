@@ -94,7 +94,7 @@ class RemoteVisitorPart(VisitorPart):
         self._hall.use(project)
         super().use(project)
 
-    def see(self, states: frozenset[str], entered: Sequence[str], context: Mapping[str, Any]) -> None:
+    def see(self, states: frozenset[str], entered: Sequence[str], context: Mapping[str, Any], place: str = "") -> None:
         if inner := list(innermost(self._project.machine, frozenset(entered))):
             self._narrator.states.update(inner)
             self._narrator.line("state", ", ".join(inner))

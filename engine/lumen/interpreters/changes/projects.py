@@ -17,7 +17,7 @@ MAX_SUMMARY_CHANGES = 4
 
 T = TypeVar("T")
 
-_PARTS = ("behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts")
+_PARTS = ("behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places")
 _SELF = ("root", "hash", "documents")
 
 
@@ -61,6 +61,7 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     )
     yield from _named("motion", "motion", Risk.MOTION, "motions/{}.yaml", old.motions, new.motions, motion_changes)
     yield from _named("route", "route", Risk.WIRING, "lumen.yaml", old.routes, new.routes, route_changes)
+    yield from _named("place", "place", Risk.BEHAVIOR, "lumen.yaml", old.places, new.places)
     yield from _named("message", "message", Risk.WIRING, "schemas/messages/{}.schema.json", old.messages, new.messages)
     yield from _named("story", "story", Risk.COSMETIC, "behaviors/stories/{}.yaml", old.stories, new.stories)
 

@@ -145,7 +145,7 @@ class _Checker:
             return self.event(known)
         if node.name == "state":
             text = {"type": "string"}
-            return ValueType(frozenset((MAP,)), ({"properties": {"path": text, "language": text}},))
+            return ValueType(frozenset((MAP,)), ({"properties": {"path": text, "language": text, "place": text}},))
         hint = did_you_mean(node.name, ROOTS, "an expression begins with")
         if around.context and node.name in around.context:
             hint = f"did you mean `context.{node.name}`?"

@@ -34,7 +34,7 @@ def _nowhere(state: str) -> bool:
 class Scope(NamedTuple):
     """The values that names and functions stand for; plain JSON data throughout.
 
-    `event` is `{"name": …, "data": …}`, or None where no event has arrived; `state` is `{"path": …, "language": …}`.
+    `event` is `{"name": …, "data": …}`, or None where no event has arrived; `state` has `path`, `language` and `place`.
     `configuration` is whether a state is active, for `In()`. `at` [s] is the time of the event, and `epoch` [s] the
     local time of the clock's zero, counted from any midnight. `language` is the one that `lookup` answers in.
     """

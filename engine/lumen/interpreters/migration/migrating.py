@@ -110,6 +110,7 @@ class _Migration:
             counters=before.counters,
             generator=before.generator,
             epoch=before.epoch,
+            place=before.place,
         )
         after = ExecutionContext.of(self.new, snapshot, None, before.at, self.invocations)
         after.internal_queue = before.internal_queue
@@ -132,8 +133,9 @@ class _Migration:
         behavior = self.new.chart.definition.invoked_behavior(owner.path, id)
         old, new = self.old.invoked[behavior].chart.definition, self.new.invoked[behavior].chart.definition
         lent = child.snapshot._replace(
-            language=after.language, counters=after.counters, generator=after.generator, epoch=after.epoch
-        )
+            language=after.language, counters=after.counters, generator=after.generator, epoch=after.epoch,
+            place=after.place,
+        )  # fmt: skip
         verdict = migrated(old, new, lent, self.situation.options._replace(at=after.at, languages=()), behavior)
         if isinstance(verdict, MigrationPlan):
             after.commands += tuple(outer_command(command, id) for command in verdict.entering)

@@ -21,7 +21,7 @@ from lumen.language.actions import (
     Send,
     Wait,
 )
-from lumen.language.commands import BodyCommand, Language, Log, Publish, Say, VerbCommand
+from lumen.language.commands import BodyCommand, GoTo, Language, Log, Publish, Say, VerbCommand
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 
@@ -79,6 +79,9 @@ def compile_command(action: SayText | VerbCommand) -> CommandFactory:
                 return action
 
             return speak
+        case GoTo(to) if "{{" in to:
+            place = compile_template(to)
+            return lambda context: GoTo(place(context.scope()))
         case _:
             return lambda context: action
 

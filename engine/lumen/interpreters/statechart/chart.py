@@ -51,7 +51,7 @@ class StateNode:
         self.exit: CompiledBlock = compile_block(state.exit) if state else ()
         self.do: tuple[CompiledAction, ...] = compile_do(state.do) if state else ()
         self.invokes: tuple[CompiledInvoke, ...] = tuple(map(_invoke, state.invoke)) if state else ()
-        self.views: dict[str, Mapping[str, str]] = {}
+        self.views: dict[tuple[str, str], Mapping[str, str]] = {}
         self.output = compile_value(state.output) if state and state.output is not None else None
 
     @property
@@ -62,11 +62,11 @@ class StateNode:
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or 'root'}>"
 
-    def view(self, language: str) -> Mapping[str, str]:
+    def view(self, language: str, place: str) -> Mapping[str, str]:
         """What `state` is in its expressions."""
-        found = self.views.get(language)
+        found = self.views.get((language, place))
         if found is None:
-            found = self.views[language] = {"path": self.path, "language": language}
+            found = self.views[language, place] = {"path": self.path, "language": language, "place": place}
         return found
 
     def lies_below(self, other: "StateNode") -> bool:

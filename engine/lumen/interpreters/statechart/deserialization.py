@@ -74,6 +74,7 @@ class _SnapshotReader:
             counters=Counters(**{key: data["counters"][key].count() for key in Counters._fields}),
             generator=data["generator"].count() % 2**32,
             epoch=data["epoch"].number(),
+            place=data["place"].text() if "place" in dict(data.items()) else "",
             invoked={id: self.invoked(id, part) for id, part in data["invoked"].items()},
         )
 

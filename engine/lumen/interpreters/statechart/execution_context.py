@@ -14,7 +14,7 @@ from lumen.interpreters.statechart.plans import Configuration
 from lumen.interpreters.statechart.values import Counters, Halted, Invoked, Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
-from lumen.language.events import Event
+from lumen.language.events import ARRIVED, LEFT, Event
 from lumen.language.machines import Transition
 from lumen.language.nanoseconds import nanoseconds
 
@@ -31,6 +31,16 @@ class Beginning(NamedTuple):
     invokes: tuple[CompiledInvoke, ...]
     do: bool
     halted: Halted | None = None
+
+
+def place_after(before: str, event: Event | None) -> str:
+    """Where the robot is after an event from outside: `arrived` and `left` say it, no other does."""
+    if event is None or event.name not in (ARRIVED, LEFT) or not isinstance(event.data, Mapping):
+        return before
+    place = event.data.get("place")
+    if not isinstance(place, str):
+        return before
+    return place if event.name == ARRIVED else before if place != before else ""
 
 
 class InvocationHandler(Protocol):
@@ -77,6 +87,7 @@ class ExecutionContext:
     epoch: float
     activities: Activities
     invocations: InvocationHandler
+    place: str = ""
     event_data: Mapping[str, Any] | None = None
     cached_scope: Scope | None = None
     internal_queue: deque[Event] | tuple[()] = ()
@@ -100,11 +111,11 @@ class ExecutionContext:
         invocations: InvocationHandler,
     ) -> Self:
         """The context of a macrostep from that snapshot at `at` [s]; raises KeyError with a state that is unknown."""
-        names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted = snapshot
+        names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted, place = snapshot
         start = machine.planner.configuration(names)
         return cls(
             machine, event, event, at, start, start.known, machine.chart.root, data, language, timers, history,
-            counters, generator, epoch, Activities(doing, halted), invocations,
+            counters, generator, epoch, Activities(doing, halted), invocations, place_after(place, event),
         )  # fmt: skip
 
     def step(self) -> Step:
@@ -113,6 +124,7 @@ class ExecutionContext:
         after = (
             self.configuration.names, self.data, self.at, self.language, self.timers, self.activities.positions,
             self.history, self.counters, self.generator, self.epoch, self.invocations.children, self.activities.halted,
+            self.place,
         )  # fmt: skip
         made = (
             self.trigger, self.exited, self.entered, self.commands, _new(Snapshot, after), self.transitions,
@@ -133,8 +145,8 @@ class ExecutionContext:
             if event is not None and self.event_data is None:
                 self.event_data = {"name": event.name, "data": event.data}
             seen = (
-                self.data, self.event_data, self.node.view(self.language), self.is_active, self.at, self.language,
-                definition.phrases, definition.answers, self.epoch,
+                self.data, self.event_data, self.node.view(self.language, self.place), self.is_active, self.at,
+                self.language, definition.phrases, definition.answers, self.epoch,
             )  # fmt: skip
             scope = self.cached_scope = _new(Scope, seen)
         return scope

@@ -18,7 +18,7 @@ from lumen.interpreters.statechart.referenced_names import assigned_sources, ref
 from lumen.interpreters.statechart.type_checks import TypeCheck
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.actions import Assign
-from lumen.language.events import Event
+from lumen.language.events import ARRIVED, LEFT, Event
 from lumen.language.machines import State, Transition
 from lumen.language.nanoseconds import nanoseconds
 
@@ -91,7 +91,10 @@ class FastPaths:
 
     def step(self, snapshot: Snapshot, event: Event) -> Step | None:
         """The step of this event, None where it is not plain."""
-        names, context, before, language, timers, doing, history, counters, generator, epoch, invoked, halted = snapshot
+        (
+            names, context, before, language, timers, doing, history, counters, generator, epoch, invoked, halted,
+            place,
+        ) = snapshot  # fmt: skip
         name, data, at, sendid = event
         if sendid or invoked:
             return None
@@ -125,12 +128,17 @@ class FastPaths:
             return None
         if after_timers:
             timers = after_timers.at(at, timers)
-        after = (target, context, at, language, timers, doing, history, counters, generator, epoch, invoked, halted)
+        after = (
+            target, context, at, language, timers, doing, history, counters, generator, epoch, invoked, halted, place,
+        )  # fmt: skip
         return _new(Step, (event, exited, entered, (), _new(Snapshot, after), transitions, (), ()))
 
     def _find(self, names: frozenset[str], name: str) -> FastPath | None:
-        """The path of an event in a configuration; kept, but for the robot's answers: each has a name of its own."""
-        if ".command." in name:
+        """The path of an event in a configuration; kept, but for the robot's answers: each has a name of its own.
+
+        What says where the robot is changes more than the states.
+        """
+        if ".command." in name or name in (ARRIVED, LEFT):
             return None
         make_room(self.paths)
         paths = self.paths.setdefault(name, {})

@@ -9,7 +9,7 @@ from lumen.interpreters.expressions import ExpressionError
 from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
 from lumen.interpreters.statechart.command_ids import outer_command
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine
-from lumen.interpreters.statechart.execution_context import ExecutionContext
+from lumen.interpreters.statechart.execution_context import ExecutionContext, place_after
 from lumen.interpreters.statechart.external_events import process
 from lumen.interpreters.statechart.macrostep import enter_machine, exit_machine
 from lumen.interpreters.statechart.microstep import MAX_MICROSTEPS
@@ -103,8 +103,9 @@ class Invocations:
         """The context of one of them; language, counters and generator are lent to it."""
         state, before, _ = self.children[id]
         lent = before._replace(
-            language=context.language, counters=context.counters, generator=context.generator, epoch=context.epoch
-        )
+            language=context.language, counters=context.counters, generator=context.generator, epoch=context.epoch,
+            place=place_after(context.place, event),
+        )  # fmt: skip
         return open_context(invoked_machine(context.machine, state, id), lent, event, context.at)
 
     def _follow(self, context: ExecutionContext, id: str, step: Step) -> None:

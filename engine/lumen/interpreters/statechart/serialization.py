@@ -44,6 +44,7 @@ def _data(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
         "counters": snapshot.counters._asdict(),
         "generator": snapshot.generator,
         "epoch": snapshot.epoch,
+        "place": snapshot.place,
         "invoked": {
             id: {
                 "state": child.state,

@@ -101,7 +101,8 @@ class Snapshot(NamedTuple):
     `at` [s] is the time of the last event, or a later one at which it was taken off a clock; `epoch` the local time of
     day at time 0 [s since midnight]; `generator` the state from which alternatives of `say` are drawn. `invoked` are
     the behaviours that run within it, by their ids; its time, language, counters and generator are theirs too. `halted`
-    is where a `do` stood that says how it is resumed, when its state was last left, by path.
+    is where a `do` stood that says how it is resumed, when its state was last left, by path. `place` is where the robot
+    is, by the last `arrived` and `left`, empty where it is at none.
     Mappings in it are never changed, only replaced.
     """
 
@@ -117,6 +118,7 @@ class Snapshot(NamedTuple):
     epoch: float = 0.0
     invoked: Mapping[str, Invoked] = {}
     halted: Mapping[str, Halted] = {}
+    place: str = ""
 
 
 class Step(NamedTuple):

@@ -45,8 +45,8 @@ class NaoqiRobot:
         self._clock = clock
         self._session = NaoqiSession(url, lambda reason: self._reconnector.lose(reason), patience)
         self._naoqi_events = NaoqiEvents(body.tactile)
-        self._sensors = NaoqiSensors(self._session, body, clock)
         self._area = WalkingArea(stage, self._naoqi_events.pressed, self._echo)
+        self._sensors = NaoqiSensors(self._session, body, clock, self._area.whereabouts)
         self._alerts = HealthAlerts()
         self._events: list[Event] = []
         self._skills = NaoqiSkills(self._session, body, self._area, self._events.append, clock)
@@ -136,6 +136,7 @@ class NaoqiRobot:
         self._skills.fallen = True
         self._executor.fail("the robot fell")
         if name == FALLEN:
+            self._area.fell()
             self._events.append(Event("fallen", {}, now))
 
     def _turn(self) -> None:

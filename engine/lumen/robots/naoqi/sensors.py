@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 from lumen.errors import RobotError, SenseError
 from lumen.language.robots import Body
 from lumen.language.routes import SIZES, Size
-from lumen.ports import Battery, Image, Joints, Reading, Sense, Sonar, Tactile
+from lumen.ports import Battery, Image, Joints, Reading, Sense, Sonar, Tactile, Whereabouts
 from lumen.robots.naoqi.session import NaoqiSession
 
 if TYPE_CHECKING:
@@ -65,11 +65,18 @@ def device(name: str) -> str:
 class NaoqiSensors:
     """Reads a robot's senses; every method waits for NAOqi, and raises RobotError where it can't be read.
 
-    `heat` is how hot each motor was when the joints were read last [degrees Celsius].
+    `heat` is how hot each motor was when the joints were read last [degrees Celsius]. `place` makes of what
+    `ALMotion.getRobotPosition` says where the robot is on its stage.
     """
 
-    def __init__(self, session: NaoqiSession, body: Body, clock: Callable[[], float]) -> None:
-        self._session, self._body, self._clock = session, body, clock
+    def __init__(
+        self,
+        session: NaoqiSession,
+        body: Body,
+        clock: Callable[[], float],
+        place: Callable[[Sequence[float]], Whereabouts],
+    ) -> None:
+        self._session, self._body, self._clock, self._place = session, body, clock, place
         self.heat: dict[str, float] = {}
         self._numb = False
         self._names = list(body.joints)
@@ -120,7 +127,7 @@ class NaoqiSensors:
         now = self._clock()
         angles = self._numbers(self._session.ask("ALMotion", "getAngles", self._names, True), "getAngles")
         stiffness = self._numbers(self._session.ask("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
-        return Joints(now, tuple(self._names), angles, stiffness, *self._feelings())
+        return Joints(now, tuple(self._names), angles, stiffness, *self._feelings(), self._whereabouts())
 
     def sonar(self) -> Sonar:
         if not self._session.has("ALSonar"):
@@ -183,6 +190,14 @@ class NaoqiSensors:
         temperature = tuple(float(t) for t in found[:motors] if isinstance(t, int | float))
         whole = temperature if len(temperature) == motors else ()
         return whole, _known(zip(INERTIAL, inertial, strict=True)), _known(zip(FORCE_SENSORS, soles, strict=True))
+
+    def _whereabouts(self) -> Whereabouts | None:
+        """Where the robot is by its odometry; None where it does not say."""
+        try:
+            found = self._session.ask("ALMotion", "getRobotPosition", True)
+            return self._place([float(found[i]) for i in range(3)])
+        except (RobotError, TypeError, ValueError, IndexError):
+            return None
 
     def _let_go(self, patience: float = 0.0) -> None:
         """Unsubscribe from the camera, and wait so long [s] for that."""

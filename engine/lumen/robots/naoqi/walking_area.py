@@ -1,16 +1,21 @@
 """Where the robot may go: its stage, by its own odometry, and what must not be in its way."""
 
 from collections.abc import Callable, Mapping, Sequence
-from math import cos, sin
+from math import cos, hypot, sin
 
 from lumen.errors import RobotRefusedError
+from lumen.interpreters.dead_reckoning import DeadReckoning, turned
 from lumen.language.projects import Stage
-from lumen.ports import Sonar
+from lumen.ports import Sonar, Whereabouts
 
 OBSTACLE_DISTANCE = 0.4
 """Nearer than this to something the robot does not walk [m]."""
 SOLE_REACH = 0.1
 """How far a sole reaches from the point between the feet [m]."""
+FALL_DRIFT = 0.6
+"""How far the robot may have slid while it fell and got up again [m], as the simulated one does."""
+MOST_BETWEEN_LOOKS = 0.5
+"""A robot that has come farther than this between two looks did not walk there: its odometry began anew [m]."""
 MAX_STAGE_DRIFT = 0.03
 """By how much the way to a place may leave the stage [m]."""
 
@@ -34,10 +39,27 @@ class WalkingArea:
         self.stage = stage
         self._pressed, self._echo = pressed, echo
         self._origin: GroundPose | None = None
+        self._reckoning = DeadReckoning()
 
     def meet(self, place: GroundPose) -> None:
         """The robot stands there; the first time counts."""
         self._origin = self._origin or place
+
+    def whereabouts(self, place: GroundPose) -> Whereabouts:
+        """Where the robot is on the stage, which stands there now; it is asked often, and adds up the doubt."""
+        self.meet(place)
+        assert self._origin is not None
+        x, y = self._on_stage(place)
+        before = self._reckoning.whereabouts
+        jump = hypot(x - before.x, y - before.y)
+        if jump > MOST_BETWEEN_LOOKS:
+            self._reckoning.slid += jump
+        self._reckoning.follow(x, y, turned(self._origin[2], place[2]))
+        return self._reckoning.whereabouts
+
+    def fell(self) -> None:
+        """The robot has fallen: nothing measures how far it slides until it stands again."""
+        self._reckoning.slid += FALL_DRIFT
 
     def danger(self) -> str:
         """Why the robot must not walk now; empty where nothing is in the way."""

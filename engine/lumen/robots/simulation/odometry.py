@@ -3,10 +3,12 @@
 from collections.abc import Iterable, Mapping
 
 from lumen.errors import RobotRefusedError
+from lumen.interpreters.dead_reckoning import DeadReckoning
 from lumen.interpreters.gait import Feet, Footstep, Pose, corners, foot_from, middle
 from lumen.interpreters.gait.poses import wrap
 from lumen.interpreters.postures import lies
 from lumen.language.projects import Stage
+from lumen.ports import Whereabouts
 
 _FEET = {"L": "left", "R": "right"}
 
@@ -19,7 +21,8 @@ its belly or falling. Six robots of any weight on any floor were off by 0.05, 0.
 class Odometry:
     """Both soles in the frame of the robot's start. `stage`, in the same frame, bounds where they may go.
 
-    `doubt` is how far from there the robot may really be [m]: nothing measures how it slid while it was down.
+    `doubt` is how far from there the robot may really be [m] after it was down: nothing measures how it slid. What its
+    steps add to that is in its `whereabouts`.
     """
 
     def __init__(self, stage: Stage | None) -> None:
@@ -27,19 +30,25 @@ class Odometry:
         self._down = False
         self.doubt, self._before = 0.0, 0.0
         self._here, self._heading = Pose(), 0.0
+        self._reckoning = DeadReckoning()
         self.feet: Feet = {"L": Pose(), "R": Pose()}
+
+    @property
+    def whereabouts(self) -> Whereabouts:
+        """Where the robot believes to be, and how far that may be wrong."""
+        return self._reckoning.whereabouts
 
     def lose(self, posture: str) -> None:
         """The robot is down, in that posture or on its way from it; or it has fallen, where that is empty."""
         if not self._down:
             self._down, self._before = True, self.doubt
-        self.doubt = max(self.doubt, self._before + drift_after(posture))
+        self.doubt = self._reckoning.slid = max(self.doubt, self._before + drift_after(posture))
 
     def keep(self, heading: float) -> None:
         """The robot stands, heading there as the gyrometer feels it [rad]; what it has turned meanwhile counts."""
         if self._down:
             self._down, (x, y, theta) = False, self._here
-            self._here = Pose(x, y, wrap(theta + heading - self._heading))
+            self._believe(Pose(x, y, wrap(theta + heading - self._heading)))
         self._heading = heading
 
     def feel(self, angles: Mapping[str, float]) -> Feet:
@@ -51,11 +60,16 @@ class Odometry:
 
     def pass_by(self, feet: Feet) -> None:
         """Believe that the robot has come there, on its way."""
-        self._here = middle(feet)
+        self._believe(middle(feet))
 
     def land(self, feet: Feet) -> None:
         """Believe that the feet stand there."""
-        self.feet, self._here = feet, middle(feet)
+        self.feet = feet
+        self._believe(middle(feet))
+
+    def _believe(self, here: Pose) -> None:
+        self._here = here
+        self._reckoning.follow(*here)
 
     def check(self, steps: Iterable[Footstep], drift: float = 0.0) -> None:
         """Raises RobotError for a step farther beyond the stage than `drift` [m], or than the feet stand already.

@@ -157,7 +157,8 @@ class SimulatedRobot:
                 angles, stiffness = self.world.angles.tolist(), self.motors.stiffness.tolist()
                 heat = tuple(self.condition.temperatures.round(1).tolist())
                 felt = heat, self._sensors.inertial, self._force_sensors.weigh()
-                return Joints(now, self.motors.names, tuple(angles), tuple(stiffness), *felt)
+                where = self._odometry.whereabouts
+                return Joints(now, self.motors.names, tuple(angles), tuple(stiffness), *felt, where)
             case Sense.SONAR:
                 return Sonar(now, *self._sonars.measure()) if self._sonars else None
             case Sense.TACTILE:

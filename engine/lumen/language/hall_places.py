@@ -1,0 +1,20 @@
+"""The places of a hall that the robot can be sent to by name."""
+
+from dataclasses import dataclass
+
+DEFAULT_WITHIN = 0.25
+"""How near a robot has to be to count as being at a place [m], where the place does not say."""
+
+
+@dataclass(frozen=True, slots=True)
+class HallPlace:
+    """A place where the robot can stand, in the frame of the stage: x forward, y to the left of where it starts [m].
+
+    `heading` is how far it turns to the left there [rad], None where it may look anywhere. It is there where it is no
+    farther than `within` [m] from it, as far as it can tell.
+    """
+
+    x: float
+    y: float
+    heading: float | None = None
+    within: float = DEFAULT_WITHIN

@@ -1,0 +1,122 @@
+"""The places of lumen.yaml: whether they are there, on the stage, and told apart, and who walks to them."""
+
+from collections.abc import Iterable, Iterator
+from itertools import combinations
+from math import hypot, pi
+
+from lumen.interpreters.expressions import split_template
+from lumen.language.commands import GoTo
+from lumen.language.diagnostics import ERROR, INFO, WARNING, Code, NodePath, did_you_mean, has_errors
+from lumen.language.hall_places import HallPlace
+from lumen.language.projects import Stage
+from lumen.language.stories import Expect
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.lookups import value_at
+from lumen.rules.units import HALF_TURN_PARTS, WRONG_UNIT
+from lumen.rules.walk import action_sites
+
+PLACE_OFF_STAGE = Code("place-off-stage", "robot", ERROR, "a place lies where the robot's feet may not go")
+PLACES_TOO_CLOSE = Code("places-too-close", "robot", WARNING, "two places are nearer than the robot can tell apart")
+UNKNOWN_PLACE = Code("unknown-place", "references", ERROR, "a place is named that is not in lumen.yaml")
+UNUSED_PLACE = Code("unused-place", "references", INFO, "nobody walks to a place")
+
+SOLE_REACH = 0.1
+"""How far a sole reaches from the point between the feet [m]."""
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report places that are unknown, out of reach, alike or unused, and headings in another unit than the file's."""
+    if draft.settings is None or draft.main is None:
+        return
+    walked = set()
+    for report, path, name in _named(draft):
+        walked.add(name)
+        known_place(draft, report, path, name)
+    for name, place in draft.settings.places.items():
+        _heading(draft.main, name)
+        if draft.settings.stage:
+            _on_stage(draft.main, name, place, draft.settings.stage)
+    _apart(draft.main, draft.settings.places.items())
+    if not has_errors(draft.diagnostics):
+        _used(draft, draft.main, walked)
+
+
+def known_place(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> bool:
+    """Whether lumen.yaml has that place; reported at `path` where it does not, and was readable."""
+    assert draft.settings
+    assert draft.main
+    if name in draft.settings.places:
+        return True
+    if name not in draft.main.lost:
+        hint, cause = did_you_mean(name, draft.settings.places, "lumen.yaml has"), f"name {name}"
+        if not draft.settings.places:
+            hint, cause = f"write `places: {{{name}: {{x: 1, y: 0}}}}` in lumen.yaml: it has none", "no places"
+        report(UNKNOWN_PLACE, path, f"there is no place `{name}`", hint, cause=cause)
+    return False
+
+
+def _named(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath, str]]:
+    """The places that behaviours walk to and stories expect, by name."""
+    for behavior, machine in draft.behaviors.items():
+        for site in action_sites(machine):
+            if isinstance(site.step.action, GoTo) and "{{" not in site.step.action.to:
+                yield draft.report("behaviors", behavior), (*site.step.where, "walk", "to"), site.step.action.to
+    for name, story in draft.stories.items():
+        for step in story.steps:
+            if isinstance(step.action, Expect) and step.action.place:
+                yield draft.report("behaviors/stories", name), (*step.where, "expect", "place"), step.action.place
+
+
+def _computed(draft: ProjectDraft) -> bool:
+    """Whether some walk's place is known only while it runs."""
+    actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
+    texts = [action.to for action in actions if isinstance(action, GoTo)]
+    return any(not isinstance(part, str) for text in texts for part in split_template(text))
+
+
+def _used(draft: ProjectDraft, main: DocumentReport, walked: set[str]) -> None:
+    assert draft.settings
+    if _computed(draft):
+        return
+    for name in draft.settings.places:
+        if name not in walked:
+            hint = f"write `walk: {{to: {name}}}` somewhere, or delete it"
+            main(UNUSED_PLACE, ("places", name), f"nobody walks to the place `{name}`", hint, key=True)
+
+
+def _on_stage(main: DocumentReport, name: str, place: HallPlace, stage: Stage) -> None:
+    for axis, at, (low, high) in (("x", place.x, stage.x), ("y", place.y, stage.y)):
+        if not low + SOLE_REACH - 1e-9 <= at <= high - SOLE_REACH + 1e-9:
+            beyond = (
+                "is so near the stage's edge that a foot would leave it" if low <= at <= high else "is off the stage"
+            )
+            room = f"[{low + SOLE_REACH:.3g}, {high - SOLE_REACH:.3g}]"
+            hint = f"a robot stands safely at {axis} in {room} m: put the place there, or make the `stage` larger"
+            related = [(("stage", axis), "the stage ends here")]
+            main(PLACE_OFF_STAGE, ("places", name, axis), f"`{name}` {beyond}", hint, related=related)
+
+
+def _apart(main: DocumentReport, places: Iterable[tuple[str, HallPlace]]) -> None:
+    """Two places so close that the robot may be at both."""
+    for (one, a), (other, b) in combinations(places, 2):
+        apart = hypot(a.x - b.x, a.y - b.y)
+        if apart < a.within + b.within - 1e-9:
+            message = f"`{other}` is {apart:.2f} m from `{one}`: the robot may be at both"
+            hint = f"put them {a.within + b.within:.2f} m apart, or say a smaller `within` for each"
+            related = [(("places", one), "the other one stands here")]
+            main(PLACES_TOO_CLOSE, ("places", other), message, hint, key=True, related=related)
+
+
+def _heading(main: DocumentReport, name: str) -> None:
+    """A heading that is hardly meant in the file's unit."""
+    heading, unit = value_at(main, ("places", name, "heading")), value_at(main, ("units", "angle")) or "deg"
+    if not isinstance(heading, int | float):
+        return
+    path = ("places", name, "heading")
+    if unit == "deg" and round(abs(heading), 4) in HALF_TURN_PARTS:
+        hint = f"write {round(heading * 180 / pi):g}"
+        main(WRONG_UNIT, path, f"{heading:g} deg is very little: it looks like radians", hint)
+    elif abs(heading) > (360.0 if unit == "deg" else 2 * pi + 0.01):
+        hint = "turn once at most" if unit == "deg" else "take `angle: rad` out of `units`: degrees are usual here"
+        main(WRONG_UNIT, path, f"{heading:g} {unit} is more than once around", hint)
