@@ -12,7 +12,7 @@ from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.xstate import read_xstate, write_xstate
 from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import has_errors
-from lumen.statechart import Machine
+from lumen.statechart import Interpreter, Machine
 
 QUIZ: dict[str, Any] = {
     "context": {"round": 0, "who": ""},
@@ -92,6 +92,24 @@ def test_what_scxml_invokes(invoke: str, row: dict[str, Any] | None) -> None:
     assert data["states"]["a"].get("invoke") == row
     assert has_errors(said) is (row is None)
     assert len(said) == 1
+
+
+def test_what_waits_for_the_end_of_a_lost_invoke_stays() -> None:
+    text = (
+        '<scxml xmlns="http://www.w3.org/2005/07/scxml"><state id="a"><invoke id="i.1" srcexpr="n"/>'
+        '<transition event="done.invoke.i.1" target="b"/><transition event="error.platform" target="a"/></state>'
+        '<parallel id="b"><final id="f"/><state id="r"><final id="z"/></state>'
+        '<transition event="done.state.b" target="c"/></parallel><final id="c"/></scxml>'
+    )
+    data, said = read_scxml("a.scxml", text.encode(), "a")
+    assert data["states"]["a"]["on"] == {"done.invoke.i.1": "b", "error.platform": "a"}
+    assert [d.hint for d in said if d.severity == "error"] == [
+        "what waits for `done.invoke.i.1` stays: invoke a behaviour by that id"
+    ]
+    it = Interpreter(Machine.from_dict(data))
+    it.start()
+    it.send("done.invoke.i.1")
+    assert "c" in it.configuration
 
 
 def test_diagrams_show_what_is_inside_once(host: Machine) -> None:

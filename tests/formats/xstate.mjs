@@ -4,13 +4,15 @@
 
 import { readFileSync } from "node:fs";
 
-const { SimulatedClock, assign, createActor, raise, setup } = await import(process.argv[2]);
+const { SimulatedClock, assign, createActor, fromCallback, raise, setup } = await import(process.argv[2]);
 const value = (source, { context, event }) =>
   typeof source === "string"
     ? new Function("context", "event", `return ${source}`)(context, { name: event.type, data: event.data })
     : source;
 const nothing = () => {};
+const never = fromCallback(() => {}); // an actor that is there and does not end by itself
 const known = setup({
+  actors: new Proxy({}, { get: () => never }),
   guards: { "lumen.expression": (scope, params) => value(params.source, scope) },
   actions: new Proxy(
     {
@@ -37,4 +39,13 @@ function run({ config, events }) {
   return seen;
 }
 
-process.stdout.write(JSON.stringify(JSON.parse(readFileSync(0, "utf8")).map(run)));
+function tried(row) {
+  try {
+    return run(row);
+  } catch (error) {
+    process.stderr.write(`${error}\n`);
+    return null; // XState refuses the machine
+  }
+}
+
+process.stdout.write(JSON.stringify(JSON.parse(readFileSync(0, "utf8")).map(tried)));

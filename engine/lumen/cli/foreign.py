@@ -20,4 +20,4 @@ def foreign_content(path: Path) -> bytes:
 def one_line(diagnostic: Diagnostic) -> str:
     """A finding as the reason why a command can't run."""
     hint = f" ({diagnostic.hint})" if diagnostic.hint else ""
-    return f"{diagnostic.place}: {diagnostic.message}{hint}"
+    return " ".join(f"{diagnostic.place}: {diagnostic.message}{hint}".split())

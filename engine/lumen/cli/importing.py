@@ -24,7 +24,7 @@ from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
 from lumen.formats.scxml import read_scxml
 from lumen.formats.xstate import read_xstate
 from lumen.formats.yaml_document import document_yaml
-from lumen.language.diagnostics import Diagnostic, has_errors
+from lumen.language.diagnostics import Diagnostic, Severity, has_errors
 from lumen.language.robots import Body
 from lumen.loading.behaviors import build_machine
 from lumen.loading.controllers import build_controller
@@ -44,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "Turn a statechart (SCXML, XState's JSON) into a behaviour file, a motion (Webots, Choregraphe, NAOqi's"
         " Python) into a motion file, or a fuzzy controller (FuzzyLite's FLL, FCL of IEC 61131-7, MATLAB's .fis) into a"
         " controller file. What can't be carried over is listed, with its line; then the exit code is 1, and"
-        " the rest is written all the same."
+        " the rest is written all the same. A file that we could not load ourselves is never written (2)."
     )
     add = parser.add_argument
     add(
@@ -60,7 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where everything was carried over, 1 where something is left out, 2 where the file can't be read."""
+    """0 where everything was carried over, 1 where something is left out, 2 where nothing can be written."""
     content = foreign_content(options.file)
     title = _title(options.output or options.file)
     body = lumen.load(options.project).body if options.file.suffix.lower() in GESTURE_ENDINGS else None
@@ -75,7 +75,10 @@ def run(options: argparse.Namespace) -> int:
         except RecursionError:
             raise UsageError(f"{options.file} nests too deeply to be read: use fewer levels") from None
         text = document_yaml(data, kind)
-        diagnostics += _faults(str(options.output or "the result"), text, kind, body)
+        faults = _faults(str(options.output or "the result"), text, kind, body)
+        if refused := next((fault for fault in faults if fault.severity is Severity.ERROR), None):
+            raise UsageError(_refusal(options.file, text, refused, diagnostics))
+    diagnostics += faults
     write_result(text, options.output)
     if diagnostics or options.format != "text":
         files = {str(options.file): content}
@@ -102,8 +105,18 @@ def _chart(path: Path, content: bytes) -> Reader:
     return read_scxml if start == b"<" else read_xstate
 
 
+def _refusal(file: Path, text: str, fault: Diagnostic, said: list[Diagnostic]) -> str:
+    """Why nothing is written: what our loader has against the result, and what of the file may have led to it."""
+    line = text.splitlines()[fault.place.line - 1].strip() if fault.place.line else ""
+    near = f" at `{line[:80]}`" if line else ""
+    lost = next((d for d in said if d.severity is Severity.ERROR), None)
+    cause = f"; what is left out: {one_line(lost)}" if lost else ""
+    told = f"nothing is written: {file} would become a file that is refused{near}: {fault.message}{cause}"
+    return " ".join(told.split())
+
+
 def _faults(file: str, text: str, kind: str, body: Body | None) -> list[Diagnostic]:
-    """What the file would be refused for: nothing, unless we are mistaken."""
+    """What the loader has against the result."""
     document, found = parse(file, text.encode())
     if document is None:
         return found

@@ -6,36 +6,28 @@
 
 import re
 from collections.abc import Iterator, Mapping
+from math import inf
 from typing import Any, NamedTuple
 
 from lumen.formats.conversion_findings import ConversionFindings, broken
+from lumen.formats.fcl_words import ACCUS, ACTS, ANDS, METHODS, NUMBER, ORS, function, reach, shape
 from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
-from lumen.formats.fll.fuzzylite_names import SHAPES, plain
-from lumen.language.controllers import TERM_PARAMETERS, WEIGHTED_DEFUZZIFIERS
+from lumen.formats.fll.fuzzylite_names import plain
+from lumen.formats.fll.infix_formulas import Trouble
+from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.loading.line_index import LineIndex
 from lumen.loading.rule_parser import RuleWord
 
 _COMMENT = re.compile(r"(?P<open>\(\*|/\*)|//[^\n]*")
 _OPEN = re.compile(r"(VAR_INPUT|VAR_OUTPUT|FUZZIFY|DEFUZZIFY|RULEBLOCK)\b", re.IGNORECASE)
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_POINT = re.compile(rf"\(\s*({_NUMBER})\s*,\s*({_NUMBER})\s*\)")
-_RANGE = re.compile(rf"\(\s*({_NUMBER}?)\s*\.\.\s*({_NUMBER}?)\s*\)")
+_POINT = re.compile(rf"\(\s*({NUMBER})\s*,\s*({NUMBER})\s*\)")
+_RANGE = re.compile(rf"\(\s*({NUMBER}?)\s*\.\.\s*({NUMBER}?)\s*\)")
 _RULE = re.compile(r"RULE\s+\w+\s*:\s*(.*)", re.IGNORECASE | re.DOTALL)
 _SETTING = re.compile(r"(\w+)\s*(?::=|:)\s*(.*)", re.DOTALL)
 _TERM = re.compile(r"TERM\s+(\S+)\s*:=\s*(.*)", re.IGNORECASE | re.DOTALL)
 
-_AND = {"min": "minimum", "prod": "algebraic-product", "bdif": "bounded-difference"}
-_OR = {"max": "maximum", "asum": "algebraic-sum", "bsum": "bounded-sum"}
-_ACCU = {**_OR, "nsum": "normalized-sum", "sum": "unbounded-sum"}
-_METHODS = {"cog": "centroid", "cogs": "weighted-average", "coa": "bisector", "lm": "smallest-of-maximum",
-            "rm": "largest-of-maximum", "mm": "mean-of-maximum"}  # fmt: skip
-_SHAPES = {"trian": "triangle", "trape": "trapezoid", "gauss": "gaussian", "gbell": "bell", "sigm": "sigmoid",
-           **{name.lower(): kind for name, kind in SHAPES.items() if kind not in ("function", "linear")}}  # fmt: skip
-_NORMS: Mapping[str, tuple[str, Mapping[str, str]]] = {
-    "AND": ("conjunction", _AND), "OR": ("disjunction", _OR), "ACT": ("implication", _AND), "ACCU": ("accu", _ACCU),
-}  # fmt: skip
-_DUAL = {"maximum": "minimum", "algebraic-sum": "algebraic-product", "bounded-sum": "bounded-difference"}
+_OPERATORS = ("AND", "OR", "ACT", "ACCU")
 _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "minimum"}
 
 
@@ -60,7 +52,7 @@ def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
     text = content.decode("utf-8-sig", errors="replace")
     findings = ConversionFindings()
     reader = _FclReader(file, text, findings)
-    sections = list(_sections(_without_comments(text)))
+    sections = list(_sections(reader.first(_without_comments(text))))
     if not any(section.kind == "FUZZIFY" for section in sections):
         raise broken(Place(file), "not-a-controller", "this is no function block: it has no FUZZIFY")
     return reader.block(sections), findings.diagnostics
@@ -113,9 +105,19 @@ class _FclReader:
     def at(self, statement: FclStatement) -> Place:
         return self.place(statement.offset, len(statement.text.split("\n")[0]))
 
+    def first(self, text: str) -> str:
+        """The first function block; that there are more is reported."""
+        begins = list(re.finditer(r"\bFUNCTION_BLOCK\b", text, re.IGNORECASE))
+        if len(begins) < 2:
+            return text
+        place = self.place(begins[1].start(), len("FUNCTION_BLOCK"))
+        self.findings.lost(place, "a second function block is left out", "put each into a file of its own")
+        return text[: begins[1].start()]
+
     def block(self, sections: list[FclSection]) -> dict[str, Any]:
         blocks = [section for section in sections if section.kind == "RULEBLOCK"]
         said = [self.operators(section) for section in blocks]
+        self.asked(sections)
         for section in sections:
             if section.kind in ("FUZZIFY", "DEFUZZIFY"):
                 self.variable(section)
@@ -134,20 +136,45 @@ class _FclReader:
             if name not in self.draft.names:
                 self.findings.lost(self.at(statement), f"`{name}` has no terms, and is left out")
 
+    def asked(self, sections: list[FclSection]) -> None:
+        """Inputs without terms that formulas ask for: any number may come in."""
+        formulas = " ".join(t.text for s in sections if s.kind == "DEFUZZIFY" for t in s.statements)
+        words = set(
+            re.findall(r"[A-Za-z_]\w*", " ".join(re.findall(r"(?i):=\s*FUNCTION\b(.*?)(?= TERM |$)", formulas)))
+        )
+        known = {section.name for section in sections if section.kind == "FUZZIFY"}
+        for section in sections:
+            for statement in section.statements if section.kind == "VAR_INPUT" else ():
+                name = statement.text.partition(":")[0].strip()
+                if name in words - known:
+                    self.draft.variable("inputs", name, self.at(statement))["range"] = ranged(-inf, inf)
+
     def operators(self, section: FclSection) -> dict[str, Any]:
+        """What a rule block says of AND, OR and ACT; what it says of ACCU is kept for the outputs."""
         found: dict[str, Any] = {}
+        partners: dict[str, str] = {}
+        accu = ""
         for statement in section.statements:
             match = _SETTING.fullmatch(statement.text)
-            if match and match[1].upper() in _NORMS:
-                word, table = _NORMS[match[1].upper()]
-                if match[2].lower() in table:
-                    found[word] = table[match[2].lower()]
-                else:
-                    self.findings.lost(self.at(statement), f"there is no {match[1]} `{match[2]}` here")
-        if "disjunction" in found:
-            found.setdefault("conjunction", _DUAL[found["disjunction"]])  # the norm: one alone means its dual
-        self.accu.update({"": found.pop("accu")} if "accu" in found else {})
-        return found
+            key, word = (match[1].upper(), match[2].lower()) if match else ("", "")
+            if key not in _OPERATORS:
+                continue
+            side, other = ("conjunction", "disjunction") if key == "AND" else ("disjunction", "conjunction")
+            if key in ("AND", "OR") and (pair := (ANDS if key == "AND" else ORS).get(word)):
+                if side in partners and pair[0] != partners[side]:
+                    message = f"`{statement.text}` is not the partner of what stands before it: both are as they say"
+                    self.findings.changed(self.at(statement), message, "jFuzzyLogic takes the last one for both")
+                found[side], partners[other] = pair
+            elif key == "ACT" and word in ACTS:
+                found["implication"] = ACTS[word]
+            elif key == "ACCU" and word in ACCUS:
+                accu = ACCUS[word]
+            else:
+                self.findings.lost(self.at(statement), f"there is no {key} `{word.upper()}` here")
+        if self.accu.setdefault("", accu) != accu:
+            place = self.place(section.offset, len(section.kind))
+            self.findings.lost(place, "another ACCU than that of the first rule block is left out", "say one for all")
+        return {**partners, **found}
 
     def variable(self, section: FclSection) -> None:
         side = "inputs" if section.kind == "FUZZIFY" else "outputs"
@@ -158,72 +185,102 @@ class _FclReader:
                 settings[match[1].upper()] = (match[2].strip(), statement)
         if side == "outputs":
             self.output(spec, settings)
-        reach: list[float] = []
+        ends: list[float] = []
         for statement in section.statements:
             if match := _TERM.fullmatch(statement.text):
-                reach += self.term(section.name, spec, match[1], match[2].strip(), statement)
+                ends += self.term(section.name, spec, match[1], match[2].strip(), statement)
             elif not _SETTING.fullmatch(statement.text):
                 self.findings.lost(self.at(statement), "this can't be read")
-        self.range(section, spec, settings, reach)
+        if side == "outputs":
+            self.accumulated(section, spec)
+        self.range(section, spec, settings, ends)
         spec.update({key: spec.pop(key) for key in ("terms",) if key in spec})
 
-    def range(self, section: FclSection, spec: dict[str, Any], settings: Mapping[str, Any], reach: list[float]) -> None:
+    def range(self, section: FclSection, spec: dict[str, Any], settings: Mapping[str, Any], ends: list[float]) -> None:
         said, statement = settings.get("RANGE", ("", None))
         match = _RANGE.fullmatch(said)
         if match and match[1] and match[2] and float(match[1]) < float(match[2]):
             spec["range"] = ranged(float(match[1]), float(match[2]))
             return
         place = self.at(statement) if statement else self.place(section.offset, len(section.kind))
-        if len(set(reach)) < 2:
+        weighted = spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
+        if len(set(ends)) < 2 and weighted:
+            self.findings.changed(place, f"the range of `{section.name}` stands for none: nothing is cut off there")
+            ends = [*(ends or [0.0]), (ends or [0.0])[0] + 1.0]
+        elif len(set(ends)) < 2:
             self.findings.lost(place, f"`{section.name}` has no range", "write: RANGE := (0 .. 10);")
-            reach = [0.0, 1.0]
+            ends = [0.0, 1.0]
         else:
             message = f"the range of `{section.name}` is that of its terms"
             self.findings.changed(place, message, "write: RANGE := (0 .. 10);")
-        spec["range"] = ranged(min(reach), max(reach))
+        spec["range"] = ranged(min(ends), max(ends))
 
     def output(self, spec: dict[str, Any], settings: Mapping[str, tuple[str, FclStatement]]) -> None:
         for key, (said, statement) in settings.items():
             match key:
-                case "METHOD" if said.lower() in _METHODS:
-                    spec.update(operators({"defuzzifier": _METHODS[said.lower()]}, {"defuzzifier": "centroid"}))
+                case "METHOD" if said.lower() in METHODS:
+                    spec.update(operators({"defuzzifier": METHODS[said.lower()]}, {"defuzzifier": "centroid"}))
                 case "DEFAULT" if said.upper() == "NC":
                     spec["lock-previous"] = True
-                case "DEFAULT" if re.fullmatch(_NUMBER, said):
+                case "DEFAULT" if re.fullmatch(NUMBER, said):
                     spec["default"] = plain(float(said))
-                case "ACCU" if said.lower() in _ACCU:
-                    spec["aggregation"] = _ACCU[said.lower()]
+                case "ACCU" if said.lower() in ACCUS:
+                    spec["aggregation"] = ACCUS[said.lower()]
                 case "RANGE":
                     pass
                 case _:
                     self.findings.lost(self.at(statement), f"`{key} : {said}` can't be said of an output")
+
+    def accumulated(self, section: FclSection, spec: dict[str, Any]) -> None:
+        """How conclusions about an output become one: the same for single values, of each term's degrees."""
         weighted = spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
-        said = spec.pop("aggregation", "" if weighted else self.accu.get("", ""))
-        spec.update(operators({"aggregation": said or None}, {"aggregation": "maximum"}))
+        said = spec.pop("aggregation", "") or self.accu.get("", "")
+        if not said and not weighted:
+            place = self.place(section.offset, len(section.kind))
+            message = f"no ACCU is said: of conclusions about `{section.name}` the greatest counts"
+            self.findings.changed(place, message, "jFuzzyLogic adds them: write ACCU : SUM;")
+        usual = "unbounded-sum" if weighted else "maximum"
+        spec.update(operators({"aggregation": said or None}, {"aggregation": usual}))
 
     def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: FclStatement) -> list[float]:
         """Where it begins and ends, to know how far the variable reaches."""
         points = [float(number) for point in _POINT.findall(said) for number in point]
-        words = said.split()
-        numbers = [float(word) for word in words[1:] if re.fullmatch(_NUMBER, word)]
         if points and not _POINT.sub("", said).strip():
             self.draft.term(variable, spec, name, "discrete", points, self.at(statement))
             return points[::2]
-        if re.fullmatch(_NUMBER, said):
+        if re.fullmatch(NUMBER, said):
             return self.single(variable, spec, name, float(said), statement)
-        kind = _SHAPES.get(words[0].lower(), "") if words else ""
-        if not kind or len(numbers) != len(words) - 1:
+        if match := re.fullmatch(r"(?i)FUNCTION\s+(.*)", said, re.DOTALL):
+            return self.function(variable, spec, name, match[1], statement)
+        if (found := shape(said)) is None:
             message = f"the term `{name}` of `{variable}` is left out: `{said[:40]}` can't be read"
             self.findings.lost(self.at(statement), message)
             return []
-        if words[0].lower() in ("gbell", "sigm"):  # jFuzzyLogic's order
-            numbers = [*numbers[-1:], *numbers[:-1]]
-        self.draft.term(variable, spec, name, kind, numbers, self.at(statement))
-        return _reach(kind, numbers)
+        kind, values = found
+        self.draft.term(variable, spec, name, kind, values, self.at(statement))
+        return reach(kind, values) if not isinstance(values, str) else []
+
+    def function(
+        self, variable: str, spec: dict[str, Any], name: str, text: str, statement: FclStatement
+    ) -> list[float]:
+        """A single value that is computed from the inputs."""
+        output = spec is self.draft.sides["outputs"].get(self.draft.names[variable])
+        inputs = {theirs: ours for theirs, ours in self.draft.names.items() if ours in self.draft.sides["inputs"]}
+        found = function(text, inputs) if output else Trouble("a single value is no set", 0)
+        if isinstance(found, Trouble):
+            message = f"the term `{name}` of `{variable}` is left out: {found.message}"
+            self.findings.lost(self.at(statement), message)
+            return []
+        if spec.get("defuzzifier", "centroid") == "centroid":
+            spec["defuzzifier"] = "weighted-average"
+        self.draft.term(variable, spec, name, "function", found, self.at(statement))
+        return []
 
     def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: FclStatement) -> list[float]:
         """A value for outputs; for a set it has no width."""
-        if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(variable):
+        if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(
+            self.draft.names[variable]
+        ):
             spec["defuzzifier"] = "weighted-average"
         if spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS:
             self.draft.term(variable, spec, name, "constant", [x], self.at(statement))
@@ -234,7 +291,7 @@ class _FclReader:
     def rule(self, statement: FclStatement) -> str:
         match = _RULE.fullmatch(statement.text)
         if match is None:
-            if not (setting := _SETTING.fullmatch(statement.text)) or setting[1].upper() not in _NORMS:
+            if not (setting := _SETTING.fullmatch(statement.text)) or setting[1].upper() not in _OPERATORS:
                 self.findings.lost(self.at(statement), "this can't be read", "a rule reads: RULE 1 : IF … THEN …;")
             return ""
         begin = statement.offset + match.start(1)
@@ -243,13 +300,3 @@ class _FclReader:
             return self.place(begin + min(word.offset, len(match[1])), len(word.text))
 
         return self.draft.rule(match[1], self.at(statement), spot)
-
-
-def _reach(kind: str, parameters: list[float]) -> list[float]:
-    """Where a shape begins and ends, a gaussian 3 sigma from its mean; nothing for those that go on without end."""
-    match kind, parameters:
-        case "gaussian", [mean, sigma, *_]:
-            return [mean - 3 * abs(sigma), mean + 3 * abs(sigma)]
-        case (("triangle" | "trapezoid" | "rectangle" | "ramp" | "s-shape" | "z-shape" | "pi-shape"), _):
-            return parameters[: len(TERM_PARAMETERS[kind])]
-    return []

@@ -37,11 +37,21 @@ _SHAPES: Mapping[str, tuple[str, Callable[[list[float]], list[float]]]] = {
     "constant": ("constant", lambda p: p),
     "linear": ("linear", lambda p: p),
 }
+_OCTAVE_PRODUCTS = {
+    name.replace("-", "_"): name
+    for name in ("algebraic-product", "bounded-difference", "drastic-product", "einstein-product", "hamacher-product")
+}
+_OCTAVE_SUMS = {
+    name.replace("-", "_"): name
+    for name in ("algebraic-sum", "bounded-sum", "drastic-sum", "einstein-sum", "hamacher-sum")
+}
+_PRODUCTS = {"min": "minimum", "prod": "algebraic-product", **_OCTAVE_PRODUCTS}
+_SUMS = {"max": "maximum", "probor": "algebraic-sum", **_OCTAVE_SUMS}
 _NORMS = {
-    "AndMethod": ("conjunction", {"min": "minimum", "prod": "algebraic-product"}),
-    "OrMethod": ("disjunction", {"max": "maximum", "probor": "algebraic-sum"}),
-    "ImpMethod": ("implication", {"min": "minimum", "prod": "algebraic-product"}),
-    "AggMethod": ("aggregation", {"max": "maximum", "probor": "algebraic-sum", "sum": "unbounded-sum"}),
+    "AndMethod": ("conjunction", _PRODUCTS),
+    "OrMethod": ("disjunction", {**_SUMS, "sum": "unbounded-sum"}),
+    "ImpMethod": ("implication", _PRODUCTS),
+    "AggMethod": ("aggregation", {**_SUMS, "sum": "unbounded-sum"}),
     "DefuzzMethod": (
         "defuzzifier",
         {"centroid": "centroid", "bisector": "bisector", "mom": "mean-of-maximum", "som": "smallest-of-maximum",

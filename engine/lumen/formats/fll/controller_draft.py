@@ -5,13 +5,16 @@ from collections.abc import Callable, Collection, Mapping
 from math import inf, isfinite, isnan
 from typing import Any
 
-from lumen.formats.conversion_findings import ConversionFindings
+from lumen.formats.conversion_findings import LOST, ConversionFindings, ForeignFileError, broken
 from lumen.formats.fll.fuzzylite_names import plain
 from lumen.formats.fll.rule_text import rule_text
 from lumen.formats.unused_names import unused_name
 from lumen.language.controllers import TERM_PARAMETERS
 from lumen.language.diagnostics import Place
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.plain import plain_document
 from lumen.loading.rule_parser import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
+from lumen.loading.terms import build_terms
 
 _UNFIT = re.compile(r"[^A-Za-z0-9_\-]+")
 _ENDLESS = ("triangle", "trapezoid", "binary", "rectangle")
@@ -28,7 +31,8 @@ class ControllerDraft:
     """Collects a controller's data; `names` and `terms` map the file's names to ours."""
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
-        self.findings = findings
+        self.file, self.findings = file, findings
+        self.places: dict[str, Place] = {}
         self.data: dict[str, Any] = {"description": f"From {file.replace(chr(92), '/').rpartition('/')[2]}"}
         self.sides: dict[str, dict[str, dict[str, Any]]] = {"inputs": {}, "outputs": {}}
         self.names: NewNames = {}
@@ -42,6 +46,7 @@ class ControllerDraft:
         self.names.setdefault(name, ours)
         self.terms.setdefault(name, {})
         spec: dict[str, Any] = {}
+        self.places[ours] = place
         self.sides[side][ours] = spec
         return spec
 
@@ -65,9 +70,12 @@ class ControllerDraft:
         height = None
         if kind not in ("function", "constant", "linear", "discrete") and len(values) == len(TERM_PARAMETERS[kind]) + 1:
             *values, height = values
-        terms[ours] = {kind: _shape(kind, values)}
-        if height is not None and height != 1.0:
-            terms[ours]["height"] = plain(height)
+        shape = {kind: _shape(kind, values)} | ({} if height in (None, 1.0) else {"height": plain(height)})
+        if problem := _refused(ours, shape, len(values)):
+            self.findings.lost(place, f"the term `{name}` of `{variable}` is left out: {problem}")
+            del self.terms[variable][name]
+        else:
+            terms[ours] = shape
 
     def _problem(self, kind: str, values: Any) -> str:
         if kind == "function":
@@ -105,8 +113,16 @@ class ControllerDraft:
 
     def result(self) -> dict[str, Any]:
         """The data of the file: one block of rules stands at its top, several have names."""
+        outputs = self.sides["outputs"]
+        if not any(spec.get("terms") for spec in outputs.values()):
+            raise self._empty("no output is left", "a controller decides something: give it an output with terms")
+        for name in [name for name, spec in outputs.items() if not spec.get("terms")]:
+            del outputs[name]
+            self.findings.lost(self.places[name], f"the output `{name}` has no terms, and is left out")
         data = {**self.data, **{side: specs for side, specs in self.sides.items() if specs}}
         blocks = [block for block in self.blocks if block["rules"]]
+        if not blocks:
+            raise self._empty("no rule is left", "a rule reads: if INPUT is TERM then OUTPUT is TERM")
         if len(blocks) == 1:
             data["rules"] = blocks[0]["rules"]
             if blocks[0]["operators"]:
@@ -120,6 +136,24 @@ class ControllerDraft:
                 named[name] = {key: block[key] for key in ("operators", "rules") if block[key]}
             data["blocks"] = named
         return data
+
+    def _empty(self, what: str, hint: str) -> ForeignFileError:
+        """Why no controller can be made: at the first thing that had to be left out."""
+        first = next((d for d in self.findings.diagnostics if d.code == LOST), None)
+        if first is None:
+            return broken(Place(self.file), "not-a-controller", f"nothing is written: {what}", hint)
+        return broken(first.place, "not-a-controller", f"nothing is written, {what}: {first.message}", hint)
+
+
+def _refused(name: str, shape: Mapping[str, Any], count: int) -> str:
+    """What our loader has against a term; nothing against a formula, whose variables may be read later."""
+    if "function" in shape:
+        return ""
+    document, _ = plain_document("term", {name: dict(shape)})
+    assert document is not None  # it has MAX_TERM_PARAMETERS at most
+    report = DocumentReport(document)
+    build_terms({name: shape}, report, (), count)
+    return report.diagnostics[0].message if report.diagnostics else ""
 
 
 def ranged(low: float, high: float) -> list[int | float]:

@@ -57,8 +57,6 @@ class ScxmlStateTree:
             message, hint = f"a second state has the id `{id}`", "give each state an id of its own"
         elif outer in ("final", "history"):
             message = f"a state can't lie in a `<{outer}>`"
-        elif element.tag == "final" and outer == "parallel":
-            message, hint = f"`{id}` is final in a parallel state", "put it into one of the regions"
         if message:
             self.findings.lost(place, message, hint)
         return not message

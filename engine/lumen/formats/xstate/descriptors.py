@@ -1,11 +1,18 @@
 """Descriptors of events, ours and XState's: there a name is matched exactly, and the longest is tried first."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
 from lumen.language.actions import If, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
+
+_OWN_EVENTS = {
+    "xstate.done.state.": "done.state.", "done.state.": "done.state.",
+    "xstate.done.actor.": "done.invoke.", "done.invoke.": "done.invoke.",
+    "xstate.error.actor.": "error.invoke.", "error.platform.": "error.invoke.",
+}  # fmt: skip
+"""What XState calls its own events, in version 5 and in 4, and what they are called here."""
 
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*(\.\*)?")
 
@@ -14,6 +21,20 @@ def descriptor_of(event: str) -> str | None:
     """A key of XState's `on` as a key of ours, None where none is meant."""
     text = re.sub(r"\s+", "_", event.strip())
     return text if _DESCRIPTOR.fullmatch(text) else None
+
+
+def translated(event: str, names: Callable[[str], str]) -> str:
+    """An event of XState's own by our name for it, any other as it is; `names` tells what we call a state of its id."""
+    for begin, ours in _OWN_EVENTS.items():
+        if event.startswith(begin) and (id := event.removeprefix(begin)):
+            named = id if "*" in id else names(id) if ours == "done.state." else invoke_id(id)
+            return f"{ours}{named}"
+    return event
+
+
+def invoke_id(id: str) -> str:
+    """The id of something invoked as one that an event's name can end with."""
+    return ".".join(word for word in re.sub(r"[\s*]+", "_", id).split(".") if word) or "_"
 
 
 class EventDescriptors:

@@ -1,22 +1,25 @@
 """An XState machine configuration as the data of a behaviour file."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from lumen.formats.behavior_data import ActionData, TransitionData, quoted, single
 from lumen.formats.conversion_findings import ConversionFindings, broken
-from lumen.formats.foreign_states import passing_key
-from lumen.formats.xstate.action_reader import DO_ACTOR, XStateActionReader
-from lumen.formats.xstate.descriptors import descriptor_of, longest_first
+from lumen.formats.foreign_states import ENDED_REGION, ended_region, passing_key
+from lumen.formats.xstate.action_reader import XStateActionReader
+from lumen.formats.xstate.descriptors import descriptor_of, invoke_id, longest_first, translated
+from lumen.formats.xstate.invoke_reader import XStateInvokeReader
 from lumen.formats.xstate.json_source import parse_json
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.formats.xstate.transition_reader import XStateTransitionReader
-from lumen.language.diagnostics import Diagnostic, NodePath
+from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import RESUME_WORDS
 
+_KINDS = ("atomic", "compound", "parallel", "final", "history")
+_FOLLOWING = ("on", "always", "after", "invoke", "onDone")
 _MEANT = {
     "id", "key", "type", "initial", "states", "on", "always", "after", "entry", "exit", "onDone", "invoke", "history",
-    "target", "output", "context", "meta", "description", "$schema", "version",
+    "parallel", "target", "output", "context", "meta", "description", "$schema", "version",
 }  # fmt: skip
 _MACHINE = ("types", "events", "phrases", "answers", "renamed")
 
@@ -62,6 +65,8 @@ class _XStateReader:
     def __init__(self, outline: XStateStateTree, parts: XStateActionReader, findings: ConversionFindings) -> None:
         self.outline, self.parts, self.findings = outline, parts, findings
         self.transitions = XStateTransitionReader(outline, parts)
+        self.invocations = XStateInvokeReader(parts, self.transitions)
+        self.first: dict[XStateNode, str] = {}
         self.passed: dict[XStateNode, dict[str, Any]] = {}
 
     def data(self) -> tuple[dict[str, Any], list[Diagnostic]]:
@@ -88,12 +93,16 @@ class _XStateReader:
         if state.kind == "history":
             return {**data, **self._history(state)}
         if state.kind == "compound":
-            data["initial"] = self._initial(state)
+            data["initial"] = self.first[state] = self._initial(state)
         for key in ("entry", "exit"):
             if key in source and (actions := self.parts.actions(source[key], (*where, key))):
                 data[key] = actions
         if state.kind == "final":
-            return data | self._output(state)
+            data |= self._output(state)
+            if state.parent is None or not isinstance(state.parent, XStateNode) or state.parent.kind != "parallel":
+                return data
+            self.parts.changed(where, ENDED_REGION)
+            return ended_region(data)
         data.update(self._behaviour(state))
         if state.regular:
             data["states"] = {c.key: self._state(c) for c in state.children if isinstance(c, XStateNode)}
@@ -109,6 +118,10 @@ class _XStateReader:
                 self.parts.changed(where, "`meta` is not carried over")
             elif key == "output" and state.kind != "final":
                 self.parts.lost(where, "`output` of a machine", "give each of its final states an `output`")
+            elif key == "type" and value and value not in _KINDS:
+                self.parts.lost(where, f"there is no kind of state `{value}`", f"one of {', '.join(_KINDS)}")
+            elif key in _FOLLOWING and state.kind == "final" and value:
+                self.parts.lost(where, f"`{key}` of a final state: nothing follows it here", "let it be no final state")
             elif key not in _MEANT:
                 self.parts.lost(where, f"`{key}` has no counterpart")
 
@@ -127,11 +140,9 @@ class _XStateReader:
         """Where a history leads that names no target: as its parent begins."""
         home = state.parent
         assert isinstance(home, XStateNode)  # the machine itself is never read as a history
-        initial = home.source.get("initial")
-        named = home.child(initial) if isinstance(initial, str) else None
-        first = named if named in home.regular else home.regular[0]
-        found = home.regular if home.kind == "parallel" else [first]
-        return {"target": self.transitions.named(state, [f for f in found if f is not None])}
+        if home.kind == "compound":
+            return {"target": self.first[home]}
+        return {"target": self.transitions.named(state, list(home.regular))}
 
     def _initial(self, state: XStateNode) -> str:
         """The key of the child entered first; where actions are done on the way, of a state that does them."""
@@ -172,85 +183,66 @@ class _XStateReader:
             data["onReload"] = state.calls(found, self.outline.title)
         if own.get("resume") in RESUME_WORDS:
             data["resume"] = own["resume"]
-        data.update(self._do(state))
+        invocations = self.invocations.of(state, own)
+        data.update(invocations.data)
         if "onDone" in state.source and state.kind == "atomic":
             self.parts.lost((*state.where, "onDone"), "`onDone` of a state that has no states")
         elif "onDone" in state.source and (rows := self.transitions.rows(state, "onDone")):
             data["onDone"] = single(rows)
-        if on := self._on(state):
+        if on := self._on(state, invocations.waits):
             data["on"] = on
-        if "always" in state.source and (rows := self.transitions.rows(state, "always")):
-            data["always"] = single(rows)
+        if always := self._always(state):
+            data["always"] = single(always)
         if after := self._after(state):
             data["after"] = after
         return data
 
-    def _on(self, state: XStateNode) -> dict[str, Any]:
-        table = state.source.get("on")
-        if not isinstance(table, dict):
-            return {}
+    def _on(self, state: XStateNode, waits: dict[str, list[TransitionData]]) -> dict[str, Any]:
+        """The candidates of each event, and those of the ends that are waited for."""
         rows: dict[str, list[TransitionData]] = {}
-        for event in table:
-            descriptor = descriptor_of(event)
+        for event, data in self._table(state, "on").items():
+            where = (*state.where, "on", event)
+            descriptor = descriptor_of(translated(event, self._named))
+            if event == "":
+                continue  # version 4's `always`
             if descriptor is None:
-                self.parts.lost((*state.where, "on", event), f"`{event}` is no event", "write names with dots between")
-            elif found := self.transitions.under(state, (*state.where, "on", event), table[event]):
+                self.parts.lost(where, f"`{event}` is no event", "write names with dots between")
+                continue
+            if descriptor.startswith("xstate."):
+                self.parts.lost(where, f"nothing says `{event}` here", "the transition stays, and is never taken")
+            if found := self.transitions.under(state, where, data):
+                rows.setdefault(descriptor, []).extend(found)
+        for descriptor, found in waits.items():
+            if found:
                 rows.setdefault(descriptor, []).extend(found)
         return {descriptor: single(rows[descriptor]) for descriptor in longest_first(list(rows))}
 
+    def _named(self, id: str) -> str:
+        """What the state of that id is called here; the id itself where there is none."""
+        found = self.outline.resolve(self.outline.root, f"#{id}")
+        return (found.name or self.outline.title) if found else invoke_id(id)
+
+    def _always(self, state: XStateNode) -> list[TransitionData]:
+        rows = self.transitions.rows(state, "always") if "always" in state.source else []
+        table = state.source.get("on")
+        if isinstance(table, dict) and "" in table:
+            rows += self.transitions.under(state, (*state.where, "on", ""), table[""], eventless=True)
+        return rows
+
+    def _table(self, state: XStateNode, key: str) -> Mapping[str, Any]:
+        table = state.source.get(key)
+        if table is not None and not isinstance(table, dict):
+            self.parts.lost((*state.where, key), f"`{key}` is no object", "write each event, or delay, as a key")
+        return table if isinstance(table, dict) else {}
+
     def _after(self, state: XStateNode) -> dict[str, Any]:
-        table = state.source.get("after")
         data: dict[str, Any] = {}
-        for text in table if isinstance(table, dict) else ():
+        for text, rows_data in self._table(state, "after").items():
             where = (*state.where, "after", text)
             delay = self.parts.delay(text, where)
-            if delay is not None and (rows := self.transitions.under(state, where, table[text])):
+            if delay is not None and (rows := self.transitions.under(state, where, rows_data)):
                 data[delay] = single(rows)
         return data
-
-    def _do(self, state: XStateNode) -> dict[str, Any]:
-        """What Lumen wrote as invocations, `do` and `invoke`; others are left out."""
-        data: dict[str, Any] = {}
-        invokes: list[dict[str, Any]] = []
-        for where, row in self._invocations(state):
-            given = row.get("input")
-            if own := self._invoked(state, row):
-                invokes.append({**own, **self._ends(state, where, row)})
-                continue
-            steps = (
-                self.parts.do(given.get("steps")) if row.get("src") == DO_ACTOR and isinstance(given, dict) else None
-            )
-            if steps is None or "do" in data:
-                self.parts.lost(where, f"`invoke` of `{row.get('src')}`: its code is not in the file")
-                continue
-            data["do"] = steps
-            data.update(self._ends(state, where, row))
-        return data | ({"invoke": single(invokes)} if invokes else {})
-
-    def _ends(self, state: XStateNode, where: NodePath, row: Mapping[str, Any]) -> dict[str, Any]:
-        """What follows the end of something that is invoked."""
-        found = {
-            key: self.transitions.under(state, (*where, key), row[key]) for key in ("onDone", "onError") if key in row
-        }
-        return {key: single(rows) for key, rows in found.items() if rows}
-
-    def _invoked(self, state: XStateNode, row: Mapping[str, Any]) -> dict[str, Any] | None:
-        """The behaviour that Lumen wrote as an actor; None where this is another one."""
-        inputs, id, behavior = _lumen(state).get("invoke"), row.get("id"), row.get("src")
-        if not isinstance(inputs, dict) or id not in inputs or not isinstance(behavior, str):
-            return None
-        data = {"behavior": behavior} | ({"id": id} if id != behavior else {})
-        data |= {"input": inputs[id]} if inputs[id] else {}
-        return data if self.parts.fits({"invoke": data}) else None
-
-    def _invocations(self, state: XStateNode) -> Iterator[tuple[NodePath, Mapping[str, Any]]]:
-        data, where = state.source.get("invoke"), (*state.where, "invoke")
-        rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
-        for place, row in rows:
-            if isinstance(row, dict):
-                yield place, row
-            elif row is not None:
-                self.parts.lost(place, "this is no invocation")
 
 
 def _lumen(state: XStateNode) -> Mapping[str, Any]:

@@ -22,13 +22,30 @@ class XStateNode(ForeignState):
 
     @property
     def kind(self) -> str:
-        kind = self.source.get("type")
+        kind = declared_kind(self.source)
         if kind in ("final", "history") or (kind == "parallel" and self.regular):
-            return str(kind)
+            return kind
         return "compound" if self.regular else "atomic"
+
+    @property
+    def foreign_id(self) -> str:
+        """What XState calls it: its id, or the keys down to it behind the machine's."""
+        if isinstance(self.source.get("id"), str) and self.source["id"]:
+            return str(self.source["id"])
+        below = self.parent.foreign_id if isinstance(self.parent, XStateNode) else ""
+        return f"{below}.{self.original}" if below else "(machine)"
 
     def child(self, key: str) -> "XStateNode | None":
         return self.named.get(key)
+
+
+def declared_kind(data: Mapping[str, Any]) -> str:
+    """What XState takes a state for by its own words: `history: true` needs no `type`, and version 4 had `parallel`."""
+    if data.get("type"):
+        return str(data["type"])
+    if data.get("parallel") is True:
+        return "parallel"
+    return "history" if data.get("history") and not data.get("states") else ""
 
 
 class XStateStateTree:
@@ -62,9 +79,6 @@ class XStateStateTree:
             id = data.get("id") if isinstance(data, dict) else None
             if not isinstance(data, dict):
                 self.findings.lost(self.source.place(where), f"`{original}` is no state", "a state is an object")
-            elif parent.source.get("type") == "parallel" and data.get("type") == "final":
-                hint = "put it into one of the regions"
-                self.findings.lost(self.source.place(where), f"`{original}` is final in a parallel state", hint)
             elif isinstance(id, str) and id in self.by_id:
                 self.findings.lost(self.source.place(where), f"a second state has the id `{id}`", "give each its own")
             else:
@@ -72,7 +86,7 @@ class XStateStateTree:
                 state = self._state(data, parent, key, original, where)
                 parent.add(state)
                 parent.named[original] = state
-                if data.get("type") != "history":
+                if declared_kind(data) != "history":
                     parent.regular.append(state)
                 if isinstance(id, str):
                     self.by_id[id] = state
@@ -95,7 +109,7 @@ class XStateStateTree:
             if states:
                 self.findings.lost(self.source.place((*parent.where, "states")), what)
             return {}
-        if parent.source.get("type") in ("final", "history") and states:
+        if declared_kind(parent.source) in ("final", "history") and states:
             self.findings.lost(self.source.place((*parent.where, "states")), "a final state has no states within")
             return {}
         return states

@@ -7,7 +7,7 @@ from lumen.formats.xstate.action_reader import XStateActionReader
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.language.diagnostics import NodePath
 
-_MEANT = {"target", "guard", "cond", "actions", "reenter", "description", "meta"}
+_MEANT = {"target", "guard", "cond", "actions", "reenter", "internal", "description", "meta"}
 
 
 class XStateTransitionReader:
@@ -47,11 +47,12 @@ class XStateTransitionReader:
             if source is None:
                 return None
             row["guard"] = source
-        if data.get("target") is not None:
+        if data.get("target") not in (None, []):
             targets = self.targets(state, data["target"], (*where, "target"))
             if targets is None:
                 return None
-            row.update(self._way(state, where, targets, data.get("reenter") is True))
+            reenter = data.get("reenter") is True or data.get("internal") is False  # version 4's word for it
+            row.update(self._way(state, where, targets, reenter))
         if actions := self.parts.actions(data.get("actions"), (*where, "actions")):
             row["actions"] = actions
         return row

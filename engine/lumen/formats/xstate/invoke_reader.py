@@ -1,0 +1,93 @@
+"""What a state of XState invokes: what Lumen wrote is read back; of all else the waits for its end are kept."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from lumen.formats.behavior_data import TransitionData, single
+from lumen.formats.xstate.action_reader import DO_ACTOR, XStateActionReader
+from lumen.formats.xstate.descriptors import invoke_id
+from lumen.formats.xstate.state_tree import XStateNode
+from lumen.formats.xstate.transition_reader import XStateTransitionReader
+from lumen.language.diagnostics import NodePath
+
+_ENDS = {"onDone": "done.invoke", "onError": "error.invoke"}
+
+
+class ActorEnds(NamedTuple):
+    """`do`, `invoke` and what follows their ends; and what `on` gets in place of those that can't be carried over."""
+
+    data: dict[str, Any]
+    waits: dict[str, list[TransitionData]]
+
+
+class XStateInvokeReader:
+    """Reads the invocations of one file."""
+
+    def __init__(self, parts: XStateActionReader, transitions: XStateTransitionReader) -> None:
+        self.parts, self.transitions = parts, transitions
+
+    def of(self, state: XStateNode, own: Mapping[str, Any]) -> ActorEnds:
+        """What one state invokes; `own` is what Lumen has in its `meta`."""
+        data: dict[str, Any] = {}
+        invokes: list[dict[str, Any]] = []
+        waits: dict[str, list[TransitionData]] = {}
+        for number, where, row in self._rows(state):
+            if invoked := self._invoked(own, row):
+                invokes.append({**invoked, **self._ends(state, where, row)})
+            elif (steps := self._steps(row)) is not None and "do" not in data:
+                data["do"] = steps
+                data.update(self._ends(state, where, row))
+            else:
+                self._wait(state, number, where, row, waits)
+        return ActorEnds(data | ({"invoke": single(invokes)} if invokes else {}), waits)
+
+    def _wait(
+        self,
+        state: XStateNode,
+        number: int,
+        where: NodePath,
+        row: Mapping[str, Any],
+        waits: dict[str, list[TransitionData]],
+    ) -> None:
+        """Keep what follows the end of an actor whose code is not there, as waits for its events."""
+        given = row.get("id")
+        id = invoke_id(given if isinstance(given, str) and given else f"{number}.{state.foreign_id}")
+        for key, family in _ENDS.items():
+            if key in row:
+                waits.setdefault(f"{family}.{id}", []).extend(self.transitions.under(state, (*where, key), row[key]))
+        source = row.get("src")
+        shown = f" of `{source}`" if isinstance(source, str) else ""
+        hint = f"invoke a behaviour as `{id}`" + (", whose end is waited for" if waits else "")
+        self.parts.lost(where, f"`invoke`{shown}: its code is not in the file", hint)
+        if "onSnapshot" in row:
+            self.parts.lost((*where, "onSnapshot"), "`onSnapshot`: nothing is heard of a behaviour before its end")
+
+    def _ends(self, state: XStateNode, where: NodePath, row: Mapping[str, Any]) -> dict[str, Any]:
+        """What follows the end of something that Lumen wrote."""
+        found = {key: self.transitions.under(state, (*where, key), row[key]) for key in _ENDS if key in row}
+        return {key: single(rows) for key, rows in found.items() if rows}
+
+    def _steps(self, row: Mapping[str, Any]) -> list[Any] | None:
+        given = row.get("input")
+        return self.parts.do(given.get("steps")) if row.get("src") == DO_ACTOR and isinstance(given, dict) else None
+
+    def _invoked(self, own: Mapping[str, Any], row: Mapping[str, Any]) -> dict[str, Any] | None:
+        """The behaviour that Lumen wrote as an actor; None where this is another one."""
+        inputs, id, behavior = own.get("invoke"), row.get("id"), row.get("src")
+        if not isinstance(inputs, dict) or id not in inputs or not isinstance(behavior, str):
+            return None
+        data = {"behavior": behavior} | ({"id": id} if id != behavior else {})
+        data |= {"input": inputs[id]} if inputs[id] else {}
+        return data if self.parts.fits({"invoke": data}) else None
+
+    def _rows(self, state: XStateNode) -> Iterator[tuple[int, NodePath, Mapping[str, Any]]]:
+        """Each item of `invoke` with its number and its place; version 4 allows a name alone."""
+        data, where = state.source.get("invoke"), (*state.where, "invoke")
+        rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
+        for number, (place, row) in enumerate(rows):
+            if isinstance(row, dict):
+                yield number, place, row
+            elif isinstance(row, str):
+                yield number, place, {"src": row}
+            elif row is not None:
+                self.parts.lost(place, "this is no invocation")
