@@ -24,6 +24,7 @@ from lumen.rules import (
     traps,
     units,
     unused,
+    ways,
 )
 
 CHECKS: tuple[ModuleType, ...] = (
@@ -40,6 +41,7 @@ CHECKS: tuple[ModuleType, ...] = (
     motions,
     units,
     places,
+    ways,
     guards,
     statecharts,
     dead_ends,

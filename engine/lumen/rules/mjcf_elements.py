@@ -22,12 +22,13 @@ _BOUNDS: Mapping[str, tuple[tuple[tuple[str, ...], float], ...]] = {
 
 
 class ModelElement(NamedTuple):
-    """The beginning of an XML element, and where it stands."""
+    """The beginning of an XML element, and where it stands; the outermost one has the depth 0."""
 
     name: str
     attributes: Mapping[str, str]
     line: int
     column: int
+    depth: int = 0
 
 
 class ModelFault(NamedTuple):
@@ -72,7 +73,7 @@ class _Reader:
 
     def _begin(self, name: str, attributes: Mapping[str, str]) -> None:
         here = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1
-        self.elements.append(ModelElement(name, attributes, *here))
+        self.elements.append(ModelElement(name, attributes, *here, self._depth))
         self._depth += 1
         if self._depth > MAX_ELEMENT_DEPTH:
             self._stop(len(name) + 1, f"the model is nested deeper than {MAX_ELEMENT_DEPTH} levels", "use fewer levels")

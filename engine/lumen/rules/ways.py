@@ -1,0 +1,120 @@
+"""Ways through the hall: places where the robot can't stand, and straight ways through what is solid."""
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from typing import NamedTuple
+
+from lumen.language.commands import GoTo
+from lumen.language.diagnostics import WARNING, Code, NodePath
+from lumen.language.machines import MachineDefinition, State, StateKind
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
+from lumen.rules.walk import nested
+
+BLOCKED_PLACE = Code("blocked-place", "robot", WARNING, "a place is in something solid of the hall, or too near it")
+BLOCKED_WAY = Code("blocked-way", "robot", WARNING, "the straight way from one place to the next is not free")
+
+ROOM_TO_STAND, ROOM_TO_PASS = 0.4, 0.2
+"""How far it has to be to what is solid, from where the robot stands: nearer it does not set out; and where it passes,
+with its arms [m].
+"""
+
+START = ""
+"""Stands for where the robot starts, which has no name."""
+
+
+class PlacedWalk(NamedTuple):
+    """A walk to a place, and where it is written."""
+
+    to: str
+    where: NodePath
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report places and ways that are not free in the hall of the project."""
+    if draft.settings is None or draft.main is None or not draft.settings.places:
+        return
+    file = f"models/{draft.settings.hall}"
+    content = draft.files.get(file) or draft.lent.get(file)
+    solid = obstacles(content) if content else ()
+    places = {name: GroundPoint(place.x, place.y) for name, place in draft.settings.places.items()}
+    shut = set()
+    for name, point in places.items():
+        room = nearest(solid, point, point)
+        if room < ROOM_TO_STAND:
+            shut.add(name)
+            what = "inside of something solid" if not room else f"{room:.2f} m from something solid"
+            hint = f"put it {ROOM_TO_STAND:g} m away at least: nearer the robot does not set out"
+            draft.main(BLOCKED_PLACE, ("places", name), f"`{name}` is {what} in {draft.settings.hall}", hint, key=True)
+    for behavior, machine in draft.behaviors.items():
+        _ways(draft, behavior, machine, {START: GroundPoint(0.0, 0.0), **places}, solid, shut)
+
+
+def _ways(
+    draft: ProjectDraft,
+    behavior: str,
+    machine: MachineDefinition,
+    points: Mapping[str, GroundPoint],
+    solid: tuple[Obstacle, ...],
+    shut: set[str],
+) -> None:
+    told = set()
+    for before, walk in sorted(_followers(machine), key=lambda pair: (str(pair[1].where), pair[0])):
+        pair = frozenset((before, walk.to))
+        if before == walk.to or pair in told or walk.to not in points or before not in points or pair & shut:
+            continue
+        room = nearest(solid, points[before], points[walk.to])
+        if room < ROOM_TO_PASS:
+            told.add(pair)
+            begin = f"`{before}`" if before else "where the robot starts"
+            how = "leads through" if not room else f"passes {room:.2f} m from"
+            hint = "put a place beside it, and walk there first: the robot walks straight from place to place"
+            message = f"the straight way from {begin} to `{walk.to}` {how} something solid in the hall"
+            draft.report("behaviors", behavior)(BLOCKED_WAY, (*walk.where, "walk", "to"), message, hint)
+
+
+def _followers(machine: MachineDefinition) -> set[tuple[str, PlacedWalk]]:
+    """Each place, or the start, with each walk that may be the next one after it.
+
+    What guards forbid is not seen; a walk whose place is computed leads anywhere, and nothing is said of what follows.
+    """
+    walks = {path: _walks(state) for path, state in machine.states.items()}
+    found: set[tuple[str, PlacedWalk]] = set()
+    for path, rows in walks.items():
+        found |= {(a.to, b) for a, b in pairwise(rows)}
+        if rows:
+            found |= {(rows[-1].to, walk) for walk in _next(machine, walks, _left_for(machine, path))}
+    return found | {(START, walk) for walk in _next(machine, walks, [""])}
+
+
+def _next(machine: MachineDefinition, walks: Mapping[str, list[PlacedWalk]], begin: list[str]) -> Iterator[PlacedWalk]:
+    """The first walks that can come when these states are entered."""
+    waiting, seen = list(begin), set()
+    while waiting:
+        path = waiting.pop()
+        if path in seen:
+            continue
+        seen.add(path)
+        state = machine.states[path]
+        if walks[path]:
+            yield walks[path][0]
+            continue
+        waiting += state.children if state.kind is StateKind.PARALLEL else state.initial
+        waiting += _left_for(machine, path)
+
+
+def _left_for(machine: MachineDefinition, path: str) -> list[str]:
+    """The states that the transitions of a state, and of those around it, lead to."""
+    found: list[str] = []
+    at: str | None = path
+    while at is not None:
+        state = machine.states[at]
+        found += [target for transition in state.transitions for target in transition.targets]
+        at = state.parent
+    return found
+
+
+def _walks(state: State) -> list[PlacedWalk]:
+    """The walks of a state to places, in the order in which they are written."""
+    rows = [step for block in (state.entry, state.do) for step in nested(block)]
+    return [PlacedWalk(step.action.to, step.where) for step in rows if isinstance(step.action, GoTo)]
