@@ -9,6 +9,7 @@ import lumen
 from lumen.fuzzy import Controller
 from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
 from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, HEDGES, S_NORMS, T_NORMS, TERM_PARAMETERS
+from tests.fuzzy.test_signals import FILES
 
 FUZZY = Path("docs/fuzzy.md").read_text()
 ERRATUM = Path("docs/erratum.md").read_text()
@@ -20,9 +21,10 @@ def test_every_word_of_the_language_is_there() -> None:
     assert set(FORMULA_FUNCTIONS) <= set(re.findall(r"\w+", FUZZY))
 
 
-def test_the_example_is_the_shipped_controller() -> None:
-    (example,) = re.findall(r"```yaml\n(.*?)```", FUZZY, re.DOTALL)
-    assert example in Path("fuzzy/head.yaml").read_text()
+def test_the_examples_are_the_shipped_controller_and_a_tested_one() -> None:
+    head, loudness = re.findall(r"```yaml\n(.*?)```", FUZZY, re.DOTALL)
+    assert head in Path("fuzzy/head.yaml").read_text()
+    assert loudness in FILES["fuzzy/loudness.yaml"]
 
 
 @pytest.mark.parametrize(("output", "name"), [("AngleX", "FaceXLoc"), ("AngleY", "FaceYLoc")])

@@ -15,6 +15,7 @@ from typing import Any
 from lumen.errors import LumenError
 from lumen.interpreters.joint_history import JointAngles, JointHistory
 from lumen.interpreters.limits import coupled_range
+from lumen.interpreters.message_numbers import number, number_at
 from lumen.interpreters.visual_servo import VisualServo
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
@@ -72,8 +73,8 @@ class Tracker:
         It is no pose where one of `joints` is missing, where something is no number, or where it lies in the future:
         more than `MAX_CLOCK_LEAD` after `now`.
         """
-        measured = _number(time)
-        turned = {joint: angle for joint in self.joints if (angle := _number(angles.get(joint))) is not None}
+        measured = number(time)
+        turned = {joint: angle for joint in self.joints if (angle := number(angles.get(joint))) is not None}
         if measured is None or measured > now + MAX_CLOCK_LEAD or len(turned) < len(self.joints):
             return
         self._poses.add(measured, turned)
@@ -87,7 +88,7 @@ class Tracker:
         the sight is stale, older than the one before, from the future (`MAX_CLOCK_LEAD`), lacks a field, comes before
         the first pose, or fires no rule of an output without default.
         """
-        captured = _number(captured_at)
+        captured = number(captured_at)
         if captured is None or captured > now + MAX_CLOCK_LEAD or captured < self._seen or not self._poses:
             return None
         if self._poses.last - captured > self.controller.tracking.stale or not self._take(fields, route):
@@ -163,21 +164,7 @@ class Tracker:
         """Read the inputs' fields; true where every input has a value by now."""
         for binding in self.controller.input_bindings:
             if route in (None, binding.route):
-                value: Any = fields
-                for step in binding.path:
-                    value = value.get(step) if isinstance(value, Mapping) else None
-                if (number := _number(value)) is None:
+                if (value := number_at(fields, binding.path)) is None:
                     return False
-                self._inputs[binding.variable] = number
+                self._inputs[binding.variable] = value
         return self._inputs.keys() == self.controller.inputs.keys()
-
-
-def _number(value: object) -> float | None:
-    """A finite number from somebody's message; None for anything else, and for an integer beyond all floats."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    try:
-        number = float(value)
-    except OverflowError:
-        return None
-    return number if isfinite(number) else None

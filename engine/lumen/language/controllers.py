@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from lumen.language.diagnostics import NodePath
 
@@ -206,13 +207,79 @@ class OutputBinding:
 
 
 @dataclass(frozen=True, slots=True)
+class ContextInput:
+    """An input that is a number of the behaviour's context."""
+
+    variable: str
+    key: str
+    where: NodePath = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class VolumeBinding:
+    """An output that is how loud the robot speaks, from 0 to 1; told anew when it has changed by `step`."""
+
+    variable: str
+    step: float
+    where: NodePath = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class MessageBinding:
+    """An output that is a field of a message on `route`, beside what `body` says, sent when it has changed by `step`.
+
+    Outputs that are fields of the same route make one message.
+    """
+
+    variable: str
+    route: str
+    path: tuple[str, ...]
+    step: float
+    body: Mapping[str, Any] = field(default_factory=dict)
+    where: NodePath = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class ContextBinding:
+    """An output that the context's `key` becomes when it has changed by `step`."""
+
+    variable: str
+    key: str
+    step: float
+    where: NodePath = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class ThresholdBinding:
+    """An output that raises `event` once as it goes beyond `threshold`, upwards if `rising`, else downwards.
+
+    It can be raised again after the output has come back by `hysteresis`.
+    """
+
+    variable: str
+    event: str
+    threshold: float
+    rising: bool
+    hysteresis: float
+    where: NodePath = field(default=(), compare=False)
+
+
+SignalBinding = VolumeBinding | MessageBinding | ContextBinding | ThresholdBinding
+"""What an output does that moves no joint."""
+
+CONTROLLER_EVENT = "controller."
+"""How the event begins, followed by the controller's name, by which a behaviour's context becomes what one says."""
+
+
+@dataclass(frozen=True, slots=True)
 class TrackingSettings:
     """How joints follow what is seen, and what they do when it is lost.
 
     For `hold` [s] they stay; for `search` [s] they swing by `sweep` [rad] to either side, once in `period` [s]; then
     they go to `ahead` [rad]. `speed` is the fraction of the joints' greatest. A sight older than `stale` [s] does not
     count. For each sight the controller is asked `looks` times, each time about the image as the head would see it
-    after the turn before, and at most `zoom` times magnified.
+    after the turn before, and at most `zoom` times magnified. What moves no joint is worked out once in `every` [s] at
+    most.
     """
 
     speed: float = 0.3
@@ -222,6 +289,7 @@ class TrackingSettings:
     search: float = 8.0
     period: float = 4.0
     stale: float = 1.0
+    every: float = 0.2
     sweep: Mapping[str, float] = field(default_factory=dict)
     ahead: Mapping[str, float] = field(default_factory=dict)
 
@@ -238,6 +306,8 @@ class ControllerDefinition:
     output_bindings: tuple[OutputBinding, ...] = ()
     tracking: TrackingSettings = TrackingSettings()
     angle: float = 1.0
+    context_inputs: tuple[ContextInput, ...] = ()
+    signals: tuple[SignalBinding, ...] = ()
 
     @property
     def rules(self) -> tuple[Rule, ...]:

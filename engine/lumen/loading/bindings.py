@@ -1,19 +1,18 @@
-"""What the variables of a fuzzy controller are bound to: fields of messages, and joints."""
+"""What the variables of a fuzzy controller are bound to: fields of messages, the context, joints, and signals."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lumen.language.controllers import InputBinding, OutputBinding, Variable
+from lumen.language.controllers import ContextInput, InputBinding, OutputBinding, SignalBinding, Variable
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import EMPTY_RANGE
 from lumen.loading.rulebook import UNKNOWN_VARIABLE
+from lumen.loading.signal_bindings import build_signal
 from lumen.loading.units import ANGLES
 
-UNBOUND_INPUT = Code(
-    "unbound-input", "controllers", ERROR, "an input of a bound controller has no message field to come from"
-)
-UNBOUND_OUTPUT = Code("unbound-output", "controllers", WARNING, "an output of a bound controller moves no joint")
+UNBOUND_INPUT = Code("unbound-input", "controllers", ERROR, "an input of a bound controller has nothing to come from")
+UNBOUND_OUTPUT = Code("unbound-output", "controllers", WARNING, "an output of a bound controller does nothing")
 
 
 class Bindings:
@@ -24,25 +23,45 @@ class Bindings:
     ) -> None:
         self.data, self.report, self.usable, self.angle = data, report, outputs, angle
         bind = data.get("bind") or {}
-        self.fields: Mapping[str, str] = bind.get("inputs") or {}
-        self.joints: Mapping[str, Mapping[str, Any]] = bind.get("outputs") or {}
+        self.sources: Mapping[str, str | Mapping[str, str]] = bind.get("inputs") or {}
+        self.targets: Mapping[str, str | Mapping[str, Any]] = bind.get("outputs") or {}
 
     def inputs(self) -> Iterator[InputBinding]:
-        """Each bound input with its route and field."""
+        """Each input that comes from a message, with its route and field."""
         message, hint = "gets its value from nowhere", "route.field"
-        self.all_bound("inputs", self.fields, UNBOUND_INPUT, message, hint)
-        for name, field in self.fields.items():
-            if self.known("inputs", name):
-                route, *path = field.split(".")
+        self.all_bound("inputs", self.sources, UNBOUND_INPUT, message, hint)
+        for name, source in self.sources.items():
+            if self.known("inputs", name) and isinstance(source, str):
+                route, *path = source.split(".")
                 yield InputBinding(name, route, tuple(path), ("bind", "inputs", name))
 
+    def context_inputs(self) -> Iterator[ContextInput]:
+        """Each input that comes from the context; that moves no joint, for who moves joints knows no context."""
+        joint = next((name for name, spec in self.targets.items() if isinstance(spec, Mapping) and "joint" in spec), "")
+        for name, source in self.sources.items():
+            if name not in self.data["inputs"] or not isinstance(source, Mapping):
+                continue
+            path: NodePath = ("bind", "inputs", name)
+            if joint:
+                message = (
+                    f"`{name}` comes from the context, and `{joint}` moves a joint: joints are moved by messages only"
+                )
+                self.report(UNBOUND_INPUT, path, message, hint="give what moves no joint a controller of its own")
+            yield ContextInput(name, source["context"], path)
+
     def outputs(self) -> Iterator[OutputBinding]:
-        """Each bound output with its joint."""
-        message, hint = "moves nothing", "{joint: HeadYaw, gain: 1.5}"
-        self.all_bound("outputs", self.joints, UNBOUND_OUTPUT, message, hint)
-        for name, spec in self.joints.items():
-            if self.known("outputs", name) and name in self.usable and "joint" in spec:
+        """Each output that moves a joint."""
+        message, hint = "does nothing", "{joint: HeadYaw, gain: 1.5}"
+        self.all_bound("outputs", self.targets, UNBOUND_OUTPUT, message, hint)
+        for name, spec in self.targets.items():
+            if self.known("outputs", name) and name in self.usable and isinstance(spec, Mapping) and "joint" in spec:
                 yield from self.output(self.usable[name], spec)
+
+    def signals(self) -> Iterator[SignalBinding]:
+        """Each output that does something else."""
+        for name, spec in self.targets.items():
+            if name in self.usable and (signal := build_signal(self.usable[name], spec, ("bind", "outputs", name))):
+                yield signal
 
     def output(self, variable: Variable, spec: Mapping[str, Any]) -> Iterator[OutputBinding]:
         path: NodePath = ("bind", "outputs", variable.name)

@@ -34,6 +34,8 @@ def build_controller(data: Any, report: DocumentReport, *, name: str) -> Control
         output_bindings=tuple(bindings.outputs()),
         tracking=_tracking(data.get("track") or {}, report, angle),
         angle=angle,
+        context_inputs=tuple(bindings.context_inputs()),
+        signals=tuple(bindings.signals()),
     )
 
 
@@ -45,7 +47,7 @@ def _endless(path: NodePath) -> bool:
 def _tracking(data: Mapping[str, Any], report: DocumentReport, angle: float) -> TrackingSettings:
     """The file's times in [s] and angles in [rad], and the defaults of those that it leaves out."""
     said: dict[str, Any] = {key: data[key] for key in ("speed", "looks", "zoom") if key in data}
-    times = {key: seconds(data.get(key)) for key in ("hold", "search", "period", "stale")}
+    times = {key: seconds(data.get(key)) for key in ("hold", "search", "period", "stale", "every")}
     for key in ("period", "stale"):
         if times[key] == 0:
             message = f"`{key}` has to be longer than nothing"

@@ -127,7 +127,13 @@ _VALUES: Mapping[str, Table] = {
         ("schema",): NameKind.MESSAGE,
         ("event",): NameKind.EVENT,
     },
-    "controller": {("bind", "inputs", "*"): NameKind.FIELD, ("joint",): NameKind.JOINT},
+    "controller": {
+        ("bind", "inputs", "*"): NameKind.FIELD,
+        ("bind", "outputs", "*"): NameKind.FIELD,
+        ("message",): NameKind.FIELD,
+        ("joint",): NameKind.JOINT,
+        ("event",): NameKind.EVENT,
+    },
     "motion": {
         ("start",): NameKind.POSTURE,
         ("end",): NameKind.POSTURE,

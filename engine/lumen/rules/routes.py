@@ -104,13 +104,19 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
     if has_errors(draft.diagnostics):
         return
     for behavior, machine in draft.behaviors.items():
-        tracks = any(isinstance(site.step.action, Track) for site in action_sites(machine))
+        tracks = any(_moves_joints(draft, site.step.action) for site in action_sites(machine))
         waits = any(d != "*" and hears(d, HEARD) for d in descriptors(machine))
         for name, needed, what in ((JOINT, tracks, "uses `track`"), (HEARD, waits, "waits for `heard`")):
             if needed and name not in routes and name not in report.lost:
                 message = f"`{behavior}` {what}, and there is no route `{name}`: {MEANINGS[name]}"
                 hint, cause = f"write a row `{name}:`", f"name {name}"
                 report(MISSING_ROUTE, ("routes",), message, hint, key=True, cause=cause)
+
+
+def _moves_joints(draft: ProjectDraft, action: object) -> bool:
+    """Whether an action switches a controller that moves joints."""
+    controller = draft.controllers.get(action.controller) if isinstance(action, Track) else None
+    return isinstance(action, Track) and not (controller and controller.signals and not controller.output_bindings)
 
 
 def _ways(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 from lumen.interpreters.expressions import expression_findings
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
+from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath, has_errors, nearest
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect
@@ -57,7 +58,7 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
     said = _said(report)
     everywhere = f"{said}\n" + "\n".join(_texts(report.document.data.get("answers", {})))
     if not _WHOLE.search(everywhere):
-        _context(machine, report, {a or b for a, b in _FIELD.findall(everywhere)} | _expected(draft, name))
+        _context(machine, report, {a or b for a, b in _FIELD.findall(everywhere)} | _looked_at(draft, name))
     own = {part: {key for key in getattr(machine, part) if (part, key) not in machine.borrowed} for part in _ASKED}
     _unasked(report, own, set(_NAME.findall(said)), _states_of(report))
     waited = set(descriptors(machine))
@@ -112,17 +113,18 @@ def _states_of(report: DocumentReport) -> str:
     return f"the states of {report.document.file}"
 
 
-def _expected(draft: ProjectDraft, name: str) -> set[str]:
-    """The context keys that stories look at."""
+def _looked_at(draft: ProjectDraft, name: str) -> set[str]:
+    """The context keys that stories and controllers look at."""
     main = draft.settings.behavior if draft.settings else ""
     stories = [story for story in draft.stories.values() if (story.behavior or main) == name]
-    return {
+    expected = {
         key
         for story in stories
         for step in story.steps
         if isinstance(step.action, Expect)
         for key in step.action.context
     }
+    return expected | {source.key for controller in draft.controllers.values() for source in controller.context_inputs}
 
 
 def _files(draft: ProjectDraft) -> None:
@@ -145,9 +147,14 @@ def _files(draft: ProjectDraft) -> None:
     }
     for folder, (what, names, wanted, hint) in used.items():
         for name in names if wanted.intersection(names) else ():  # where none is used, they are about to be
-            if name not in wanted and (folder != "fuzzy" or draft.controllers[name].output_bindings):
+            if name not in wanted and (folder != "fuzzy" or _bound(draft.controllers[name])):
                 message = f"nothing uses the {what} `{name}`"
                 draft.say(UNUSED_FILE, f"{folder}/{name}.yaml", message, hint)
+
+
+def _bound(controller: ControllerDefinition) -> bool:
+    """Whether a controller does something by itself, for who lets it `track`."""
+    return bool(controller.output_bindings or controller.signals)
 
 
 def _played(data: Any) -> set[str]:

@@ -54,7 +54,7 @@ class DelegatedTracking:
         elif track.controller in self._project.controllers:
             self._on[track.controller] = None
         if self._helper:
-            self._ask({"track": track.controller, "on": track.on})
+            self._delegate(track)
         else:
             self._own.switch(track)
 
@@ -66,7 +66,7 @@ class DelegatedTracking:
             for name in self._on:
                 self._own.switch(Track(name, not helper))
                 if helper:
-                    self._ask({"track": name, "on": True})
+                    self._delegate(Track(name))
         time = self._time()
         if not helper and time is not None:
             self._own.tick(time)
@@ -84,6 +84,12 @@ class DelegatedTracking:
         if not self._able() or self._project.motions.get(name) is not command.motion:
             return False
         return self._ask({"id": id, "play": name, "bundle": self._project.hash})
+
+    def _delegate(self, track: Track) -> None:
+        """Have the motion module switch a controller, where that one moves joints."""
+        found = self._project.controllers.get(track.controller)
+        if not track.on or (found and found.output_bindings):
+            self._ask({"track": track.controller, "on": track.on})
 
     def _ask(self, body: dict[str, Any]) -> bool:
         try:

@@ -13,6 +13,7 @@ from lumen.ports import Bus, Clock, Robot
 from lumen.runtime.cues import MotionCues
 from lumen.runtime.inbox import Inbox
 from lumen.runtime.performer import Performer
+from lumen.runtime.regulation import Regulation
 from lumen.runtime.resuming import Resumption
 from lumen.runtime.runtime import Rescue, Runtime
 from lumen.runtime.tracking import LocalTracking, TrackingService
@@ -55,7 +56,8 @@ class BehaviorLoop:
         self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
         self.inbox = Inbox(bus)
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
-        self.performer = Performer(robot, bus, self.tracking.switch)
+        self.regulation = Regulation(project, bus)
+        self.performer = Performer(robot, bus, self._track)
         self._cues = MotionCues()
         self._events: list[Event] = []
         self._last = clock.now()
@@ -80,7 +82,7 @@ class BehaviorLoop:
         self.inbox.listen(self.project)
         self.runtime.apply(self.project, resumption.snapshot)
         for name in resumption.tracking:
-            self.tracking.switch(Track(name))
+            self._track(Track(name))
         self._perform(resumption.commands, self._last)
         if resumption.away > BRAIN_LOST_AFTER:
             self._lose(resumption.away)
@@ -100,6 +102,7 @@ class BehaviorLoop:
         self._last = now
         try:
             self.tracking.tick(now)
+            self._regulate(now)
         except Exception as error:
             self._recover(error, now)
         self._perform(self.runtime.tick(now, self._gather(now)), now)
@@ -124,17 +127,29 @@ class BehaviorLoop:
         try:
             self.inbox.listen(project)
             self.tracking.reload(project)
+            self.regulation.reload(project)
             self.runtime.apply(project, plan.snapshot)
             self.performer.navigator.renew()
         except Exception:
             self.inbox.listen(old)
             self.tracking.reload(old)
+            self.regulation.reload(old)
             raise
 
     def perform(self, plan: MigrationPlan, old: Project) -> None:
         """Do what a plan asks for that has been switched to: what is left is left by the old bundle."""
         self._perform(plan.leaving, self._last, old)
         self._perform(plan.entering, self._last)
+
+    def _track(self, track: Track) -> None:
+        """Switch a controller on or off: what moves joints where that is done, the rest here."""
+        self.tracking.switch(track)
+        self.regulation.switch(track)
+
+    def _regulate(self, now: float) -> None:
+        commands, events = self.regulation.tick(now, self.runtime.snapshot)
+        self._events += events
+        self._perform(commands, now)
 
     def _stepped(self, step: Step) -> None:
         for observer in self.observers:

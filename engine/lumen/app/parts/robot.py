@@ -23,8 +23,8 @@ class RobotPart(Part, Observer):
 
     What comes from elsewhere is told by `foreign`. It watches the brain's loop: what the robot says and answers is on
     the bus, too. Where nobody shares the bus a tick waits until its readings are published, so that a run is the same
-    each time; else it waits for nobody. A `silent` one publishes only those senses that the behaviour hears of as
-    events.
+    each time; else it waits for nobody. A `silent` one publishes only those senses that the behaviour hears of, as
+    events or by controllers.
     """
 
     name = ROBOT_PART
@@ -86,7 +86,16 @@ class RobotPart(Part, Observer):
         """The project with the routes of the senses that are published."""
         if not self._silent:
             return project
-        routes = {name: route for name, route in project.routes.items() if name not in set(Sense) or route.event}
+        read = {
+            binding.route
+            for controller in project.controllers.values()
+            for binding in (controller.input_bindings if controller.signals else ())
+        }
+        routes = {
+            name: route
+            for name, route in project.routes.items()
+            if name not in set(Sense) or route.event or name in read
+        }
         return replace(project, routes=routes)
 
     def _look(self, now: float) -> None:

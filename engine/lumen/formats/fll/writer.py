@@ -50,7 +50,7 @@ class _FllWriter:
     def lines(self) -> Iterator[str]:
         controller = self.controller
         yield f"Engine: {_UNFIT.sub('_', controller.name)}"
-        if controller.input_bindings or controller.output_bindings:
+        if controller.input_bindings or controller.context_inputs or controller.output_bindings or controller.signals:
             message = "what the controller is bound to is left out"
             self.report.changed(message, ("bind",), "FuzzyLite is handed numbers and returns them")
         for variable in controller.inputs.values():

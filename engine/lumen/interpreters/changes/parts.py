@@ -62,11 +62,15 @@ def _controller(old: ControllerDefinition, new: ControllerDefinition) -> Iterato
     yield from _variables(old, new, title)
     if [block.operators for block in old.blocks] != [block.operators for block in new.blocks]:
         yield f"{title} combines its rules otherwise"
-    if (old.input_bindings, old.output_bindings) != (new.input_bindings, new.output_bindings):
+    if _bound(old) != _bound(new):
         yield f"{title} is bound otherwise"
     if old.tracking != new.tracking:
         fields = [f for f in type(new.tracking).__slots__ if getattr(old.tracking, f) != getattr(new.tracking, f)]
         yield f"{title} tracks otherwise: {names(fields)}"
+
+
+def _bound(controller: ControllerDefinition) -> tuple[object, ...]:
+    return controller.input_bindings, controller.context_inputs, controller.output_bindings, controller.signals
 
 
 def _variables(old: ControllerDefinition, new: ControllerDefinition, title: str) -> Iterator[str]:

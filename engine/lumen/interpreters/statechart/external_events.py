@@ -1,10 +1,16 @@
 """What a machine hears from outside, sorted: timers that have ended, the robot's answers, and everything else."""
 
+from collections.abc import Mapping
+
+from lumen.interpreters.message_numbers import number
+from lumen.interpreters.statechart.action_context import ActionError
 from lumen.interpreters.statechart.command_ids import CommandAnswer, answer_of, inner_id
 from lumen.interpreters.statechart.execution_context import ExecutionContext
 from lumen.interpreters.statechart.macrostep import complete
 from lumen.interpreters.statechart.microstep import take_enabled
+from lumen.interpreters.statechart.type_checks import fits
 from lumen.interpreters.statechart.values import Step, Timer, awaited
+from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import Event
 
 
@@ -19,9 +25,26 @@ def process(context: ExecutionContext, event: Event) -> Step:
     elif ".command." in event.name and (answer := answer_of(event)):
         _answer(context, event, answer)
     else:
+        if event.name.startswith(CONTROLLER_EVENT):
+            _become(context, event)
         context.unforwarded = event if context.invocations.children else None
         take_enabled(context, context.configuration.candidates(event.name))
     return complete(context)
+
+
+def _become(context: ExecutionContext, event: Event) -> None:
+    """What a controller says becomes the context's, before anybody hears of it; keys of others are theirs.
+
+    A number that does not fit comes as the integer nearest to it, where that fits; else its key stays as it was.
+    """
+    for key, value in event.data.items() if isinstance(event.data, Mapping) else ():
+        if key not in context.machine.chart.definition.context or number(value) is None:
+            continue
+        check = context.machine.chart.checks.get(key)
+        try:
+            context.assign(key, value if fits(value, check) else round(value))
+        except ActionError as error:
+            context.raise_error(str(error), ("context", key))
 
 
 def _end_timer(context: ExecutionContext, event: Event) -> None:

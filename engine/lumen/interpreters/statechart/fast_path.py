@@ -18,6 +18,7 @@ from lumen.interpreters.statechart.referenced_names import assigned_sources, ref
 from lumen.interpreters.statechart.type_checks import TypeCheck
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.actions import Assign
+from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, LEFT, Event
 from lumen.language.machines import State, Transition
 from lumen.language.nanoseconds import nanoseconds
@@ -136,9 +137,9 @@ class FastPaths:
     def _find(self, names: frozenset[str], name: str) -> FastPath | None:
         """The path of an event in a configuration; kept, but for the robot's answers: each has a name of its own.
 
-        What says where the robot is changes more than the states.
+        What says where the robot is, or what a controller makes of the context, changes more than the states.
         """
-        if ".command." in name or name in (ARRIVED, LEFT):
+        if ".command." in name or name in (ARRIVED, LEFT) or name.startswith(CONTROLLER_EVENT):
             return None
         make_room(self.paths)
         paths = self.paths.setdefault(name, {})

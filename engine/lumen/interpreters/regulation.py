@@ -1,0 +1,178 @@
+"""What a controller says beside the joints that it moves: a volume, messages, the context, events.
+
+An output is told when it is known first, and again when it has changed by its binding's step since it was told last
+(send-on-delta sampling: Miskowicz, Sensors 2006). So a visitor who stands still sends nothing.
+"""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import groupby
+from math import floor, inf, log10
+from typing import Any, NamedTuple
+
+from lumen.errors import LumenError
+from lumen.interpreters.inference import Evaluator
+from lumen.interpreters.message_numbers import number, number_at
+from lumen.language.commands import Publish
+from lumen.language.controllers import (
+    CONTROLLER_EVENT,
+    ContextBinding,
+    ContextInput,
+    ControllerDefinition,
+    InputBinding,
+    MessageBinding,
+    SignalBinding,
+    ThresholdBinding,
+    VolumeBinding,
+)
+from lumen.language.events import Event
+
+MessageField = tuple[str, ...]
+"""A route and a field of its messages, step by step."""
+
+
+class Signals(NamedTuple):
+    """What is to be told now: the volume, messages, and events for the behaviour."""
+
+    volume: float | None = None
+    messages: tuple[Publish, ...] = ()
+    events: tuple[Event, ...] = ()
+
+
+NOTHING = Signals()
+
+ROUNDING = 1e-9
+"""By how much sums of floats that mean the same may differ."""
+
+
+class Regulator:
+    """A controller that is on, as far as it moves no joint. It reads no clock and tells nobody; times are in [s].
+
+    Give it messages (`take`) and the contexts of the behaviour and of those it has invoked (`know`); ask it what is to
+    be told (`signals`). Fields of messages that are in `whole` are rounded to integers.
+    """
+
+    def __init__(self, controller: ControllerDefinition, whole: Collection[MessageField] = ()) -> None:
+        self.controller = controller
+        self.routes = frozenset(binding.route for binding in controller.input_bindings)
+        self._whole = whole
+        self._evaluator = Evaluator(controller)
+        self._inputs: dict[str, float] = {}
+        self._outputs: dict[str, float] = {}
+        self._told: dict[str, float] = {}
+        self._beyond: set[str] = set()
+        self._changed, self._told_at = False, -inf
+
+    def succeed(self, before: "Regulator") -> None:
+        """Go on where another version stood: with the inputs it knew, and what it told of the same bindings."""
+        mine, theirs = _sources(self.controller), _sources(before.controller)
+        same = {name for name in mine if mine[name] == theirs.get(name)}
+        self._inputs = {name: value for name, value in before._inputs.items() if name in same}
+        kept = {signal.variable for signal in self.controller.signals if signal in before.controller.signals}
+        self._told = {name: value for name, value in before._told.items() if name in kept}
+        self._beyond = {name for name in before._beyond if name in kept}
+        self._changed = True
+
+    def take(self, route: str, body: object) -> None:
+        """A message: the inputs that come from it change; what is no number there changes nothing."""
+        for binding in self.controller.input_bindings:
+            if binding.route == route:
+                self._set(binding.variable, number_at(body, binding.path))
+
+    def know(self, contexts: Sequence[Mapping[str, Any]]) -> None:
+        """What the behaviour's context holds now, or else those of behaviours that it has invoked."""
+        for source in self.controller.context_inputs:
+            found = next((context[source.key] for context in contexts if source.key in context), None)
+            self._set(source.variable, number(found))
+
+    def signals(self, now: float) -> Signals:
+        """What has to be told now; nothing where too little changed, an input is missing, or no rule gives a value."""
+        if not self._changed or now - self._told_at < self.controller.tracking.every - ROUNDING:
+            return NOTHING
+        if self._inputs.keys() != self.controller.inputs.keys():
+            return NOTHING
+        self._changed, self._told_at = False, now
+        try:
+            self._outputs = self._evaluator.evaluate(self._inputs, self._outputs)
+        except LumenError:
+            return NOTHING
+        changed = [signal for signal in self.controller.signals if self._news(signal)]
+        volume = next((self._told[s.variable] for s in changed if isinstance(s, VolumeBinding)), None)
+        return Signals(volume, tuple(self._messages(changed)), tuple(self._events(changed, now)))
+
+    def _set(self, variable: str, value: float | None) -> None:
+        if value is not None and self._inputs.get(variable) != value:
+            self._inputs[variable] = value
+            self._changed = True
+
+    def _news(self, signal: SignalBinding) -> bool:
+        """Whether a signal has to be told; it counts as told then."""
+        value = self._outputs[signal.variable]
+        if isinstance(signal, ThresholdBinding):
+            return self._crossed(signal, value)
+        if isinstance(signal, VolumeBinding):
+            value = min(max(value, 0.0), 1.0)
+        before = self._told.get(signal.variable)
+        if before is not None and (value == before or abs(value - before) < signal.step):
+            return False
+        self._told[signal.variable] = _rounded(value, signal.step)
+        return True
+
+    def _crossed(self, signal: ThresholdBinding, value: float) -> bool:
+        """Whether the output has gone beyond the threshold, for the first time since it was back."""
+        way = 1.0 if signal.rising else -1.0
+        beyond = way * (value - signal.threshold)
+        if signal.variable in self._beyond:
+            if beyond <= -signal.hysteresis:
+                self._beyond.remove(signal.variable)
+            return False
+        if beyond > ROUNDING:
+            self._beyond.add(signal.variable)
+        return beyond > ROUNDING
+
+    def _messages(self, changed: Sequence[SignalBinding]) -> Iterator[Publish]:
+        """A message for each route of which a field has changed, with all fields that are bound."""
+        routes = {signal.route for signal in changed if isinstance(signal, MessageBinding)}
+        bound = [s for s in self.controller.signals if isinstance(s, MessageBinding) and s.route in routes]
+        for route, fields in groupby(sorted(bound, key=lambda s: s.route), key=lambda s: s.route):
+            body: dict[str, Any] = {}
+            for signal in fields:
+                value = self._told[signal.variable]
+                whole = (route, *signal.path) in self._whole
+                body = _merged(_merged(body, signal.body), _at(signal.path, round(value) if whole else value))
+            yield Publish(route, body)
+
+    def _events(self, changed: Sequence[SignalBinding], now: float) -> Iterator[Event]:
+        given = {s.key: self._told[s.variable] for s in changed if isinstance(s, ContextBinding)}
+        if given:
+            yield Event(f"{CONTROLLER_EVENT}{self.controller.name}", given, now)
+        for signal in changed:
+            if isinstance(signal, ThresholdBinding):
+                yield Event(signal.event, {"value": self._outputs[signal.variable]}, now)
+
+
+def _sources(controller: ControllerDefinition) -> dict[str, InputBinding | ContextInput]:
+    """Where each input comes from."""
+    found: dict[str, InputBinding | ContextInput] = {b.variable: b for b in controller.input_bindings}
+    return {**found, **{source.variable: source for source in controller.context_inputs}}
+
+
+def _rounded(value: float, step: float) -> float:
+    """The value to a tenth of its step or finer: more digits than anybody asked for help nobody."""
+    return round(value, 1 - floor(log10(step))) if step > 0.0 else value
+
+
+def _at(path: Sequence[str], value: Any) -> dict[str, Any]:
+    """A body with that value in that field."""
+    for step in reversed(path):
+        value = {step: value}
+    found: dict[str, Any] = value
+    return found
+
+
+def _merged(one: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, Any]:
+    """A body with the fields of both; where they meet the other's counts."""
+    both = {**one, **other}
+    for key in one.keys() & other.keys():
+        if isinstance(one[key], Mapping) and isinstance(other[key], Mapping):
+            both[key] = _merged(one[key], other[key])
+    return both

@@ -1,0 +1,121 @@
+"""Controllers that are on, as far as they move no joint: fed by messages and the context, they speak for themselves."""
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from lumen.interpreters.regulation import MessageField, Regulator
+from lumen.interpreters.statechart import Snapshot
+from lumen.language.commands import Command, Start, Track, Volume
+from lumen.language.controllers import MessageBinding
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.ports import Bus, Message
+from lumen.runtime.tracking import MAX_WAITING_MESSAGES
+
+
+class Regulated(NamedTuple):
+    """What controllers ask for: commands to perform, events to happen."""
+
+    commands: tuple[Command, ...]
+    events: tuple[Event, ...]
+
+
+class Regulation:
+    """Switches regulators on and off, and lets them hear the bus and the behaviour's context.
+
+    It is where the behaviour is, in one process or several: what a controller changes of a context is an event, which
+    is taken, observed and kept as every other.
+    """
+
+    def __init__(self, project: Project, bus: Bus) -> None:
+        self._bus = bus
+        self._waiting: deque[tuple[str, Message]] = deque(maxlen=MAX_WAITING_MESSAGES)
+        self._on: dict[str, Regulator] = {}
+        self._undo: dict[tuple[str, str], Callable[[], None]] = {}
+        self._project = project
+        self._volumes = 0
+        self.reload(project)
+
+    def reload(self, project: Project) -> None:
+        """Go on with another bundle: a controller that is on and has changed goes on with what it knew and told."""
+        self._project = project
+        for name, before in list(self._on.items()):
+            controller = project.controllers.get(name)
+            if controller is None or not controller.signals:
+                del self._on[name]
+            elif controller != before.controller:
+                self._on[name] = Regulator(controller, whole_fields(project))
+                self._on[name].succeed(before)
+        self._listen()
+
+    def switch(self, track: Track) -> None:
+        """Switch a controller on or off; one that is on already goes on, one that only moves joints is not for us."""
+        if not track.on:
+            self._on.pop(track.controller, None)
+        elif track.controller not in self._on:
+            controller = self._project.controllers.get(track.controller)
+            if controller and controller.signals:
+                self._on[track.controller] = Regulator(controller, whole_fields(self._project))
+        self._listen()
+
+    def tick(self, now: float, snapshot: Snapshot) -> Regulated:
+        """Take what has come in; what is to be told at `now` [s]."""
+        while self._waiting:
+            route, message = self._waiting.popleft()
+            for regulator in self._on.values():
+                regulator.take(route, message.body)
+        commands: list[Command] = []
+        events: list[Event] = []
+        contexts = tuple(_contexts(snapshot)) if self._on else ()
+        for regulator in self._on.values():
+            regulator.know(contexts)
+            volume, messages, raised = regulator.signals(now)
+            if volume is not None:
+                self._volumes += 1
+                commands.append(Start(f"volume{self._volumes}", Volume(volume)))
+            commands += messages
+            events += raised
+        return Regulated(tuple(commands), tuple(events))
+
+    def _listen(self) -> None:
+        """Subscribe to the routes of the controllers that are on, and to no others."""
+        names = {name for regulator in self._on.values() for name in regulator.routes}
+        routes = {name: route for name in names if (route := self._project.routes.get(name))}
+        wanted = {(route.key_for(self._project.robot), name) for name, route in routes.items()}
+        for key, name in sorted(wanted - self._undo.keys()):
+            self._undo[key, name] = self._bus.subscribe(key, self._receiver(name))
+        for gone in sorted(self._undo.keys() - wanted):
+            self._undo.pop(gone)()
+
+    def _receiver(self, route: str) -> Callable[[Message], None]:
+        return lambda message: self._waiting.append((route, message))
+
+
+def whole_fields(project: Project) -> frozenset[MessageField]:
+    """The fields to which controllers of the project are bound that hold integers only, by their messages' schemas."""
+    bound = {
+        (signal.route, *signal.path)
+        for controller in project.controllers.values()
+        for signal in controller.signals
+        if isinstance(signal, MessageBinding)
+    }
+    return frozenset(field for field in bound if _schema(project, field).get("type") == "integer")
+
+
+def _schema(project: Project, field: MessageField) -> Mapping[str, Any]:
+    """What the schema of its messages says of a field, nothing where it says nothing."""
+    route, *path = field
+    row = project.routes.get(route)
+    schema: Any = project.messages.get(row.schema) if row else None
+    for step in path:
+        fields = schema.get("properties") if isinstance(schema, Mapping) else None
+        schema = fields.get(step) if isinstance(fields, Mapping) else None
+    return schema if isinstance(schema, Mapping) else {}
+
+
+def _contexts(snapshot: Snapshot) -> Iterator[Mapping[str, Any]]:
+    """The context of a behaviour, then those of the behaviours that it has invoked."""
+    yield snapshot.context
+    for child in snapshot.invoked.values():
+        yield from _contexts(child.snapshot)
