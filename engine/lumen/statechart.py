@@ -79,12 +79,15 @@ class Interpreter:
         input: Mapping[str, Any] | None = None,
         language: str = "",
         epoch: float = 0.0,
+        timezone: str = "",
         seed: int = 0,
         observe: Callable[[Step], None] = lambda _: None,
     ) -> None:
         self.machine = machine
         self.clock = VirtualClock() if clock is None else clock
-        self._options: dict[str, Any] = {"input": input, "language": language, "epoch": epoch, "seed": seed}
+        self._options: dict[str, Any] = {
+            "input": input, "language": language, "epoch": epoch, "timezone": timezone, "seed": seed,
+        }  # fmt: skip
         self._observe = observe
         self._snapshot: Snapshot | None = None
         if isinstance(self.clock, VirtualClock):

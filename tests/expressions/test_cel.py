@@ -65,10 +65,12 @@ DIFFERENT: dict[str, list[tuple[str, object, object]]] = {
         ("[1, 2].map(x, x + 1)", ERROR, [2, 3]),
         ("1 // one", ERROR, 1),
     ],
-    "`after`, `words`, `heard`, `lookup`, `hour`, `In`": [
+    "`after`, `words`, `heard`, `lookup`, `In`, `now`, `hour`, `minute`, `date`, `weekday`": [
         ("after('my name is Ada', 'name is')", "Ada", ERROR),
         ("words('Hi, you')", ["Hi", "you"], ERROR),
-        ("hour()", 0, ERROR),
+        ("now()", "00:00", ERROR),
+        ("hour() + minute()", 0, ERROR),
+        ("date() + weekday()", "1970-01-01thu", ERROR),
         ("In('a')", False, ERROR),
     ],
 }

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from lumen.interpreters.migration import MigrationPlan
-from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart import Snapshot, Step
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.rules import check_files
@@ -30,7 +30,7 @@ def test_a_trace_replays_across_reloads_to_the_same_steps(copy: Path, monkeypatc
         trace.append(("reload", live.show.loop.clock.now(), project.hash))
         apply(project, planned)
 
-    first, epoch = live.show.loop.project, live.show.loop.runtime.snapshot.epoch
+    first, began = live.show.loop.project, live.show.loop.runtime.snapshot
     steps: list[Step] = []
     observe = runtime._observe
     monkeypatch.setattr(runtime, "_observe", lambda step: (steps.append(step), observe(step)))
@@ -48,10 +48,10 @@ def test_a_trace_replays_across_reloads_to_the_same_steps(copy: Path, monkeypatc
     assert keeper
     journaled = [entry["after"] for entry in live.records.journal.entries() if entry["verdict"] == "applied"]
     assert [what for kind, _, what in trace if kind == "reload"] == journaled
-    assert _replayed(first, epoch, trace, live, journaled) == [step.snapshot for step in steps]
+    assert _replayed(first, began, trace, live, journaled) == [step.snapshot for step in steps]
 
 
-def _replayed(first: Project, epoch: float, trace: Any, live: Live, hashes: list[str]) -> list[Any]:
+def _replayed(first: Project, began: Snapshot, trace: Any, live: Live, hashes: list[str]) -> list[Any]:
     """The snapshots of all steps when everything happens again, from the files that were kept."""
     assert live.records.keeper
     bundles = {}
@@ -61,7 +61,7 @@ def _replayed(first: Project, epoch: float, trace: Any, live: Live, hashes: list
         bundles[hash] = check_files(live.folder, files)[0]
     again: list[Any] = []
     runtime = Runtime(first, lambda step: again.append(step.snapshot))
-    runtime.start(0.0, epoch=epoch)
+    runtime.start(0.0, epoch=began.epoch, timezone=began.timezone)
     again.clear()
     for kind, now, what in trace:
         if kind == "tick":

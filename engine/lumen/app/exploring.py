@@ -8,13 +8,13 @@ from typing import Any
 
 import yaml
 
-from lumen.app.live_behavior import MORNING, time_of_day
 from lumen.interpreters.exploration import Exploration, ExplorationFinding, PathStep, StimulusKind, explore
 from lumen.language.diagnostics import Place
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.runtime.coverage import Gap, described
+from lumen.runtime.story_time import story_epoch
 from lumen.runtime.visitor import SPEECH_ROUTE
 
 HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
@@ -56,7 +56,8 @@ def explored(
         "bound": bound,
         "home": home,
         "language": project.languages[0],
-        "epoch": time_of_day(MORNING),
+        "epoch": story_epoch(None, project.timezone),
+        "timezone": project.timezone,
     }
     found = explore(machine, outside(project, machine), progress=tell or (lambda *_: None), **options)
     findings = tuple(

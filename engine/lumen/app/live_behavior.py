@@ -1,8 +1,9 @@
 """A behaviour that runs, and goes on with another bundle where that is asked for."""
 
+import time
 from collections.abc import Callable
-from datetime import datetime
 
+from lumen.app.local_timezone import local_timezone
 from lumen.app.setup import Setup
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.language.people import PersonName
@@ -11,10 +12,9 @@ from lumen.language.stories import Story
 from lumen.ports import Bus
 from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.story import staged
+from lumen.runtime.story_time import story_epoch
 from lumen.runtime.trace_publisher import TracePublisher
-
-MORNING = "10:00"
-"""The time of day at which a story begins that does not say."""
+from lumen.runtime.wall_clock_watch import WallClockWatch
 
 
 class LiveBehavior:
@@ -28,8 +28,10 @@ class LiveBehavior:
     def __init__(
         self, project: Project, setup: Setup, bus: Bus, story: Story | None = None, *, published: bool = True
     ) -> None:
-        self._story = story
+        self._story, self._local_timezone = story, "" if story else local_timezone()
         self.loop = BehaviorLoop(staged(project, story), setup.robot, bus, setup.clock, setup.tracking)
+        real = story is None and getattr(setup.clock, "speed", None) == 1.0
+        self.loop.wall_clock = WallClockWatch(self._timezone, real=real)
         self.trace = TracePublisher(bus, lambda: self.loop.project, setup.clock.now)
         self.adopt: Callable[[Project], None] = lambda _: None
         if published:
@@ -43,9 +45,12 @@ class LiveBehavior:
     def start(self, language: str = "") -> None:
         """Enter the initial states."""
         story = self._story
+        timezone = self._timezone()
+        began = story_epoch(story, timezone) if story else time.time()
         self.loop.start(
             language=language or (story.language if story else ""),
-            epoch=time_of_day((story.clock or MORNING) if story else ""),
+            epoch=began - self.loop.clock.now(),
+            timezone=timezone,
             context=story.context if story else None,
         )
 
@@ -81,11 +86,6 @@ class LiveBehavior:
             self.adopt(old)
             raise
 
-
-def time_of_day(clock: str = "") -> float:
-    """`09:30`, or now on this machine's clock, in [s] since midnight."""
-    if clock:
-        hours, minutes = clock.split(":")
-        return int(hours) * 3600.0 + int(minutes) * 60.0
-    now = datetime.now()
-    return now.hour * 3600.0 + now.minute * 60.0 + now.second
+    def _timezone(self) -> str:
+        """The project's; where it names none this machine's, and for a story, which is the same everywhere, UTC."""
+        return self.project.timezone or ("" if self._story else self._local_timezone)

@@ -4,6 +4,7 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
+from math import ceil, inf
 
 from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals
 from lumen.app.garbage import GcScheduler
@@ -14,6 +15,7 @@ from lumen.buses.validated import ValidatedBus
 from lumen.clocks.following import FollowingClock
 from lumen.errors import UsageError
 from lumen.language.events import Event
+from lumen.language.nanoseconds import to_the_nanosecond
 from lumen.language.projects import Project
 from lumen.ports import Clock
 from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
@@ -33,7 +35,8 @@ class Node:
     With a `presence` it is one of several processes, or a whole exhibition that others on the same bus can see: it
     begins when it has claimed what it is. `speed` is that of its time; those of the others have to be the same.
     What is in `before` is called at each tick with its time [s], before the parts; what is in `closing` when it ends.
-    `paced` is called where it begins and ends to keep less than real time, with how much.
+    With `leaps` it passes over ticks in which nothing happens. `paced` is called where it begins and ends to keep less
+    than real time, with how much.
     """
 
     def __init__(
@@ -51,6 +54,7 @@ class Node:
         self.parts: list[Part] = []
         self.before: list[Callable[[float], None]] = []
         self.closing: list[Callable[[], None]] = []
+        self.leaps = False
         self.claimed: Callable[[], None] = lambda: None
         self.now, self._asked = clock.now(), time.monotonic()
         self._begun: list[Part] = []
@@ -118,6 +122,8 @@ class Node:
 
     def tick(self) -> float:
         """Wait for the next tick and live through it; its time [s]."""
+        if self.leaps:
+            self._leap()
         self._clock.wait(self.now + TICK_PERIOD)
         self.now = self._clock.now()
         changes: list[Event] = self.presence.tick() if self.presence else []
@@ -136,6 +142,21 @@ class Node:
         self._keep_pace()
         self._heed()
         return self.now
+
+    def _leap(self) -> None:
+        """Pass over the ticks before the next in which something happens, where all parts know when that is."""
+        until = inf
+        for part in self._begun:
+            until = min(until, part.quiet_until(self.now))
+            if until < self.now + 2 * TICK_PERIOD:
+                return
+        if until < inf:
+            self.now = to_the_nanosecond(
+                self.now + (ceil((until - self.now) / TICK_PERIOD - ROUNDING) - 1) * TICK_PERIOD
+            )
+            self._clock.wait(self.now)
+            for part in self._begun:
+                part.leap(self.now)
 
     def use(self, project: Project, but: Part | None = None) -> None:
         """Let the bus and all parts go by another bundle, but the one that has it already."""

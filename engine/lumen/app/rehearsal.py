@@ -66,15 +66,16 @@ def rehearse(
     """Play the story to its end, or to its failure; `chosen` is another robot than the recording one.
 
     The recording robot keeps its head still: joints and pictures, which no behaviour hears of, are not on its bus.
-    `observers` watch, `hooks` are called at each tick with its time [s]. A behaviour that never comes to rest fails the
-    story, as does whatever else the engine logs as an error; its warnings stand in the trace, which begins where the
-    story does with `whole`.
+    `observers` watch, `hooks` are called at each tick with its time [s]; ticks in which nothing happens are passed
+    over. A behaviour that never comes to rest fails the story, as does whatever else the engine logs as an error; its
+    warnings stand in the trace, which begins where the story does with `whole`.
     """
     setup = chosen or set_up("recording", project, "max", story)
     trace = RehearsalTrace(setup.clock.now, lambda: node.project.machine, None if whole else REMEMBERED)
     node = WholeNode(project, setup, validated(MemoryBus(), project), story, trace, silent=chosen is None)
     node.loop.observers += observers
     node.before += hooks
+    node.leaps = chosen is None
     player, now, began = node.player, 0.0, time.perf_counter()
     assert player is not None  # the robot stands in a hall
     try:

@@ -25,7 +25,7 @@ class FollowingClock:
     """
 
     def __init__(self, speed: float = 1.0, monotonic: Callable[[], float] = time.monotonic) -> None:
-        self._speed, self._monotonic = speed, monotonic
+        self.speed, self._monotonic = speed, monotonic
         self._bell = Bell()
         self._rate, self._shown, self._since = speed, 0.0, monotonic()
         self._whose = ""
@@ -35,7 +35,7 @@ class FollowingClock:
     @property
     def realtime(self) -> float:
         """How much of the wanted speed it keeps."""
-        return self._rate / self._speed
+        return self._rate / self.speed
 
     def now(self) -> float:
         return self._shown_at(self._monotonic())
@@ -65,16 +65,16 @@ class FollowingClock:
         """Run by itself where the robot was not heard of for long."""
         if self._heard and self._monotonic() - self._heard[-1][0] > SILENCE:
             self._heard.clear()
-            self._run_at(self._speed)
+            self._run_at(self.speed)
 
     def _pace(self) -> float:
         (first, began), (last, ended) = self._heard[0], self._heard[-1]
-        return (ended - began) / (last - first) if last - first >= MIN_MEASURED else self._speed
+        return (ended - began) / (last - first) if last - first >= MIN_MEASURED else self.speed
 
     def _run_at(self, rate: float) -> None:
         at = self._monotonic()
         self._shown, self._since = self._shown_at(at), at
-        self._rate = min(max(rate, SLOWEST * self._speed), FASTEST * self._speed)
+        self._rate = min(max(rate, SLOWEST * self.speed), FASTEST * self.speed)
 
     def _shown_at(self, at: float) -> float:
         return self._shown + (at - self._since) * self._rate

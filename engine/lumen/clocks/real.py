@@ -14,15 +14,15 @@ class RealClock:
     realtime = 1.0
 
     def __init__(self, now: float = 0.0, speed: float = 1.0) -> None:
-        self._start, self._speed = time.monotonic() - now / speed, speed
+        self._start, self.speed = time.monotonic() - now / speed, speed
         self._bell = Bell()
 
     def now(self) -> float:
-        return (time.monotonic() - self._start) * self._speed
+        return (time.monotonic() - self._start) * self.speed
 
     def hurry(self) -> None:
         """Let the `wait` that is going on return: something can't wait. From any thread."""
         self._bell.ring()
 
     def wait(self, until: float) -> None:
-        self._bell.sleep(max(0.0, (until - self.now()) / self._speed))
+        self._bell.sleep(max(0.0, (until - self.now()) / self.speed))

@@ -24,7 +24,7 @@ class SimulatedClock:
         speed: float | None = None,
         monotonic: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._live, self._speed, self._monotonic = live, speed, monotonic
+        self._live, self.speed, self._monotonic = live, speed, monotonic
         self._meter = PaceMeter(speed or 1.0, monotonic)
         self._bell = Bell()
         self._now = 0.0
@@ -33,7 +33,7 @@ class SimulatedClock:
     @property
     def realtime(self) -> float:
         """How much of the wanted speed it has kept of late; 1 where it may be as fast as it can."""
-        return self._meter.factor if self._speed else 1.0
+        return self._meter.factor if self.speed else 1.0
 
     def now(self) -> float:
         return self._now
@@ -49,8 +49,8 @@ class SimulatedClock:
             return
         self._live(dt)
         self._now = until
-        if self._speed:
-            self._due += dt / self._speed
+        if self.speed:
+            self._due += dt / self.speed
             ahead = self._due - self._monotonic()
             if ahead > 0:
                 self._bell.sleep(ahead)

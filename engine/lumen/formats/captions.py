@@ -12,10 +12,12 @@ def invocation(invoke: Invoke) -> str:
 
 
 def caption(transition: Transition) -> str:
-    """`event [guard]`; an `after` with its time, `onDone` and `onError` as done and error."""
+    """`event [guard]`; an `after` or `at` with its time, `onDone` and `onError` as done and error."""
     event = transition.event
     if transition.delay is not None:
         event = f"after {transition.delay:g} s"
+    elif transition.schedule:
+        event = f"at {transition.schedule.text}"
     elif transition.exact:
         event = "error" if event.startswith("error.") else "done"
     guard = " ".join(transition.guard.source.split()) if transition.guard else ""

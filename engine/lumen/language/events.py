@@ -44,6 +44,12 @@ ARRIVED, LEFT, DOUBTFUL = "arrived", "left", "doubtful"
 more than the place's `within`.
 """
 
+CLOCK_SET = "clock set"
+"""The name and `sendid` of what is told to a behaviour where the clock on the wall was set: no transition hears of it.
+
+Its data is when time 0 was by that clock, `epoch` [s since 1970, in UTC], and the `timezone` where it hangs.
+"""
+
 ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "touched": _object(sensor={"type": "string"}),
     "released": _object(sensor={"type": "string"}),

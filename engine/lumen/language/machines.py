@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from lumen.language.actions import ComputedValue, Expression, PlacedAction
 from lumen.language.diagnostics import NodePath
+from lumen.language.hours import Schedule
 
 
 class StateKind(StrEnum):
@@ -26,10 +27,10 @@ class StateKind(StrEnum):
 class Transition:
     """A candidate: taken on `event` where its guard holds.
 
-    `event` is a descriptor (`heard`, `error.*`, `*`), empty for `always`; `delay` [s] is set for `after`. `targets`
-    are the paths of existing states, empty for a targetless transition. `reenter` is SCXML's `type="external"`.
-    Where `exact`, the event's name has to be the whole descriptor, not begin with it: `onDone` of `talk` has nothing
-    to do with `done.state.talk.ask`.
+    `event` is a descriptor (`heard`, `error.*`, `*`), empty for `always`; `delay` [s] is set for `after`, `schedule`
+    for `at`. `targets` are the paths of existing states, empty for a targetless transition. `reenter` is SCXML's
+    `type="external"`. Where `exact`, the event's name has to be the whole descriptor, not begin with it: `onDone` of
+    `talk` has nothing to do with `done.state.talk.ask`.
     """
 
     source: str
@@ -41,6 +42,12 @@ class Transition:
     delay: float | None = None
     exact: bool = False
     where: NodePath = field(default=(), compare=False)
+    schedule: Schedule | None = None
+
+    @property
+    def timed(self) -> bool:
+        """Whether a timer of its state selects it, and no event's name."""
+        return self.delay is not None or self.schedule is not None
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,10 +30,10 @@ class Stage:
 class Project:
     """Everything the YAML of a project says. `root` is its folder, `hash` of all its files' contents.
 
-    `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has
-    the default first; `messages` maps a message's name to its JSON Schema; `documents`
-    know where in each file what stands. `patience` [s] is how long saved files wait for what is under way; `alerts`
-    are told of what goes wrong; `places` are those of the hall that the robot knows by name.
+    `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has the
+    default first; `messages` maps a message's name to its JSON Schema; `documents` know where in each file what
+    stands. `timezone` is where it is, empty for wherever it runs. `patience` [s] is how long saved files wait for what
+    is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by name.
     """
 
     root: str
@@ -49,6 +49,7 @@ class Project:
     stories: Mapping[str, Story] = field(default_factory=dict)
     messages: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     languages: tuple[str, ...] = ("en",)
+    timezone: str = ""
     story: str = ""
     stage: Stage | None = None
     bus: str = "memory://"

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
+from lumen.language.hours import Schedule
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +69,13 @@ class StoryPause:
 
 
 @dataclass(frozen=True, slots=True)
+class AwaitTime:
+    """`at: "17:59"`: nothing happens until the clock on the wall shows that."""
+
+    schedule: Schedule
+
+
+@dataclass(frozen=True, slots=True)
 class Expect:
     """`expect:`: all of this holds, or comes to hold `within` [s], else the story fails.
 
@@ -87,7 +95,7 @@ class Expect:
     within: float = 30.0
 
 
-VisitorAction = Arrive | Leave | Speak | TouchSensor | Happen | SendMessage | StoryPause | Expect
+VisitorAction = Arrive | Leave | Speak | TouchSensor | Happen | SendMessage | StoryPause | AwaitTime | Expect
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +110,7 @@ class StoryStep:
 class Story:
     """A story, and how the world is while it plays.
 
-    `robot` maps a verb to `fails`, `hangs` or its duration [s]; `clock` is the time of day at its start (`09:30`);
+    `robot` maps a verb to `fails`, `hangs` or its duration [s]; `clock` is the time of day at its start;
     the states in `never` must never be entered.
     """
 
@@ -111,7 +119,7 @@ class Story:
     steps: tuple[StoryStep, ...]
     behavior: str = ""
     language: str = ""
-    clock: str = ""
+    clock: Schedule | None = None
     context: Mapping[str, Any] = field(default_factory=dict)
     robot: Mapping[str, str | float] = field(default_factory=dict)
     never: tuple[str, ...] = ()

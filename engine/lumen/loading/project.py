@@ -98,6 +98,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         stories=found.stories,
         messages=found.messages,
         languages=settings.languages,
+        timezone=settings.timezone,
         story=settings.story,
         stage=settings.stage,
         bus=settings.bus,

@@ -4,9 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
+from zoneinfo import available_timezones
 
+from lumen.errors import UsageError
+from lumen.interpreters.wall_clock import zone
 from lumen.language.alerts import Alerts
-from lumen.language.diagnostics import ERROR, Code
+from lumen.language.diagnostics import ERROR, Code, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
@@ -18,6 +21,7 @@ from lumen.loading.routes import build_routes, duration
 from lumen.loading.units import ANGLES, LENGTHS
 
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the stage does not hold the place where the robot starts")
+UNKNOWN_TIMEZONE = Code("unknown-timezone", "robot", ERROR, "`timezone` names none")
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,7 @@ class Settings:
     behavior: str = ""
     story: str = ""
     languages: tuple[str, ...] = ()
+    timezone: str = ""
     routes: Mapping[str, Route] = field(default_factory=dict)
     stage: Stage | None = None
     bus: str = "memory://"
@@ -53,6 +58,7 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         behavior=data.get("behavior", ""),
         story=data.get("story", ""),
         languages=tuple(data.get("languages", ())),
+        timezone=_timezone(data, report),
         routes=build_routes(data.get("routes", {}), report),
         stage=_stage(data, report),
         bus=data.get("bus", Settings.bus),
@@ -70,6 +76,18 @@ def _module(row: Mapping[str, Any]) -> ModuleSettings:
 def _patience(data: Mapping[str, Any], report: DocumentReport) -> float:
     length = duration(data.get("reload", {}), "patience", report, ("reload",))
     return DEFAULT_PATIENCE if length is None else length
+
+
+def _timezone(data: Mapping[str, Any], report: DocumentReport) -> str:
+    name: str = data.get("timezone", "")
+    try:
+        zone(name)
+    except UsageError:
+        near = nearest(name, sorted(available_timezones()))
+        hint = f"did you mean `{near}`?" if near else "write an IANA name such as `Europe/Berlin`"
+        report(UNKNOWN_TIMEZONE, ("timezone",), f"there is no time zone `{name}`", hint=hint)
+        return ""
+    return name
 
 
 def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:

@@ -5,8 +5,10 @@ from math import isfinite
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
+from lumen.language.hours import Schedule
 from lumen.language.stories import (
     Arrive,
+    AwaitTime,
     Expect,
     Happen,
     Leave,
@@ -22,6 +24,7 @@ from lumen.language.stories import (
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import NOT_A_NUMBER
 from lumen.loading.routes import duration
+from lumen.loading.schedules import BAD_TIME, schedule
 from lumen.loading.units import BAD_DURATION, seconds
 
 DEFAULT_WITHIN = 30.0
@@ -39,7 +42,7 @@ def build_story(data: Any, report: DocumentReport, *, name: str) -> Story | None
         steps=tuple(StoryStep(action, where) for where, row in rows if (action := _action(row, report, where))),
         behavior=data.get("behavior", ""),
         language=data.get("language", ""),
-        clock=data.get("at", ""),
+        clock=_moment(data["at"], report, ("at",)) if "at" in data else None,
         context=data.get("context", {}),
         robot={verb: _performance(how, report, ("robot", verb)) for verb, how in data.get("robot", {}).items()},
         never=tuple(data.get("never", ())),
@@ -73,9 +76,22 @@ def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> 
         case "wait":
             length = duration(row, "wait", report, where)
             return None if length is None else StoryPause(length)
+        case "at":
+            time = _moment(body, report, (*where, verb))
+            return None if time is None else AwaitTime(time)
         case "expect":
             return _expect(body, report, (*where, verb))
     return None
+
+
+def _moment(text: str, report: DocumentReport, where: NodePath) -> Schedule | None:
+    """A time of day, which may name the day; a story begins once."""
+    found = schedule(text, report, where)
+    if found and len(found.times) > 1:
+        hint = "write one of them, and a story for each of the others"
+        report(BAD_TIME, where, f"`{text}` names {len(found.times)} times of day", hint=hint)
+        return None
+    return found
 
 
 def _visitor(body: Any, report: DocumentReport, where: NodePath) -> VisitorAction | None:

@@ -1,15 +1,18 @@
-"""Transitions of a behaviour: `on`, `always`, `after`, `onDone` and `onError`, their targets resolved."""
+"""Transitions of a behaviour: `on`, `always`, `after`, `at`, `onDone` and `onError`, their targets resolved."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath
+from lumen.language.hours import Schedule
 from lumen.language.machines import StateKind, Transition
 from lumen.loading.actions import Actions
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import invoked
 from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.loading.schedules import schedule
 
 CONFLICTING_TARGETS = Code(
     "conflicting-targets", "statecharts", ERROR, "the states of a target can't be active together"
@@ -58,6 +61,8 @@ class TransitionReader:
                 yield from self._candidates(entry, body, where)
             case "after":
                 yield from self._after(entry, body, where)
+            case "at":
+                yield from self._at(entry, body, where)
             case "invoke":
                 for place, id, row in invoked(entry):
                     for end, event in (("onDone", f"done.invoke.{id}"), ("onError", f"error.invoke.{id}")):
@@ -76,6 +81,13 @@ class TransitionReader:
                 event = f"after.{text.replace(' ', '')}.{entry.name}"
                 yield from self._candidates(entry, rows, (*where, text), event=event, exact=True, delay=delay)
 
+    def _at(self, entry: OutlinedState, body: Mapping[str, Any], where: NodePath) -> Iterator[Transition]:
+        for text, rows in body.items():
+            found = schedule(text, self.report, (*where, text), key=True)
+            if found is not None:
+                event = f"at.{''.join(found.text.split())}.{entry.name}"
+                yield from self._candidates(entry, rows, (*where, text), event=event, exact=True, schedule=found)
+
     def _candidates(
         self,
         entry: OutlinedState,
@@ -85,12 +97,11 @@ class TransitionReader:
         event: str = "",
         exact: bool = False,
         delay: float | None = None,
+        schedule: Schedule | None = None,
     ) -> Iterator[Transition]:
         for place, row in _rows(body, where):
             if found := self._one(entry, row, place, event):
-                yield Transition(
-                    entry.path, event, found.targets, found.guard, found.actions, found.reenter, delay, exact, place
-                )
+                yield replace(found, delay=delay, schedule=schedule, exact=exact, where=place)
 
     def _one(self, entry: OutlinedState, row: Any, where: NodePath, event: str) -> Transition | None:
         if isinstance(row, str):

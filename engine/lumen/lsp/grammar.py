@@ -79,6 +79,7 @@ _VALUES: Mapping[str, Table] = {
     "behavior": {
         ("on", "*"): NameKind.STATE,
         ("after", "*"): NameKind.STATE,
+        ("at", "*"): NameKind.STATE,
         ("assign", "*"): NameKind.EXPRESSION,
         ("input", "*"): NameKind.EXPRESSION,
         ("say", "*"): NameKind.TEMPLATE,

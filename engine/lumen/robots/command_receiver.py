@@ -106,6 +106,11 @@ class CommandReceiver:
         for id in begun_before.before:
             self._reports.remember(CommandRecord(Message("", None), id, state=FAILED, reason=RESTARTED))
 
+    @property
+    def waiting(self) -> bool:
+        """Whether something has come that is not begun."""
+        return bool(self._came or self._aims)
+
     def begin(self) -> None:
         """Start what has come, and report what the robot has begun.
 

@@ -113,6 +113,11 @@ class RecordingRobot:
     def begun(self) -> Sequence[str]:
         return self._executor.begun()
 
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is under way, and nobody before it."""
+        return not (self._executor.busy or self._noticed or self._visitor)
+
     def advance(self, dt: float) -> None:
         """Let `dt` [s] pass."""
         self.time += dt

@@ -86,6 +86,11 @@ class RobotServer:
         """What became of the readings of each sense."""
         return {sense: self._broadcasts[sense].count for sense in Sense if sense in self._broadcasts}
 
+    @property
+    def busy(self) -> bool:
+        """Whether it has readings to publish, or commands to begin."""
+        return bool(self._routes) or self._orders.waiting
+
     def sample(self, now: float) -> None:
         """Read the senses that are due at `now` [s] and hand them on; begin the commands that have come."""
         for sense, route in self._routes.items():

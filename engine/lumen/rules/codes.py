@@ -25,6 +25,7 @@ from lumen.loading import (
     poses,
     project,
     rulebook,
+    schedules,
     settings,
     shapes,
     terms,
@@ -40,8 +41,8 @@ from lumen.rules.checks import CHECKS
 
 LOADERS = (
     actions, behaviors, bindings, bodies, complaints, document, expression_findings, keyframes, known_words,
-    linking, messages, misplaced, numbers, outline, poses, project, rulebook, settings, shapes, terms, transitions,
-    units, variables, yaml_errors, yaml_reader,
+    linking, messages, misplaced, numbers, outline, poses, project, rulebook, schedules, settings, shapes, terms,
+    transitions, units, variables, yaml_errors, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 

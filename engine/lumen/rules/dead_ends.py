@@ -230,10 +230,5 @@ class _Ways:
             source.kind is StateKind.ATOMIC
             or not transition.event
             or transition.event in self.events
-            or (
-                transition.delay is not None
-                or transition.exact
-                or "*" in transition.event
-                or "error" in transition.event
-            )
+            or (transition.timed or transition.exact or "*" in transition.event or "error" in transition.event)
         )

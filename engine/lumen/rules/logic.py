@@ -19,7 +19,7 @@ MAX_ALTERNATIVES = 24
 
 _OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
 _TURNED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
-_COUNTS = {"hour": (0, 23), "size": (0, inf)}
+_COUNTS = {"hour": (0, 23), "minute": (0, 59), "size": (0, inf)}
 """Functions whose values are whole numbers from one bound to the other."""
 
 

@@ -90,6 +90,8 @@ def trigger(transition: Transition) -> str:
     """What a transition waits for, in words."""
     if transition.delay is not None:
         return f"after {transition.delay:g} s"
+    if transition.schedule:
+        return f"at {transition.schedule.text}"
     if transition.exact:
         return "done" if transition.event.startswith("done.") else "failed"
     return f"on `{transition.event}`" if transition.event else "always"

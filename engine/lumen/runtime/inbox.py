@@ -31,6 +31,11 @@ class Inbox:
         for gone in sorted(self._undo.keys() - wanted):
             self._undo.pop(gone)()
 
+    @property
+    def empty(self) -> bool:
+        """Whether nothing has arrived since it was drained."""
+        return not self._waiting
+
     def drain(self, now: float) -> list[Event]:
         """Everything that has arrived, as events at `now` [s]."""
         events = []

@@ -5,7 +5,7 @@ from math import inf
 from typing import Any
 
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
-from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart import Step, due
 from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.projects import Project
@@ -17,6 +17,7 @@ from lumen.runtime.regulation import Regulation
 from lumen.runtime.resuming import Resumption
 from lumen.runtime.runtime import Rescue, Runtime
 from lumen.runtime.tracking import LocalTracking, TrackingService
+from lumen.runtime.wall_clock_watch import WallClockWatch
 
 TICK_PERIOD = 0.02
 BRAIN_LOST_AFTER = 5.0
@@ -44,7 +45,7 @@ class BehaviorLoop:
     performed; `observers` are called. Where ticks stop for `patience` [s] of the clock the behaviour gets the event
     `brain.lost`. Where a tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
     `tracking` lets controllers follow what is seen; without one that is done here. `rests` is whether the behaviour has
-    let the robot rest.
+    let the robot rest. `wall_clock` says where the time of day has become another.
     """
 
     def __init__(
@@ -53,6 +54,7 @@ class BehaviorLoop:
         self.robot, self.bus, self.clock = robot, bus, clock
         self.observers: list[Observer] = []
         self.rescue: Rescue = lambda _: None
+        self.wall_clock: WallClockWatch | None = None
         self.runtime = Runtime(project, self._stepped, lambda error: self.rescue(error))
         self.inbox = Inbox(bus)
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
@@ -69,11 +71,18 @@ class BehaviorLoop:
     def project(self) -> Project:
         return self.runtime.project
 
-    def start(self, *, language: str = "", epoch: float = 0.0, context: Mapping[str, Any] | None = None) -> None:
+    def start(
+        self,
+        *,
+        language: str = "",
+        epoch: float = 0.0,
+        timezone: str = "",
+        context: Mapping[str, Any] | None = None,
+    ) -> None:
         """Listen, and enter the initial states; `context` gives keys of the context other first values."""
         self._last = self.clock.now()
         self.inbox.listen(self.project)
-        first = self.runtime.start(self._last, language=language, epoch=epoch, context=context)
+        first = self.runtime.start(self._last, language=language, epoch=epoch, timezone=timezone, context=context)
         self._perform(first, self._last)
 
     def resume(self, resumption: Resumption) -> None:
@@ -107,6 +116,19 @@ class BehaviorLoop:
             self._recover(error, now)
         self._perform(self.runtime.tick(now, self._gather(now)), now)
         return now
+
+    def quiet_until(self, now: float) -> float:
+        """Until when nothing happens unless something comes from outside [s]; `now` where that is not known."""
+        pending = self._events or self.performer.events or not self.inbox.empty
+        if pending or self.tracking.on or self.performer.navigator.busy:
+            return now
+        event = due(self.runtime.snapshot)
+        return event.at if event else inf
+
+    def leap(self, now: float) -> None:
+        """It is `now` [s] after a time in which nothing happened."""
+        self._last = now
+        self.performer.navigator.leap(now)
 
     def plan(self, project: Project, *, now: bool = False, back: bool = False) -> MigrationVerdict:
         """How another bundle would go on from here, or why it can't; nothing changes."""
@@ -168,6 +190,8 @@ class BehaviorLoop:
             self._perform(self._cues.answered(event, self.project, self.runtime.snapshot.language), now)
         happened, self._events = self._events, []
         heard = [event for event in answers if _ours(event) and not self._known(event, now)]
+        if self.wall_clock and (clock_set := self.wall_clock.tick(self.clock.now(), self.runtime.snapshot)):
+            happened = [clock_set, *happened]
         own = [*heard, *(event._replace(at=now) for event in happened)]
         own.sort(key=lambda event: event.name not in CAUSES)
         return [*own, *self.inbox.drain(now)]

@@ -93,6 +93,16 @@ class Navigator:
             events += self._look_around(project, standing, now)
         return events
 
+    @property
+    def busy(self) -> bool:
+        """Whether it leads the robot anywhere."""
+        return bool(self._ways)
+
+    def leap(self, now: float) -> None:
+        """Look next when it would be time to after `now` [s]."""
+        while self._look <= now:
+            self._look += LOOK_PERIOD
+
     def _way_of(self, event: Event) -> _Way | None:
         _, separator, id = event.name.partition(".command.")
         return next((way for way in self._ways if separator and way.leg and way.leg == id), None)
@@ -160,7 +170,7 @@ class Navigator:
         """
         if now < self._look:
             return
-        self._look = now + LOOK_PERIOD
+        self.leap(now)
         reading = self._robot.read(Sense.JOINT)
         here = reading.position if isinstance(reading, Joints) else None
         if here is None:

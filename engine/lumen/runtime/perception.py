@@ -32,6 +32,11 @@ class FaceDetector:
         self.last: tuple[float, float] | None = None
         self.use(project)
 
+    @property
+    def busy(self) -> bool:
+        """Whether a face is seen, or was and is not yet told."""
+        return bool(self._developing) or self._hall.face() is not None
+
     def use(self, project: Project) -> None:
         """Publish on the route of this project from now on; on none where it has none."""
         self._project = project
@@ -48,6 +53,11 @@ class FaceDetector:
         while self._developing and self._developing[0][0] <= now:
             if reason := send(self._bus, self._project, FACE_ROUTE, self._developing.popleft()[1]):
                 _log.warning("a face could not be published: %s", reason)
+
+    def leap(self, now: float) -> None:
+        """It is `now` [s] after a time in which there was nobody to see."""
+        while self._next <= now:
+            self._next += self._period
 
     def _look(self, now: float) -> None:
         self.last = self._hall.face()

@@ -65,7 +65,7 @@ def anew(project: Project, snapshot: Snapshot, now: float) -> MigrationPlan:
     checks = type_checks(project.machine)
     kept = {key: value for key, value in snapshot.context.items() if key in checks and fits(value, checks[key])}
     language = snapshot.language if snapshot.language in project.languages else project.languages[0]
-    first = initial(project.machine, now, kept, language, epoch=snapshot.epoch)
+    first = initial(project.machine, now, kept, language, epoch=snapshot.epoch, timezone=snapshot.timezone)
     counted = first.snapshot._replace(generator=snapshot.generator)
     leaving = tuple(Cancel(id) for id in _awaited(snapshot))
     return MigrationPlan(counted, leaving, first.commands, entered=first.entered, notes=("the behaviour begins anew",))

@@ -25,7 +25,8 @@ class Runtime:
     Where a step fails, `rescue` may go on with another bundle, under which the event happens again. Without one, the
     event or timer is dropped, and logged: a message that a step can't bear must not end the exhibition.
 
-    `observe` is shown every step in the order taken. `epoch` is the local time of day at time 0 [s since midnight].
+    `observe` is shown every step in the order taken. `epoch` is when time 0 was [s since 1970], `timezone`
+    where the clock on the wall hangs.
     """
 
     def __init__(
@@ -46,11 +47,18 @@ class Runtime:
         return self._snapshot
 
     def start(
-        self, now: float = 0.0, *, language: str = "", epoch: float = 0.0, context: Mapping[str, Any] | None = None
+        self,
+        now: float = 0.0,
+        *,
+        language: str = "",
+        epoch: float = 0.0,
+        timezone: str = "",
+        context: Mapping[str, Any] | None = None,
     ) -> list[Command]:
         """Enter the initial states; the commands to perform. `context` gives keys other first values."""
         language = language or self.project.languages[0]
-        return self._take(initial(self.project.machine, at=now, input=context, language=language, epoch=epoch))
+        machine = self.project.machine
+        return self._take(initial(machine, at=now, input=context, language=language, epoch=epoch, timezone=timezone))
 
     def tick(self, now: float, events: Iterable[Event] = ()) -> list[Command]:
         """Let everything happen that is due until `now` [s], timers and events in the order of their times."""

@@ -6,12 +6,15 @@ from typing import Any, NamedTuple, Protocol, assert_never
 
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
+from lumen.interpreters.wall_clock import MICROSECONDS, next_moment
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
+from lumen.language.hours import Schedule
 from lumen.language.projects import Project
 from lumen.language.stories import (
     Arrive,
+    AwaitTime,
     Expect,
     Happen,
     Leave,
@@ -25,6 +28,7 @@ from lumen.language.stories import (
 from lumen.ports import Bus, Hall
 from lumen.runtime.loop import Observer
 from lumen.runtime.sending import send
+from lumen.runtime.story_time import story_moment
 from lumen.runtime.visitor import VisitorActor
 
 
@@ -142,7 +146,8 @@ class StoryPlayer(Observer):
         self._tell = tell
         self._witness = StoryObservations()
         self._missed: UnmetExpectation | None = None
-        self._since = 0.0
+        self._begun = self._since = 0.0
+        self._awaited: int | None = None
 
     @property
     def failure(self) -> str:
@@ -155,7 +160,7 @@ class StoryPlayer(Observer):
 
     def start(self, now: float) -> None:
         """Its first step begins at `now` [s], where that is not 0."""
-        self._since = now
+        self._begun = self._since = now
 
     def stepped(self, step: Step) -> None:
         self.see(active_names(step.snapshot), entered_names(step), step.snapshot.context, step.snapshot.place)
@@ -187,17 +192,32 @@ class StoryPlayer(Observer):
         """Do every step that can be done by `now` [s]; what is done is heard before anything is expected of it."""
         heard = True
         while heard and not self.finished and self._do(now):
-            heard = isinstance(self.story.steps[self.position].action, StoryPause | Expect)
+            heard = isinstance(self.story.steps[self.position].action, StoryPause | AwaitTime | Expect)
             self.position += 1
-            self._since = now
+            self._since, self._awaited = now, None
+
+    def quiet_until(self, now: float) -> float:
+        """Until when it does nothing [s], unless something happens that it expects."""
+        if self.finished:
+            return now
+        match self.story.steps[self.position].action:
+            case StoryPause(seconds):
+                return self._since + seconds
+            case Expect(within=seconds):
+                return self._since + seconds
+            case AwaitTime() if self._awaited is not None:
+                return now + (self._awaited - self._moment(now)) / MICROSECONDS
+        return now
 
     def _do(self, now: float) -> bool:
         action = self.story.steps[self.position].action
-        if not isinstance(action, StoryPause | Expect):
+        if not isinstance(action, StoryPause | AwaitTime | Expect):
             self._tell(action)
         match action:
             case StoryPause(seconds):
                 return now >= self._since + seconds
+            case AwaitTime(schedule):
+                return self._shows(schedule, now)
             case Expect():
                 return self._expect(action, now)
             case Arrive(visitor):
@@ -216,6 +236,19 @@ class StoryPlayer(Observer):
             case _:
                 assert_never(action)
         return True
+
+    def _shows(self, schedule: Schedule, now: float) -> bool:
+        """Whether the clock on the wall has come to a time of day since the step began."""
+        if self._awaited is None:
+            before = self._moment(self._since) - 1
+            self._awaited = next_moment(schedule, before, self._exhibition.project.timezone)
+        if self._awaited is None:
+            self.fail(UnmetExpectation("", f"it is past `{schedule.text}`, and does not come again"))
+            return False
+        return self._moment(now) >= self._awaited
+
+    def _moment(self, now: float) -> int:
+        return story_moment(self.story, self._exhibition.project.timezone, now - self._begun)
 
     def _expect(self, expected: Expect, now: float) -> bool:
         lacking = self._witness.lacks(expected)

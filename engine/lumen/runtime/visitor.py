@@ -28,6 +28,11 @@ class VisitorActor:
         self._leaving = False
         self._last = 0.0
 
+    @property
+    def walking(self) -> bool:
+        """Whether the visitor is on their way."""
+        return self._goal is not None
+
     def use(self, project: Project) -> None:
         """Speak on the routes of this project from now on."""
         self._project = project

@@ -67,6 +67,12 @@ class BrainPart(Part):
             self.behavior.trace.standing(self.behavior.loop.runtime.snapshot)
         self.behavior.loop.tick(now)
 
+    def quiet_until(self, now: float) -> float:
+        return self.behavior.loop.quiet_until(now)
+
+    def leap(self, now: float) -> None:
+        self.behavior.loop.leap(now)
+
     def interrupt(self) -> bool:
         if self._interrupted:
             return False

@@ -31,6 +31,13 @@ class Part:
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Live until `now` [s]; `changes` tell who of the other processes was lost or came back."""
 
+    def quiet_until(self, now: float) -> float:
+        """Until when nothing happens in it unless something happens elsewhere [s]; `now` where nobody knows."""
+        return now
+
+    def leap(self, now: float) -> None:
+        """It is `now` [s] after a time in which nothing happened."""
+
     def use(self, project: Project) -> None:
         """Go by another bundle from now on."""
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from math import inf
 
 from lumen.app.parts.foreign_commands import ForeignCommands
 from lumen.app.parts.part import Part
@@ -59,6 +60,14 @@ class RobotPart(Part, Observer):
         if self._presence is None:
             self.server.settle()
         self._look(now)
+
+    def quiet_until(self, now: float) -> float:
+        idle = getattr(self.robot, "idle", False) and not self.server.busy and not (self.faces and self.faces.busy)
+        return inf if idle else now
+
+    def leap(self, now: float) -> None:
+        if self.faces:
+            self.faces.leap(now)
 
     def use(self, project: Project) -> None:
         self.server.use(self._sensed(project))

@@ -52,6 +52,9 @@ class VisitorPart(Part):
         if self.player:
             self.player.tick(now)
 
+    def quiet_until(self, now: float) -> float:
+        return self.player.quiet_until(now) if self.player and not self.actor.walking else now
+
     def use(self, project: Project) -> None:
         self.actor.use(project)
 

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from lumen.app.exploring import outside
-from lumen.app.live_behavior import MORNING, time_of_day
 from lumen.interpreters.exploration.search import StateSpaceSearch, leaves
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan, MigrationVerdict, plan
 from lumen.interpreters.statechart import Snapshot
 from lumen.language.projects import Project
+from lumen.runtime.story_time import story_epoch
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,8 @@ class MigrationPreview:
 def preview(old: Project, new: Project, bound: int, tell: Callable[[int, int], None]) -> MigrationPreview:
     """The fate of every configuration of the old behaviour, those of the same states and fate counted together."""
     machine = old.machine
-    language, epoch = old.languages[0], time_of_day(MORNING)
-    search = StateSpaceSearch(machine, outside(old, machine), language=language, epoch=epoch)
+    language, epoch = old.languages[0], story_epoch(None, old.timezone)
+    search = StateSpaceSearch(machine, outside(old, machine), language=language, epoch=epoch, timezone=old.timezone)
     for explored in search.expand(bound):
         tell(explored, search.waiting)
     found: dict[tuple[object, ...], MigrationOutcome] = {}

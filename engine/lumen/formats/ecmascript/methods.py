@@ -20,7 +20,21 @@ SIGN_FUNCTIONS = {"contained": "in", "same": "=="}
 """Calls that stand for a sign where ECMAScript's own is another one for texts and lists, or for lists and numbers."""
 
 LUMEN_FUNCTIONS = frozenset(
-    ("heard", "lookup", "hour", "words", "after", "matches", "contains", "size", *SIGN_FUNCTIONS)
+    (
+        "heard",
+        "lookup",
+        "now",
+        "hour",
+        "minute",
+        "weekday",
+        "date",
+        "words",
+        "after",
+        "matches",
+        "contains",
+        "size",
+        *SIGN_FUNCTIONS,
+    )
 )
 """Functions that only Lumen has, by their own names."""
 

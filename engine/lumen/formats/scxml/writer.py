@@ -161,6 +161,10 @@ class _ScxmlWriter:
 
     def _transitions(self, state: State) -> Iterator[XmlTag]:
         for transition in state.transitions:
+            if transition.schedule:
+                message = f"`at: {transition.schedule.text}` is left out: SCXML knows no time of day"
+                self.report.lost(message, transition.where)
+                continue
             attributes = {"event": self._event(state, transition.event) if transition.exact else transition.event}
             if transition.guard:
                 try:

@@ -56,7 +56,7 @@ class EventDescriptors:
         A more general candidate that comes before a particular one here is repeated among its own, where XState
         would try it later.
         """
-        rows = [t for t in state.transitions if t.event and t.delay is None]
+        rows = [t for t in state.transitions if t.event and not t.timed]
         table: dict[str, list[Transition]] = {}
         for transition in rows:
             table.setdefault(self._named(transition), [])

@@ -127,6 +127,9 @@ class _XStateWriter:
     def _after(self, state: State) -> dict[str, list[Any]]:
         data: dict[str, list[Any]] = {}
         for transition in state.transitions:
+            if transition.schedule:
+                message = f"`at: {transition.schedule.text}` is left out: XState knows no time of day"
+                self.report.lost(message, transition.where)
             if transition.delay is not None:
                 length = round(transition.delay * 1000, 6)
                 key = f"{int(length)}" if length == int(length) else f"{length}"

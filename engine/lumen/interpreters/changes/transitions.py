@@ -84,6 +84,8 @@ def _trigger(transition: Transition) -> str:
     event = transition.event
     if transition.delay is not None:
         return f"after {seconds(transition.delay)}"
+    if transition.schedule:
+        return f"at {transition.schedule.text}"
     if not event:
         return "at once"
     if transition.exact and event.startswith(("done.do.", "done.state.")):

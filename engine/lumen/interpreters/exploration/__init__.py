@@ -46,6 +46,7 @@ def explore(
     home: str = "",
     language: str = "",
     epoch: float = 0.0,
+    timezone: str = "",
     progress: Callable[[int, int], None] = lambda expanded, waiting: None,
 ) -> Exploration:
     """Explore every configuration that can be reached, up to `bound` of them.
@@ -55,7 +56,7 @@ def explore(
     anywhere: nothing is found that depends on it. `progress` is called with how many configurations were explored and
     how many are in sight.
     """
-    search = StateSpaceSearch(machine, events, language=language, epoch=epoch)
+    search = StateSpaceSearch(machine, events, language=language, epoch=epoch, timezone=timezone)
     for expanded in search.expand(bound):
         progress(expanded, search.waiting)
     states = (s for s in machine.states.values() if s.path and s.kind is not machines.StateKind.HISTORY)

@@ -60,7 +60,13 @@ class StateSpaceSearch:
     """
 
     def __init__(
-        self, machine: MachineDefinition, events: Mapping[str, Any], *, language: str = "", epoch: float = 0.0
+        self,
+        machine: MachineDefinition,
+        events: Mapping[str, Any],
+        *,
+        language: str = "",
+        epoch: float = 0.0,
+        timezone: str = "",
     ) -> None:
         self._machine = machine
         self._stimuli = StimulusFinder(machine, events)
@@ -72,7 +78,7 @@ class StateSpaceSearch:
         self.taken: set[NodePath] = set()
         self.entered: set[str] = set()
         self._waiting: list[tuple[int, int, SearchNode]] = []
-        first = initial(machine, language=language, epoch=epoch)
+        first = initial(machine, language=language, epoch=epoch, timezone=timezone)
         self.first = self._reach(first, None, None)
 
     @property

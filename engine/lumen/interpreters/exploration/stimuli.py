@@ -8,6 +8,7 @@ from lumen.errors import ExpressionError
 from lumen.interpreters.exploration.expression_uses import of_transition
 from lumen.interpreters.exploration.samples import samples
 from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, names, unparse
+from lumen.interpreters.expressions.functions import CLOCK_FUNCTIONS
 from lumen.interpreters.expressions.tree import children
 from lumen.interpreters.statechart import Snapshot, Timer
 from lumen.interpreters.statechart.command_ids import outer_id
@@ -124,7 +125,7 @@ def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[
 def _known_of_events(tree: ExpressionNode) -> Iterator[ExpressionNode]:
     """The largest parts of an expression that depend on the event's data and on nothing else but it."""
     speaks = names(tree)
-    alone = not speaks.context and not speaks.functions & {"In", "hour"}
+    alone = not speaks.context and not speaks.functions & {"In", *CLOCK_FUNCTIONS}
     if alone and "event" in unparse(tree):
         yield tree
     elif not alone:

@@ -13,7 +13,7 @@ from lumen.interpreters.expressions.expression_findings import (
     Declarations,
     ExpressionFindings,
 )
-from lumen.interpreters.expressions.functions import FUNCTIONS, Function
+from lumen.interpreters.expressions.functions import CLOCK_FUNCTIONS, FUNCTIONS, Function
 from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal
 from lumen.language.diagnostics import Code, did_you_mean
@@ -24,7 +24,8 @@ _INSTEAD = {
     "endsWith": "matches",
 }  # fmt: skip
 _ARGUMENTS = {
-    "has": "event.data.x", "hour": "", "In": "'state'", "contains": "text, 'part'", "replace": "text, 'old', 'new'",
+    **dict.fromkeys(CLOCK_FUNCTIONS, ""),
+    "has": "event.data.x", "In": "'state'", "contains": "text, 'part'", "replace": "text, 'old', 'new'",
     "after": "text, 'phrase'", "matches": "text, 'pattern'", "heard": "text, 'name'", "lookup": "text, 'table'",
 }  # fmt: skip
 

@@ -1,7 +1,7 @@
 """The functions of the language: what each takes, gives and does."""
 
 from collections.abc import Callable, Iterable
-from math import floor
+from datetime import datetime
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions import phrases
@@ -19,7 +19,9 @@ from lumen.interpreters.expressions.kinds import (
 from lumen.interpreters.expressions.operators import bounded_text, has
 from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
+from lumen.interpreters.wall_clock import local_time, moment
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.hours import WEEKDAYS
 
 KindSet = frozenset[str]
 
@@ -83,9 +85,34 @@ def matches(text: Any, pattern: Any) -> bool:
     return compile_pattern(pattern).search(text[:MAX_TEXT_EXAMINED])
 
 
+def _wall_clock(scope: Scope) -> datetime:
+    """What calendar and clock show at the time of the event."""
+    return local_time(moment(scope.epoch, scope.at), scope.timezone)
+
+
+def now(scope: Scope) -> str:
+    """The time of day, `09:05`: as texts, earlier ones are smaller."""
+    return f"{_wall_clock(scope):%H:%M}"
+
+
 def hour(scope: Scope) -> int:
-    """The local hour of the event, 0 to 23."""
-    return floor((scope.epoch + scope.at) / 3600) % 24
+    """The hour of the day, 0 to 23."""
+    return _wall_clock(scope).hour
+
+
+def minute(scope: Scope) -> int:
+    """The minute of the hour, 0 to 59."""
+    return _wall_clock(scope).minute
+
+
+def weekday(scope: Scope) -> str:
+    """`mon` to `sun`."""
+    return WEEKDAYS[_wall_clock(scope).weekday()]
+
+
+def today(scope: Scope) -> str:
+    """`2026-12-24`: as texts, earlier ones are smaller."""
+    return _wall_clock(scope).date().isoformat()
 
 
 def heard(scope: Scope, text: Any, name: Any) -> bool:
@@ -116,6 +143,15 @@ def active(scope: Scope, state: Any) -> bool:
 
 _TEXT, _BOOLEAN, _NUMBER = frozenset((TEXT,)), frozenset((BOOLEAN,)), frozenset((NUMBER,))
 
+CLOCK_FUNCTIONS: dict[str, Function] = {
+    "now": Function((), _TEXT, now, scoped=True),
+    "hour": Function((), _NUMBER, hour, scoped=True),
+    "minute": Function((), _NUMBER, minute, scoped=True),
+    "weekday": Function((), _TEXT, weekday, scoped=True),
+    "date": Function((), _TEXT, today, scoped=True),
+}
+"""Those that read the clock on the wall."""
+
 FUNCTIONS: dict[str, Function] = {
     "size": Function((frozenset((TEXT, LIST, MAP)),), _NUMBER, size),
     "has": Function((KINDS,), _BOOLEAN, has),
@@ -126,7 +162,7 @@ FUNCTIONS: dict[str, Function] = {
     "after": Function((_TEXT, _TEXT), _TEXT, after),
     "matches": Function((_TEXT, _TEXT), _BOOLEAN, matches),
     "words": Function((_TEXT,), frozenset((LIST,)), words),
-    "hour": Function((), _NUMBER, hour, scoped=True),
+    **CLOCK_FUNCTIONS,
     "heard": Function((_TEXT, _TEXT), _BOOLEAN, heard, scoped=True),
     "lookup": Function((_TEXT, _TEXT), KINDS, lookup, scoped=True),
     "In": Function((_TEXT,), _BOOLEAN, active, scoped=True),

@@ -35,8 +35,9 @@ class Scope(NamedTuple):
     """The values that names and functions stand for; plain JSON data throughout.
 
     `event` is `{"name": …, "data": …}`, or None where no event has arrived; `state` has `path`, `language` and `place`.
-    `configuration` is whether a state is active, for `In()`. `at` [s] is the time of the event, and `epoch` [s] the
-    local time of the clock's zero, counted from any midnight. `language` is the one that `lookup` answers in.
+    `configuration` is whether a state is active, for `In()`. `at` [s] is the time of the event, and `epoch` that of
+    the clock's zero [s since 1970, in UTC], and `timezone` that of `hour()` and its kin. `language` is the one that
+    `lookup` answers in.
     """
 
     context: Mapping[str, Any] = _NOTHING
@@ -48,6 +49,7 @@ class Scope(NamedTuple):
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = _NOTHING
     answers: Mapping[str, tuple[Answer, ...]] = _NOTHING
     epoch: float = 0.0
+    timezone: str = ""
 
 
 ROOTS = ("context", "event", "state")

@@ -6,7 +6,9 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.statechart.chart import Chart, StateNode
+from lumen.interpreters.statechart.execution_context import ExecutionContext
 from lumen.interpreters.statechart.history import History
+from lumen.interpreters.statechart.schedule_timers import schedule_timer
 from lumen.interpreters.statechart.state_sets import EntrySet, StateSets
 from lumen.interpreters.statechart.type_checks import fits, type_name
 from lumen.interpreters.statechart.values import Halted, Timer
@@ -46,8 +48,10 @@ def halted(halted: Mapping[str, Halted], old: Chart, new: Chart) -> dict[str, Ha
     }
 
 
-def timers(timers: tuple[Timer, ...], kept: Mapping[StateNode, StateNode], at: float) -> tuple[Timer, ...]:
-    """The timers that go on, in their order, each with its deadline; what is new in a state's `after` is set.
+def timers(
+    timers: tuple[Timer, ...], kept: Mapping[StateNode, StateNode], context: ExecutionContext
+) -> tuple[Timer, ...]:
+    """The timers that go on, in their order, each with its deadline; what is new in a state's `after` or `at` is set.
 
     Where the delay of an `after` was changed, it counts from when the old one was set.
     """
@@ -63,9 +67,15 @@ def timers(timers: tuple[Timer, ...], kept: Mapping[StateNode, StateNode], at: f
                 due = timer.due_ns if known else timer.due_ns - timer.delay_ns + delay
                 going[place] = Timer(event, due, delay, event, None, image.path, "after")
             elif not known:
-                fresh.append(Timer(event, nanoseconds(at) + delay, delay, event, None, image.path, "after"))
+                fresh.append(Timer(event, nanoseconds(context.at) + delay, delay, event, None, image.path, "after"))
+        awaited = {node.schedules[t.event]: i for i, t in enumerate(timers) if t.kind == "at" and t.state == node.path}
+        for event, schedule in image.schedules.items():
+            if (place := awaited.pop(schedule, None)) is not None:
+                going[place] = timers[place]._replace(id=event, event=event, state=image.path)
+            elif made := schedule_timer(context, image, event):
+                fresh.append(made)
     for i, timer in enumerate(timers):
-        if timer.kind != "after":
+        if timer.kind not in ("after", "at"):
             going[i] = timer._replace(state=images[timer.state].path) if timer.kind == "wait" else timer
     return (*(timer for _, timer in sorted(going.items())), *fresh)
 

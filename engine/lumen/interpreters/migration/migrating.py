@@ -103,7 +103,7 @@ class _Migration:
             context=data,
             at=before.at,
             language=language,
-            timers=carried_state.timers(before.timers, kept, before.at),
+            timers=carried_state.timers(before.timers, kept, before),
             doing={image.path: doing[node.path] for node, image in kept.items() if node.path in doing},
             halted=carried_state.halted(before.activities.halted, self.old.chart, self.new.chart),
             history=carried_state.history(before.history, self.new.chart, situation.identity),
@@ -111,6 +111,7 @@ class _Migration:
             generator=before.generator,
             epoch=before.epoch,
             place=before.place,
+            timezone=before.timezone,
         )
         after = ExecutionContext.of(self.new, snapshot, None, before.at, self.invocations)
         after.internal_queue = before.internal_queue
@@ -135,6 +136,7 @@ class _Migration:
         lent = child.snapshot._replace(
             language=after.language, counters=after.counters, generator=after.generator, epoch=after.epoch,
             place=after.place,
+            timezone=after.timezone,
         )  # fmt: skip
         verdict = migrated(old, new, lent, self.situation.options._replace(at=after.at, languages=()), behavior)
         if isinstance(verdict, MigrationPlan):

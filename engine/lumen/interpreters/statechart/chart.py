@@ -8,6 +8,7 @@ from lumen.interpreters.statechart.blocks import CompiledBlock, compile_block, c
 from lumen.interpreters.statechart.do_actions import CompiledAction, compile_do
 from lumen.interpreters.statechart.type_checks import type_checks
 from lumen.language.diagnostics import NodePath
+from lumen.language.hours import Schedule
 from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
 from lumen.language.nanoseconds import nanoseconds
 
@@ -26,12 +27,12 @@ class CompiledInvoke(NamedTuple):
 class StateNode:
     """A state, with its neighbours at hand; compared by identity. `index` is its place in document order.
 
-    `afters` are the events of its `after`, each with its delay [ns].
+    `afters` are the events of its `after`, each with its delay [ns]; `schedules` those of its `at`.
     """
 
     __slots__ = (
         "afters", "ancestors", "children", "do", "entry", "exit", "histories", "index", "initial", "invokes",
-        "kind", "name", "output", "parent", "path", "state", "transitions", "views",
+        "kind", "name", "output", "parent", "path", "schedules", "state", "transitions", "views",
     )  # fmt: skip
 
     def __init__(self, state: State | None, index: int, parent: "StateNode | None") -> None:
@@ -47,6 +48,7 @@ class StateNode:
         self.initial: tuple[StateNode, ...] = ()
         self.transitions: tuple[CompiledTransition, ...] = ()
         self.afters: tuple[tuple[str, int], ...] = ()
+        self.schedules: Mapping[str, Schedule] = {}
         self.entry: CompiledBlock = compile_block(state.entry) if state else ()
         self.exit: CompiledBlock = compile_block(state.exit) if state else ()
         self.do: tuple[CompiledAction, ...] = compile_do(state.do) if state else ()
@@ -57,7 +59,7 @@ class StateNode:
     @property
     def busy(self) -> bool:
         """Whether it has anything to be started when it is entered, or ended when it is left."""
-        return bool(self.do or self.invokes or self.afters)
+        return bool(self.do or self.invokes or self.afters or self.schedules)
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or 'root'}>"
@@ -97,9 +99,9 @@ class CompiledTransition:
         self.alone = (self,)
 
     def matches(self, name: str) -> bool:
-        """Whether an event of that name selects it (SCXML 3.12.1); `after` is never selected by a name."""
+        """Whether an event of that name selects it (SCXML 3.12.1); `after` and `at` are never selected by a name."""
         event = self.definition.event
-        if self.definition.delay is not None or not event:
+        if self.definition.timed or not event:
             return False
         if self.definition.exact:
             return event == name
@@ -135,6 +137,7 @@ class Chart:
         node.afters = tuple(
             {t.event: nanoseconds(t.delay) for t in node.state.transitions if t.delay is not None}.items()
         )
+        node.schedules = {t.event: t.schedule for t in node.state.transitions if t.schedule}
 
 
 def _invoke(invoke: Invoke) -> CompiledInvoke:

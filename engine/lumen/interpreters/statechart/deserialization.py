@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from lumen.errors import SnapshotError
+from lumen.errors import SnapshotError, UsageError
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.do_actions import (
     AwaitedCommand,
@@ -25,6 +25,7 @@ from lumen.interpreters.statechart.values import (
     Timer,
     Within,
 )
+from lumen.interpreters.wall_clock import zone
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.nanoseconds import nanoseconds
 
@@ -76,7 +77,17 @@ class _SnapshotReader:
             epoch=data["epoch"].number(),
             place=data["place"].text() if "place" in dict(data.items()) else "",
             invoked={id: self.invoked(id, part) for id, part in data["invoked"].items()},
+            timezone=self.timezone(data),
         )
+
+    def timezone(self, data: JsonCursor) -> str:
+        if not (said := [part for key, part in data.items() if key == "timezone"]):
+            return ""
+        try:
+            zone(name := said[0].text())
+        except UsageError as error:
+            raise said[0].refused(str(error)) from None
+        return name
 
     def active(self, path: str) -> bool:
         state = self.machine.states.get(path)
@@ -110,12 +121,14 @@ class _SnapshotReader:
 
     def timer(self, data: JsonCursor) -> Timer:
         kind, state = data["kind"].text(), data["state"].text()
-        if kind not in ("after", "send", "wait"):
-            raise data["kind"].refused("should be `after`, `send` or `wait`")
+        if kind not in ("after", "at", "send", "wait"):
+            raise data["kind"].refused("should be `after`, `at`, `send` or `wait`")
         if kind != "send" and not self.active(state):
             raise data["state"].refused(f"names `{state}`, which is not active")
         due, delay = nanoseconds(data["due"].number()), nanoseconds(data["delay"].number())
         event, content = data["event"].text(), data["data"].plain()
+        if kind == "at" and event not in compiled(self.machine).chart.nodes[state].schedules:
+            raise data["event"].refused(f"is no `at` of `{state}`")
         return Timer(data["id"].text(), due, delay, event, content, state, kind)  # type: ignore[arg-type]  # one of three
 
     def position(self, path: str, data: JsonCursor) -> Within:

@@ -85,6 +85,7 @@ class ExecutionContext:
     counters: Counters
     generator: int
     epoch: float
+    timezone: str
     activities: Activities
     invocations: InvocationHandler
     place: str = ""
@@ -111,11 +112,11 @@ class ExecutionContext:
         invocations: InvocationHandler,
     ) -> Self:
         """The context of a macrostep from that snapshot at `at` [s]; raises KeyError with a state that is unknown."""
-        names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted, place = snapshot
+        names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted, place, zone = snapshot
         start = machine.planner.configuration(names)
         return cls(
             machine, event, event, at, start, start.known, machine.chart.root, data, language, timers, history,
-            counters, generator, epoch, Activities(doing, halted), invocations, place_after(place, event),
+            counters, generator, epoch, zone, Activities(doing, halted), invocations, place_after(place, event),
         )  # fmt: skip
 
     def step(self) -> Step:
@@ -124,7 +125,7 @@ class ExecutionContext:
         after = (
             self.configuration.names, self.data, self.at, self.language, self.timers, self.activities.positions,
             self.history, self.counters, self.generator, self.epoch, self.invocations.children, self.activities.halted,
-            self.place,
+            self.place, self.timezone,
         )  # fmt: skip
         made = (
             self.trigger, self.exited, self.entered, self.commands, _new(Snapshot, after), self.transitions,
@@ -146,7 +147,7 @@ class ExecutionContext:
                 self.event_data = {"name": event.name, "data": event.data}
             seen = (
                 self.data, self.event_data, self.node.view(self.language, self.place), self.is_active, self.at,
-                self.language, definition.phrases, definition.answers, self.epoch,
+                self.language, definition.phrases, definition.answers, self.epoch, self.timezone,
             )  # fmt: skip
             scope = self.cached_scope = _new(Scope, seen)
         return scope

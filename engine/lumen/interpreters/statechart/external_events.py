@@ -8,10 +8,11 @@ from lumen.interpreters.statechart.command_ids import CommandAnswer, answer_of, 
 from lumen.interpreters.statechart.execution_context import ExecutionContext
 from lumen.interpreters.statechart.macrostep import complete
 from lumen.interpreters.statechart.microstep import take_enabled
+from lumen.interpreters.statechart.schedule_timers import schedule_timer, set_clock
 from lumen.interpreters.statechart.type_checks import fits
 from lumen.interpreters.statechart.values import Step, Timer, awaited
 from lumen.language.controllers import CONTROLLER_EVENT
-from lumen.language.events import Event
+from lumen.language.events import CLOCK_SET, Event
 
 
 def process(context: ExecutionContext, event: Event) -> Step:
@@ -51,13 +52,20 @@ def _end_timer(context: ExecutionContext, event: Event) -> None:
     """A timer has ended, its own or an invoked behaviour's; one that is no longer there was cancelled."""
     ended = [t for t in context.timers if t.id == event.sendid and t.event == event.name]
     if not ended:
+        if event.name == event.sendid == CLOCK_SET:
+            set_clock(context, event)
+            return
         id, owner = inner_id(event.sendid)
         if owner in context.invocations.children:
             context.invocations.deliver(context, owner, event._replace(sendid=id))
         return
     timer = min(ended, key=lambda t: t.due_ns)
     context.timers = _without(context.timers, timer)
-    if timer.kind == "after":
+    if timer.kind == "at":
+        node = context.machine.chart.nodes[timer.state]
+        again = schedule_timer(context, node, timer.event, timer)
+        context.timers = (*context.timers, again) if again else context.timers
+    if timer.kind in ("after", "at"):
         take_enabled(context, context.configuration.timed(timer.event))
     elif timer.kind == "send":
         take_enabled(context, context.configuration.candidates(event.name))

@@ -15,6 +15,7 @@ from lumen.interpreters.statechart.blocks import compile_value
 from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
 from lumen.interpreters.statechart.plans import Candidates, Configuration, MicrostepPlan, MicrostepPlanner, make_room
 from lumen.interpreters.statechart.referenced_names import assigned_sources, referenced_names, sources_of
+from lumen.interpreters.statechart.state_changes import StateChange
 from lumen.interpreters.statechart.type_checks import TypeCheck
 from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.actions import Assign
@@ -94,7 +95,7 @@ class FastPaths:
         """The step of this event, None where it is not plain."""
         (
             names, context, before, language, timers, doing, history, counters, generator, epoch, invoked, halted,
-            place,
+            place, zone,
         ) = snapshot  # fmt: skip
         name, data, at, sendid = event
         if sendid or invoked:
@@ -111,7 +112,7 @@ class FastPaths:
         definition = self.definition
         event_data = {"name": name, "data": data} if uses_event else None
         scope = _new(
-            Scope, (context, event_data, None, None, at, language, definition.phrases, definition.answers, epoch)
+            Scope, (context, event_data, None, None, at, language, definition.phrases, definition.answers, epoch, zone)
         )
         try:
             if guard is not None and (guard is _never or not guard(scope)):
@@ -131,6 +132,7 @@ class FastPaths:
             timers = after_timers.at(at, timers)
         after = (
             target, context, at, language, timers, doing, history, counters, generator, epoch, invoked, halted, place,
+            zone,
         )  # fmt: skip
         return _new(Step, (event, exited, entered, (), _new(Snapshot, after), transitions, (), ()))
 
@@ -184,7 +186,7 @@ class FastPaths:
         self, start: Configuration, enabled: tuple[CompiledTransition, ...], guard: CompiledGuard | None = None
     ) -> FastOutcome:
         plan = self.planner.plan(start, tuple(dict.fromkeys(enabled)), {})
-        busy = any(change.node.do or change.node.invokes or change.done for change in (*plan.exits, *plan.entries))
+        busy = any(_is_busy(change) for change in (*plan.exits, *plan.entries))
         left = [step for change in plan.exits for step in _state(change.node).exit]
         entered = [step for change in plan.entries for step in _state(change.node).entry]
         actions = [step.action for step in (*left, *(s for t in plan.transitions for s in t.actions), *entered)]
@@ -224,6 +226,12 @@ def _after_timers(plan: MicrostepPlan) -> AfterTimers | None:
     ended = frozenset(change.node.path for change in plan.exits if change.node.afters)
     begun = tuple((*after, change.node.path) for change in plan.entries for after in change.node.afters)
     return AfterTimers(ended, begun) if ended or begun else None
+
+
+def _is_busy(change: StateChange) -> bool:
+    """Whether more is begun or ended there than `after` timers."""
+    node = change.node
+    return bool(node.do or node.invokes or node.schedules or change.done)
 
 
 def _state(node: StateNode) -> State:

@@ -104,7 +104,7 @@ class Invocations:
         state, before, _ = self.children[id]
         lent = before._replace(
             language=context.language, counters=context.counters, generator=context.generator, epoch=context.epoch,
-            place=place_after(context.place, event),
+            timezone=context.timezone, place=place_after(context.place, event),
         )  # fmt: skip
         return open_context(invoked_machine(context.machine, state, id), lent, event, context.at)
 

@@ -9,6 +9,7 @@ from lumen.interpreters.statechart.blocks import CompiledBlock
 from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
 from lumen.interpreters.statechart.execution_context import Beginning, ExecutionContext
 from lumen.interpreters.statechart.plans import Candidates, MicrostepPlan
+from lumen.interpreters.statechart.schedule_timers import begin_schedules
 from lumen.interpreters.statechart.values import Timer
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
@@ -96,8 +97,8 @@ def _exit(context: ExecutionContext, node: StateNode) -> None:
     if node.path in context.activities.positions:
         context.activities.halt(node, context.at)
         context.activities.cancel(context, node.path)
-    if node.afters:
-        context.timers = tuple(t for t in context.timers if t.kind != "after" or t.state != node.path)
+    if node.afters or node.schedules:
+        context.timers = tuple(t for t in context.timers if t.kind not in ("after", "at") or t.state != node.path)
     if node.invokes:
         context.invocations.cancel(context, node)
 
@@ -114,6 +115,8 @@ def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ..
     for event, delay in node.afters:
         due = nanoseconds(context.at) + delay
         context.timers = (*context.timers, Timer(event, due, delay, event, None, node.path, "after"))
+    if node.schedules:
+        begin_schedules(context, node)
     if node.entry:
         _execute(context, node.entry, node)
     if node.do or node.invokes:

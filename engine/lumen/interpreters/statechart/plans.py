@@ -71,8 +71,8 @@ class Configuration:
         return found
 
     def timed(self, event: str) -> Candidates:
-        """The `after` transitions of that timer."""
-        return self._select(lambda t: t.definition.delay is not None and t.definition.event == event)
+        """The `after` or `at` transitions of that timer."""
+        return self._select(lambda t: t.definition.timed and t.definition.event == event)
 
     def _select(self, wanted: Callable[[CompiledTransition], bool]) -> Candidates:
         groups = (

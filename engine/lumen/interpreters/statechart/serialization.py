@@ -45,6 +45,7 @@ def _data(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
         "generator": snapshot.generator,
         "epoch": snapshot.epoch,
         "place": snapshot.place,
+        "timezone": snapshot.timezone,
         "invoked": {
             id: {
                 "state": child.state,
@@ -63,7 +64,7 @@ def retimed(snapshot: Snapshot, now: float, timing: TimerPolicy) -> Snapshot:
 
     `deadline` leaves every timer its due time: what is past comes at once, at `now`. `remaining` leaves it the time
     that it still had when the snapshot was taken, and `restart` begins its delay anew; in both the clock is another,
-    and the time of day goes on from the snapshot's.
+    and the time of day goes on from the snapshot's. An `at` comes at its time of day.
     """
     match timing:
         case "deadline":
@@ -72,7 +73,11 @@ def retimed(snapshot: Snapshot, now: float, timing: TimerPolicy) -> Snapshot:
             later = nanoseconds(now) - nanoseconds(snapshot.at)
             return _shifted(snapshot, now, now - snapshot.at, lambda timer: timer.due_ns + later)
         case "restart":
-            return _shifted(snapshot, now, now - snapshot.at, lambda timer: nanoseconds(now) + timer.delay_ns)
+            later = nanoseconds(now) - nanoseconds(snapshot.at)
+            return _shifted(
+                snapshot, now, now - snapshot.at,
+                lambda t: t.due_ns + later if t.kind == "at" else nanoseconds(now) + t.delay_ns,
+            )  # fmt: skip
 
 
 def paused(snapshot: Snapshot, away: float) -> Snapshot:

@@ -13,6 +13,7 @@ from lumen.interpreters.statechart.macrostep import enter_machine
 from lumen.interpreters.statechart.microstep import MAX_MICROSTEPS
 from lumen.interpreters.statechart.type_checks import checked
 from lumen.interpreters.statechart.values import Snapshot, Step
+from lumen.interpreters.wall_clock import zone
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import HALF
@@ -25,18 +26,21 @@ def initial(
     language: str = "",
     *,
     epoch: float = 0.0,
+    timezone: str = "",
     seed: int = 0,
 ) -> Step:
     """The first step: the initial states entered at `at` [s].
 
     `input` gives context keys other first values; raises UsageError where there is no such key, or it holds another
-    type. `epoch` is the local time of day at time 0 [s since midnight], `seed` begins the drawing of alternatives.
+    type. `epoch` is when time 0 was [s since 1970, in UTC] and `timezone` where the clock on the wall hangs, an
+    IANA name (else UsageError); `seed` begins the drawing of alternatives.
     """
     if input is not None and not isinstance(input, Mapping):
         raise UsageError(f"the input of `{machine.id}` has to be a map of context keys and values")
     program = compiled(machine)
+    zone(timezone)
     data = {**machine.context, **checked(machine.id, program.chart.checks, input or {})}
-    before = Snapshot(frozenset(), data, at, language, generator=seed % 2**32, epoch=epoch)
+    before = Snapshot(frozenset(), data, at, language, generator=seed % 2**32, epoch=epoch, timezone=timezone)
     return enter_machine(open_context(program, before, None, at))
 
 

@@ -12,7 +12,8 @@ from lumen.language.nanoseconds import in_seconds
 class Timer(NamedTuple):
     """Something that happens at `due_ns` [ns], `delay_ns` [ns] after it was set: whole numbers, which add up exactly.
 
-    An `after` and a `wait` (of a `do`) end with their state, whose path they hold; a `send` ends with `cancel`.
+    An `after`, an `at` and a `wait` (of a `do`) end with their state, whose path they hold; a `send` ends with
+    `cancel`.
     """
 
     id: str
@@ -21,7 +22,7 @@ class Timer(NamedTuple):
     event: str
     data: Any = None
     state: str = ""
-    kind: Literal["after", "send", "wait"] = "send"
+    kind: Literal["after", "at", "send", "wait"] = "send"
 
     @property
     def due(self) -> float:
@@ -98,11 +99,11 @@ class Snapshot(NamedTuple):
 
     `configuration` holds the names of the active states but the root (the alias where there is one, else the path);
     `doing` the position of each active `do` and `history` the paths remembered by each history state, both by path.
-    `at` [s] is the time of the last event, or a later one at which it was taken off a clock; `epoch` the local time of
-    day at time 0 [s since midnight]; `generator` the state from which alternatives of `say` are drawn. `invoked` are
-    the behaviours that run within it, by their ids; its time, language, counters and generator are theirs too. `halted`
-    is where a `do` stood that says how it is resumed, when its state was last left, by path. `place` is where the robot
-    is, by the last `arrived` and `left`, empty where it is at none.
+    `at` [s] is the time of the last event, or a later one at which it was taken off a clock; `epoch` when time 0 was
+    [s since 1970, in UTC], and `timezone` where the clock on the wall hangs; `generator` the state from which
+    alternatives of `say` are drawn. `invoked` are the behaviours that run within it, by their ids; its time, language,
+    counters and generator are theirs too. `halted` is where a `do` stood that says how it is resumed, when its state
+    was last left, by path. `place` is where the robot is, by the last `arrived` and `left`, empty where it is at none.
     Mappings in it are never changed, only replaced.
     """
 
@@ -119,6 +120,7 @@ class Snapshot(NamedTuple):
     invoked: Mapping[str, Invoked] = {}
     halted: Mapping[str, Halted] = {}
     place: str = ""
+    timezone: str = ""
 
 
 class Step(NamedTuple):

@@ -1,0 +1,41 @@
+"""Where this machine's clock hangs."""
+
+import os
+from datetime import datetime
+from pathlib import Path
+
+from lumen.errors import UsageError
+from lumen.interpreters.wall_clock import zone
+
+_LINK, _NAME = Path("/etc/localtime"), Path("/etc/timezone")
+
+
+def local_timezone() -> str:
+    """The IANA name of this machine's time zone; `UTC+02:00` where it has none to tell, as it is now."""
+    for name in (os.environ.get("TZ", "").removeprefix(":"), _linked(), _named()):
+        if name and _known(name):
+            return name
+    offset = datetime.now().astimezone().strftime("%z")
+    return f"UTC{offset[:3]}:{offset[3:5]}"
+
+
+def _linked() -> str:
+    try:
+        return _LINK.resolve().as_posix().partition("/zoneinfo/")[2]
+    except OSError:
+        return ""
+
+
+def _named() -> str:
+    try:
+        return _NAME.read_text(encoding="ascii").strip()
+    except (OSError, UnicodeDecodeError):
+        return ""
+
+
+def _known(name: str) -> bool:
+    try:
+        zone(name)
+    except UsageError:
+        return False
+    return True

@@ -1,0 +1,57 @@
+"""The timers of `at`: set when a state is entered and each time that they end, and set right with the clock.
+
+Such a timer waits for a moment by the clock on the wall, not for a length of time; how long that is, is found out when
+it is set.
+"""
+
+from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.execution_context import ExecutionContext
+from lumen.interpreters.statechart.values import Timer
+from lumen.interpreters.wall_clock import moment, next_moment, readjusted
+from lumen.language.events import Event
+from lumen.language.hours import Schedule
+from lumen.language.nanoseconds import nanoseconds
+
+
+def begin_schedules(context: ExecutionContext, node: StateNode) -> None:
+    """Wait for what comes next of each `at` of a state."""
+    timers = (schedule_timer(context, node, event) for event in node.schedules)
+    context.timers = (*context.timers, *filter(None, timers))
+
+
+def schedule_timer(context: ExecutionContext, node: StateNode, event: str, ended: Timer | None = None) -> Timer | None:
+    """The timer of that `at` from now on, or from when it `ended`; None where its days are over."""
+    now = moment(context.epoch, context.at)
+    after = max(now, moment(context.epoch, ended.due)) if ended else now
+    found = next_moment(node.schedules[event], after, context.timezone)
+    return None if found is None else _timer(context, node.path, event, found)
+
+
+def set_clock(context: ExecutionContext, event: Event) -> None:
+    """The clock on the wall was set, or hangs elsewhere: invoked behaviours hear it, too, and no transition does."""
+    was = event.data.get("was", {"epoch": context.epoch, "timezone": context.timezone})
+    before, now = moment(was["epoch"], context.at), moment(event.data["epoch"], context.at)
+    moved = was["timezone"] != event.data["timezone"]
+    context.epoch, context.timezone, context.cached_scope = event.data["epoch"], event.data["timezone"], None
+    timers: list[Timer] = []
+    for timer in context.timers:
+        if timer.kind != "at":
+            timers.append(timer)
+            continue
+        schedule = _schedule(context, timer)
+        due = moment(was["epoch"], timer.due)
+        zone = context.timezone
+        found = next_moment(schedule, now, zone) if moved else readjusted(due, schedule, before, now, zone)
+        if found is not None:
+            timers.append(_timer(context, timer.state, timer.event, found))
+    context.timers = tuple(timers)
+    context.invocations.forward(context, event._replace(data={**event.data, "was": was}))
+
+
+def _schedule(context: ExecutionContext, timer: Timer) -> Schedule:
+    return context.machine.chart.nodes[timer.state].schedules[timer.event]
+
+
+def _timer(context: ExecutionContext, path: str, event: str, due: int) -> Timer:
+    due_ns = due * 1000 - nanoseconds(context.epoch)
+    return Timer(event, due_ns, max(due_ns - nanoseconds(context.at), 0), event, None, path, "at")

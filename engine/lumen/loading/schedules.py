@@ -1,0 +1,135 @@
+"""Times of day as people write them: `18:00`, `mon-fri 11:00, 15:00`, `2026-12-24 14:00`."""
+
+import re
+from collections.abc import Iterator
+from datetime import date
+
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
+from lumen.language.hours import WEEKDAYS, Schedule
+from lumen.loading.document_report import DocumentReport
+
+BAD_TIME = Code("bad-time", "statecharts", ERROR, "a time of day can't be read")
+UNQUOTED_TIME = Code(
+    "unquoted-time", "statecharts", WARNING, "a time of day without quotes, which some YAML readers take for a number"
+)
+
+TIME_HINT = "write one such as `18:00`, `mon-fri 18:00`, `sat,sun 11:00, 15:00` or `2026-12-24 14:00`"
+
+_TIME = re.compile(r"([0-9]{1,2}):([0-9]{2})")
+_DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
+_OTHER_TIME = re.compile(r"([0-9]{1,2})(?:[.:h]?([0-9]{2}))? ?h?([ap]m)?(?::[0-9]{2})?", re.IGNORECASE)
+_OTHER_DATE = re.compile(r"[0-9]{1,4}[./][0-9]{1,2}[./][0-9]{0,4}|[0-9]{1,4}-[0-9]{1,2}-[0-9]{1,4}")
+_SEXAGESIMAL = re.compile(r"[1-9][0-9]?:[0-5][0-9]")
+"""What YAML 1.1 reads as a number to the base of 60, where it is not quoted."""
+
+
+class MisreadTimeError(Exception):
+    """What is wrong with a time of day, and what would be right."""
+
+    def __init__(self, message: str, hint: str = TIME_HINT) -> None:
+        super().__init__(message)
+        self.hint = hint
+
+
+def read_schedule(text: str) -> Schedule:
+    """The schedule that is written so; raises MisreadTimeError."""
+    times: set[int] = set()
+    weekdays: set[int] = set()
+    dates: set[date] = set()
+    for word in _words(text):
+        named, dated = word[0].isalpha(), _OTHER_DATE.fullmatch(word)
+        if (named or dated) and times:
+            raise MisreadTimeError(f"`{word}` stands after a time", "days stand before times: write a row for each")
+        if named:
+            weekdays.update(_weekdays(word))
+        elif dated:
+            dates.add(_date(word))
+        else:
+            times.add(_time(word))
+    if not times:
+        raise MisreadTimeError(
+            f"`{text}` has no time of day", f"write `{text.strip()} 18:00`" if text.strip() else TIME_HINT
+        )
+    return Schedule(tuple(sorted(times)), tuple(sorted(weekdays)), tuple(sorted(dates)), " ".join(text.split()))
+
+
+def schedule(text: object, report: DocumentReport, where: NodePath, *, key: bool = False) -> Schedule | None:
+    """The schedule that stands at `where` (with `key` as the key), None (and reported) where it is none."""
+    try:
+        found = read_schedule(str(text))
+    except MisreadTimeError as error:
+        report(BAD_TIME, where, str(error), hint=error.hint, key=key)
+        return None
+    if _SEXAGESIMAL.fullmatch(str(text)) and not _quoted(report, where, key):
+        message = f"without quotes some YAML readers take `{text}` for the number {found.times[0]}"
+        report(UNQUOTED_TIME, where, message, hint=f'write `"{text}"`', key=key)
+    return found
+
+
+def _words(text: str) -> Iterator[str]:
+    """Its parts, between blanks and commas; `mon - fri` is one of them, and so is `6 pm`."""
+    parts = re.sub(r"(?i)(?<=[0-9])\s+(?=[ap]m\b)", "", re.sub(r"\s*-\s*", "-", text.strip()))
+    for word in re.split(r"\s*,\s*|\s+", parts) if parts else ():
+        if not word:
+            raise MisreadTimeError(f"a comma of `{text}` has nothing on one of its sides")
+        yield word
+
+
+def _time(word: str) -> int:
+    """Minutes since midnight."""
+    if not (match := _TIME.fullmatch(word)):
+        raise MisreadTimeError(f"`{word}` is not a time of day", _other_time(word))
+    hour, minute = int(match[1]), int(match[2])
+    if hour > 23 or minute > 59:
+        midnight = "; midnight is `00:00`" if (hour, minute) == (24, 0) else ""
+        raise MisreadTimeError(f"there is no `{word}`", f"a day goes from `00:00` to `23:59`{midnight}")
+    return hour * 60 + minute
+
+
+def _other_time(word: str) -> str:
+    """How a time is written that is written otherwise elsewhere."""
+    if match := _OTHER_TIME.fullmatch(word):
+        hour, minute, half = int(match[1]), int(match[2] or 0), (match[3] or "").lower()
+        if half and 1 <= hour <= 12:
+            hour = hour % 12 + (12 if half == "pm" else 0)
+        if hour < 24 and minute < 60:
+            return f"write `{hour:02}:{minute:02}`"
+    if "-" in word:
+        return "it is one moment that is waited for: write where the span begins, and in another state where it ends"
+    return TIME_HINT
+
+
+def _date(word: str) -> date:
+    if not _DATE.fullmatch(word):
+        raise MisreadTimeError(f"`{word}` is not a date", "write year, month and day: `2026-12-24`")
+    try:
+        return date.fromisoformat(word)
+    except ValueError:
+        raise MisreadTimeError(
+            f"there is no `{word}` in the calendar", "write year, month and day: `2026-12-24`"
+        ) from None
+
+
+def _weekdays(word: str) -> Iterator[int]:
+    """The days of `sat` or `fri-mon`, which goes on from sunday to monday."""
+    first, dash, last = word.partition("-")
+    begin = _weekday(first)
+    end = _weekday(last) if dash else begin
+    yield from ((begin + i) % 7 for i in range((end - begin) % 7 + 1))
+
+
+def _weekday(word: str) -> int:
+    if word in WEEKDAYS:
+        return WEEKDAYS.index(word)
+    short = word[:3].lower()
+    if short in WEEKDAYS and word.lower().isalpha():
+        raise MisreadTimeError(f"`{word}` is not a day", f"write `{short}`")
+    raise MisreadTimeError(f"`{word}` is not a day", did_you_mean(word, WEEKDAYS, "days are"))
+
+
+def _quoted(report: DocumentReport, where: NodePath, key: bool) -> bool:
+    """Whether that node is written with quotes."""
+    place = report.document.place(where, key=key)
+    lines = report.document.text.splitlines()
+    line = lines[place.line - 1] if 0 < place.line <= len(lines) else ""
+    return line[place.column - 1 : place.column] in ("'", '"', "|", ">")
