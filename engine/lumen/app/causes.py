@@ -29,7 +29,7 @@ def reason_of(event: Event) -> str:
 
 
 def _cause(taken: Transition, step: Step) -> str:
-    return _trigger(taken, step) + (f", as {taken.guard.source}" if taken.guard else "")
+    return _trigger(taken, step) + (f", as {taken.guard.shown}" if taken.guard else "")
 
 
 def _trigger(taken: Transition, step: Step) -> str:

@@ -20,7 +20,7 @@ def caption(transition: Transition) -> str:
         event = f"at {transition.schedule.text}"
     elif transition.exact:
         event = "error" if event.startswith("error.") else "done"
-    guard = " ".join(transition.guard.source.split()) if transition.guard else ""
+    guard = " ".join(transition.guard.shown.split()) if transition.guard else ""
     if len(guard) > MAX_GUARD_LENGTH:
         guard = guard[: MAX_GUARD_LENGTH - 1].rstrip() + "…"
     return " ".join(filter(None, (event, f"[{guard}]" if guard else "")))

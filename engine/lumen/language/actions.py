@@ -14,18 +14,31 @@ from lumen.language.diagnostics import NodePath
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """The source of an expression, as the author wrote it."""
+    """The source of an expression.
+
+    `written` is how the author wrote it, where that differs: `question.ask` of what `for` lets stand for an entry.
+    """
 
     source: str
     where: NodePath = field(default=(), compare=False)
+    written: str = field(default="", compare=False)
+
+    @property
+    def shown(self) -> str:
+        return self.written or self.source
 
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A text that may hold `{{ expression }}`."""
+    """A text that may hold `{{ expression }}`; `written` is how the author wrote it, where that differs."""
 
     text: str
     where: NodePath = field(default=(), compare=False)
+    written: str = field(default="", compare=False)
+
+    @property
+    def shown(self) -> str:
+        return self.written or self.text
 
 
 ComputedValue = Union[Expression, None, bool, int, float, tuple["ComputedValue", ...], Mapping[str, "ComputedValue"]]  # noqa: UP007

@@ -60,6 +60,21 @@ class Invoke:
     where: NodePath = field(default=(), compare=False)
 
 
+@dataclass(frozen=True, slots=True)
+class ForEach:
+    """`for` of a state: what is in it runs once for each entry of the list `each`, which is `variable` meanwhile.
+
+    `shuffle` draws an order, `most` ends it earlier. `key` is that of the context which holds the entry and those left.
+    """
+
+    each: Expression
+    variable: str
+    key: str
+    shuffle: bool = False
+    most: int | None = None
+    where: NodePath = field(default=(), compare=False)
+
+
 Resume = Literal["again", "after", "never", ""]
 RESUME_WORDS = ("again", "after", "never")
 
@@ -89,6 +104,7 @@ class State:
     output: ComputedValue = None
     on_reload: str = ""
     resume: Resume = ""
+    for_each: ForEach | None = None
     where: NodePath = field(default=(), compare=False)
 
     @property
@@ -109,9 +125,9 @@ class Answer:
 class MachineDefinition:
     """A whole statechart; `states` maps paths to states in document order, the root under the empty path.
 
-    `phrases` and `answers` are its own and those of its `words` files; `borrowed` says of those from which file each
-    comes: `("answers", "faq")` from `museum`. `invoked` holds the machines that its states invoke, by the names of
-    their behaviours.
+    `phrases`, `answers` and `lists` are its own and those of its `words` files; `borrowed` says of those from which
+    file each comes: `("answers", "faq")` from `museum`. `invoked` holds the machines that its states invoke, by the
+    names of their behaviours.
     """
 
     id: str
@@ -121,6 +137,7 @@ class MachineDefinition:
     events: Mapping[str, Any] = field(default_factory=dict)
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
     answers: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
+    lists: Mapping[str, tuple[Mapping[str, Any], ...]] = field(default_factory=dict)
     words: tuple[str, ...] = ()
     borrowed: Mapping[tuple[str, str], str] = field(default_factory=dict)
     renamed: Mapping[str, str] = field(default_factory=dict)

@@ -3,6 +3,7 @@
 import hashlib
 import json
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -15,6 +16,7 @@ from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import check_ids, invocations
 from lumen.loading.known_words import WordFiles, known_words
 from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.loading.rounds import NOTHING_YET, Rounds, unrolled
 from lumen.loading.shapes import check_shapes
 from lumen.loading.transitions import TransitionReader
 
@@ -58,7 +60,9 @@ class _Builder:
         self.data, self.report, self.files = data, report, words
         self.words = known_words(data, report, words, known)
         self.outline = BehaviorOutline(data, name, report)
-        self.expressions = Expressions(report, data, self.words, {*self.outline.entries, *self.outline.aliases})
+        self.rounds = Rounds(self.outline, report, data.get("context") or {})
+        names = {*self.outline.entries, *self.outline.aliases}
+        self.expressions = Expressions(report, data, self.words, names, self.rounds)
         self.actions = Actions(report, self.expressions, data.get("units") or {})
         self.transitions = TransitionReader(report, self.outline, self.actions, self.expressions)
         self.beginnings: dict[str, tuple[str, ...]] = {}
@@ -70,8 +74,8 @@ class _Builder:
         check_ids(self.outline, self.report)
         return {
             "id": self.outline.root.alias,
-            "states": {path: self.state(entry) for path, entry in self.outline.entries.items()},
-            "context": dict(data.get("context") or {}),
+            "states": {state.path: state for entry in self.outline.entries.values() for state in self.states(entry)},
+            "context": {**(data.get("context") or {}), **dict.fromkeys(self.rounds.keys.values(), NOTHING_YET)},
             "types": {k: v for k, v in (data.get("types") or {}).items() if self.expressions.key(k, ("types", k))},
             "events": dict(data.get("events") or {}),
             **self.words.tables,
@@ -84,6 +88,15 @@ class _Builder:
     def borrowed(self) -> Iterator[Any]:
         """What the words files say that it names, as data."""
         yield from (self.files[name].data for name in self.words.files if name in self.files)
+
+    def states(self, entry: OutlinedState) -> Iterator[State]:
+        """The state, and what its `for` adds to it."""
+        state = self.state(entry)
+        loop = self.rounds.read(entry, self.expressions.whole)
+        if loop is None:
+            yield state
+        else:
+            yield from unrolled(replace(state, for_each=loop), state.initial)
 
     def state(self, entry: OutlinedState) -> State:
         data, where = entry.data, entry.where

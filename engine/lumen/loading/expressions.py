@@ -1,16 +1,30 @@
 """Expressions and templates in a file: their syntax checked, each fault at its character."""
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template
-from lumen.interpreters.expressions.expression_findings import UNGUARDED_FIELD, UNKNOWN_CONTEXT_KEY
+from lumen.interpreters.expressions import (
+    ExpressionFinding,
+    check_expression,
+    check_template,
+    substituted,
+    substituted_template,
+)
+from lumen.interpreters.expressions.expression_findings import (
+    MISPLACED_DRAW,
+    UNGUARDED_FIELD,
+    UNKNOWN_CONTEXT_KEY,
+    UNKNOWN_NAME,
+)
+from lumen.interpreters.expressions.functions import DRAWING
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import NodePath, Place, did_you_mean
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.known_words import KnownWords
 from lumen.loading.numbers import finite
+from lumen.loading.rounds import Rounds
 from lumen.loading.scalars import within
 
 
@@ -21,24 +35,41 @@ class Expressions:
     """
 
     def __init__(
-        self, report: DocumentReport, data: Mapping[str, Any], words: KnownWords, states: Iterable[str]
+        self, report: DocumentReport, data: Mapping[str, Any], words: KnownWords, states: Iterable[str], rounds: Rounds
     ) -> None:
-        self.report = report
+        self.report, self.rounds = report, rounds
         self.keys = frozenset(data.get("context") or ())
         self.names: dict[str, Any] = {
             "context": {key: {} for key in self.keys},
             **{key: tuple(table) if words.whole else None for key, table in words.tables.items()},
+            "lists": {key: {} for key in words.tables["lists"]} if words.whole else None,
             "states": tuple(states),
         }
 
     def expression(self, source: str, where: NodePath) -> Expression | None:
         """The expression, None (and reported) where it can't be read."""
-        sound = self._sound(check_expression(source, **self.names), source, where)
-        return Expression(source, where) if sound else None
+        return self._read(source, where, localized=True)
+
+    def whole(self, source: str, where: NodePath) -> Expression | None:
+        """As `expression`; what it reads of lists is there in all languages."""
+        return self._read(source, where, localized=False)
+
+    def _read(self, source: str, where: NodePath, *, localized: bool) -> Expression | None:
+        variables = self.rounds.variables(where)
+        findings = check_expression(source, **self.names, variables={name: {} for name in variables})
+        if not self._sound(findings, source, where):
+            return None
+        meant = substituted(source, variables, localized=localized)
+        return Expression(meant, where, source if meant != source else "")
 
     def template(self, text: str, where: NodePath) -> Template | None:
         """The text with its `{{ expressions }}`, None (and reported) where one can't be read."""
-        return Template(text, where) if self._sound(check_template(text, **self.names), text, where) else None
+        variables = self.rounds.variables(where)
+        findings = check_template(text, **self.names, variables={name: {} for name in variables})
+        if not self._sound(findings, text, where):
+            return None
+        meant = substituted_template(text, variables)
+        return Template(meant, where, text if meant != text else "")
 
     def value(self, data: Any, where: NodePath) -> ComputedValue:
         """Every text an expression, lists and maps read through; None in place of what can't be read.
@@ -71,11 +102,27 @@ class Expressions:
     def _sound(self, findings: Iterable[ExpressionFinding], source: str, where: NodePath) -> bool:
         """Whether nothing was found but fields that may be missing: those depend on who calls."""
         found = [finding for finding in findings if finding.code != UNGUARDED_FIELD]
-        for finding in found:
+        for finding in map(self._explained, found):
             place = place_within(self.report.document, where, source, finding.offset, finding.length)
             cause = cause_of(self.report.document.file, finding)
             self.report.diagnostics.append(finding.code.at(place, finding.message, finding.hint, cause=cause))
-        return not found
+        return not found and self._draws_where_it_may(source, where)
+
+    def _explained(self, finding: ExpressionFinding) -> ExpressionFinding:
+        """With a word on where a name is known that is known elsewhere."""
+        home = self.rounds.elsewhere(finding.message.split("`")[1]) if finding.code == UNKNOWN_NAME else ""
+        hint = f"it is an entry within `{home}` only, in its states, `on` and `after`"
+        return finding._replace(hint=hint) if home else finding
+
+    def _draws_where_it_may(self, source: str, where: NodePath) -> bool:
+        """Whether nothing is drawn outside of `assign`; reported where something is."""
+        if "assign" in where or not any(name in source for name in DRAWING):
+            return True
+        drawing = next((name for name in sorted(DRAWING) if re.search(rf"\b{name}\s*\(", source)), "")
+        if drawing:
+            hint = "assign what is drawn to a key of the context, and read that here"
+            self.report(MISPLACED_DRAW, where, f"`{drawing}` draws, which only `assign` may", hint)
+        return not drawing
 
 
 def cause_of(file: str, finding: ExpressionFinding) -> str:

@@ -41,7 +41,7 @@ _KINDS: Mapping[str, _Kind] = {
     "lumen": _Kind("an exhibition", "the project's folder, as lumen.yaml", frozenset(("robot", "languages"))),
     "behavior": _Kind("a behaviour", "behaviors/", frozenset(("states",))),
     "words": _Kind(
-        "a words file", "behaviors/words/", frozenset(), only=frozenset(("description", "phrases", "answers"))
+        "a words file", "behaviors/words/", frozenset(), only=frozenset(("description", "phrases", "answers", "lists"))
     ),
     "story": _Kind("a story", "behaviors/stories/", frozenset(("steps",))),
     "controller": _Kind("a controller", "fuzzy/", frozenset(("inputs", "outputs"))),

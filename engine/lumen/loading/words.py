@@ -20,6 +20,7 @@ def tables(data: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "phrases": {key: _phrases(body) for key, body in (data.get("phrases") or {}).items()},
         "answers": {key: _answers(rows) for key, rows in (data.get("answers") or {}).items()},
+        "lists": {key: tuple(rows or ()) for key, rows in (data.get("lists") or {}).items()},
     }
 
 

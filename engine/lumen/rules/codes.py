@@ -24,6 +24,7 @@ from lumen.loading import (
     outline,
     poses,
     project,
+    rounds,
     rulebook,
     schedules,
     settings,
@@ -41,8 +42,8 @@ from lumen.rules.checks import CHECKS
 
 LOADERS = (
     actions, behaviors, bindings, bodies, complaints, document, expression_findings, keyframes, known_words,
-    linking, messages, misplaced, numbers, outline, poses, project, rulebook, schedules, settings, shapes, terms,
-    transitions, units, variables, yaml_errors, yaml_reader,
+    linking, messages, misplaced, numbers, outline, poses, project, rounds, rulebook, schedules, settings, shapes,
+    terms, transitions, units, variables, yaml_errors, yaml_reader,
 )  # fmt: skip
 """What reads files and declares codes."""
 

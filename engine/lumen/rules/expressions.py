@@ -8,12 +8,14 @@ from typing import Any
 from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template, schema_of
 from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH
 from lumen.language.actions import Template
-from lumen.language.diagnostics import Related
+from lumen.language.diagnostics import NodePath, Related
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import cause_of, place_within
 from lumen.rules.events import declared, hears, outcome, raised
+from lumen.rules.lists import entry_schema, list_schema
+from lumen.rules.lookups import value_at
 from lumen.rules.walk import ExpressionSite, expression_sites
 
 BOOLEAN_SCHEMA: Mapping[str, Any] = {"type": "boolean"}
@@ -37,6 +39,7 @@ class _Expressions:
         for behavior, part, key in draft.unsound:
             if behavior == name:
                 (self.context if part == "types" else self.events)[key] = {}
+        self.lists = {key: list_schema(entries) for key, entries in machine.lists.items()}
         self.states = {n for state in machine.states.values() for n in (state.path, state.alias) if n}
 
     def check(self) -> None:
@@ -51,11 +54,25 @@ class _Expressions:
             "phrases": self.machine.phrases if self.whole else None,
             "answers": self.machine.answers if self.whole else None,
             "states": self.states,
+            "lists": self.lists if self.whole else None,
+            "variables": self.variables(spot.text.where),
         }
         if isinstance(spot.text, Template):
-            return check_template(spot.text.text, **around)
+            return check_template(spot.text.shown, **around)
         expected = BOOLEAN_SCHEMA if spot.guard else spot.expected or self.context.get(spot.key)
-        return check_expression(spot.text.source, **around, expected=expected)
+        return check_expression(spot.text.shown, **around, expected=expected)
+
+    def variables(self, where: NodePath) -> dict[str, Any]:
+        """What stands for entries there, each with its schema."""
+        found: dict[str, Any] = {}
+        for depth in range(len(where)):
+            node = value_at(self.report, where[:depth])
+            loop = node.get("for") if isinstance(node, Mapping) and where[depth] != "for" else None
+            if isinstance(loop, Mapping) and "as" in loop:
+                name = re.fullmatch(r"lists\.(\w+)", str(loop.get("each")).strip())
+                entries = self.machine.lists.get(name[1], ()) if name and self.whole else ()
+                found[loop["as"]] = entry_schema(entries) if entries else {}
+        return found
 
     def possible(self, transition: Transition | None) -> dict[str, Any] | None:
         """The events that can arrive where a transition is taken, None where it could be any."""
@@ -81,7 +98,7 @@ class _Expressions:
         return f"{self.report.document.file} null {key}" if alone else ""
 
     def say(self, spot: ExpressionSite, finding: ExpressionFinding) -> None:
-        source = spot.text.text if isinstance(spot.text, Template) else spot.text.source
+        source = spot.text.shown
         place = place_within(self.report.document, spot.text.where, source, finding.offset, finding.length)
         part = source[finding.offset : finding.offset + finding.length]
         related = tuple(self.declared(spot, part, finding))

@@ -101,7 +101,7 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
     if implies(other, one) and not never(other):
         message, hint = "this is never taken: one with the same guard comes first", "delete one of the two"
         if one != other:
-            wide = _short(earlier.guard.source)
+            wide = _short(earlier.guard.shown)
             message, hint = f"this is never taken: `{wide}` is true wherever its guard is", "put this one before it"
         report(SHADOWED_TRANSITION, later.where, message, hint, related=related)
         return True

@@ -10,6 +10,7 @@ from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePat
 from lumen.language.machines import Answer, MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.rules.lists import listed_texts
 from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import WordTables, word_tables
@@ -84,10 +85,12 @@ def _spoken(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
     for name, machine in draft.behaviors.items():
         said = (s.step.where for s in action_sites(machine) if isinstance(s.step.action, SayText))
         yield from ((draft.report("behaviors", name), (*where, "say")) for where in said)
-    for report, _, answers in word_tables(draft):
+    for report, _, answers, _ in word_tables(draft):
         for table, rows in answers.items():
             texts = (i for i, row in enumerate(rows) if isinstance(row.value, Mapping))
             yield from ((report, ("answers", table, i, "value")) for i in texts)
+    languages = draft.settings.languages if draft.settings else ()
+    yield from ((report, path) for report, path, _ in listed_texts(word_tables(draft), languages))
 
 
 def _silence(report: DocumentReport, path: NodePath, message: str, hint: str, related: list[Related]) -> Diagnostic:
@@ -116,6 +119,8 @@ class _Speech:
                 self.each(report, ("answers", table, i, "phrases"), row.phrases)
                 if isinstance(row.value, Mapping) and set(row.value) & set(self.languages):
                     self.texts(report, ("answers", table, i, "value"), row.value)
+        for report, path, texts in listed_texts([tables], self.languages):
+            self.texts(report, path, texts)
 
     def texts(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> None:
         """What is said in several languages should be said in all."""

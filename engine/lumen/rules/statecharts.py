@@ -120,7 +120,7 @@ def _loops(machine: MachineDefinition, report: DocumentReport) -> None:
         way = next(_rounds(machine, onward, path, path, ()), None)
         if way and path not in said:
             said.update(t.source for t in way)
-            asked = " and ".join(f"`{t.guard.source}`" for t in way if t.guard)
+            asked = " and ".join(f"`{t.guard.shown}`" for t in way if t.guard)
             names = " → ".join(f"`{machine.states[p].name}`" for p in (*(t.source for t in way), path))
             message = f"this never comes to rest while {asked}: {names}"
             hint = "change on the way what the guard asks for, or let an event lead on"

@@ -88,7 +88,7 @@ def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
     for site in action_sites(machine):
         if isinstance(site.step.action, SayText):
             for template in (t for said in site.step.action.texts.values() for t in said):
-                if found := _HALF.search(template.text) or _BARE.fullmatch(template.text):
+                if found := _HALF.search(template.shown) or _BARE.fullmatch(template.shown):
                     name = found[1] if found.re is _HALF else found[0]
                     message = f"`{found[0]}` is said as it stands here"
                     report(NOT_FILLED_IN, template.where, message, f"write `{{{{ {name} }}}}`")

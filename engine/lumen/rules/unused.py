@@ -22,17 +22,25 @@ SAME_BUT_CASE = Code("same-but-case", "references", WARNING, "two names differ i
 UNUSED_ANSWERS = Code("unused-answers", "references", WARNING, "answers are written that nothing looks up")
 UNUSED_CONTEXT_KEY = Code("unused-context-key", "references", WARNING, "a key of the context is never read")
 UNUSED_FILE = Code("unused-file", "references", INFO, "a motion, behaviour or controller is named nowhere")
+UNUSED_LIST = Code("unused-list", "references", WARNING, "a list is written that nothing reads")
 UNUSED_PHRASES = Code("unused-phrases", "references", WARNING, "phrases are written that nothing listens for")
 UNUSED_WORDS = Code("unused-words", "references", WARNING, "no behaviour names a words file")
 
 
-_ASKED = {"phrases": ("heard", UNUSED_PHRASES), "answers": ("lookup", UNUSED_ANSWERS)}
-"""The tables, the function that asks for each, and what is said where nothing does."""
+_ASKED = {
+    "phrases": ("nothing asks for the phrases `{}`", "ask `heard(event.data.result, '{}')` somewhere", UNUSED_PHRASES),
+    "answers": ("nothing asks for the answers `{}`", "ask `lookup(event.data.result, '{}')` somewhere", UNUSED_ANSWERS),
+    "lists": ("nothing reads the list `{}`", "write `for: {{each: lists.{}, as: …}}` in a state", UNUSED_LIST),
+}
+"""The tables, and for each what is said where nothing asks for it, and a hint."""
 
-_DECLARED = ("context", "types", "words", "phrases", "events", "answers", "description", "units", "renamed")
+_LISTED = re.compile(r"\blists\s*(?:\.\s*(\w+)|\[\s*['\"]([^'\"]+)['\"])")
+
+_DECLARED = ("context", "types", "words", "phrases", "events", "answers", "lists", "description", "units", "renamed")
 _FIELD = re.compile(r"context\s*(?:\.\s*(\w+)|\[\s*['\"]([^'\"]+)['\"])")
 _WHOLE = re.compile(r"\bcontext\b(?!\s*\.)(?!\s*\[\s*['\"])")
 _EXPRESSION_CODES = {c for c in vars(expression_findings).values() if isinstance(c, Code)} - {UNKNOWN_STATE}
+_COMPUTED = re.compile(r"\blists\b(?!\s*\.)(?!\s*\[\s*['\"])")
 _NAME = re.compile(r"['\"]([^'\"]+)['\"]")
 
 
@@ -46,9 +54,10 @@ def check(draft: ProjectDraft) -> None:
             sound.add(name)
             _inside(draft, name, machine, report)
     _words(draft, sound)
-    for report, phrases, answers in word_tables(draft):
+    for report, phrases, answers, lists in word_tables(draft):
         _say_alike(report, ("phrases",), phrases)
         _say_alike(report, ("answers",), answers)
+        _say_alike(report, ("lists",), lists)
     _alike_files(draft)
     if draft.settings and not has_errors(draft.diagnostics):
         _files(draft)
@@ -60,7 +69,7 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
     if not _WHOLE.search(everywhere):
         _context(machine, report, {a or b for a, b in _FIELD.findall(everywhere)} | _looked_at(draft, name))
     own = {part: {key for key in getattr(machine, part) if (part, key) not in machine.borrowed} for part in _ASKED}
-    _unasked(report, own, set(_NAME.findall(said)), _states_of(report))
+    _unasked(report, own, [said], _states_of(report))
     waited = set(descriptors(machine))
     for event in machine.events:
         if not (any(hears(d, event) for d in waited) or nearest(event, report.missed)):
@@ -80,17 +89,20 @@ def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
             message, hint = f"no behaviour names the words `{name}`", f"write `words: {name}` at the top of one"
             draft.say(UNUSED_WORDS, report.document.file, message, f"{hint}, or delete the file")
         elif users and all(user in sound for user in users):
-            named = {said for user in users for said in _NAME.findall(_said(draft.report("behaviors", user)))}
-            _unasked(report, {part: set(getattr(words, part)) for part in _ASKED}, named, "")
+            said = [_said(draft.report("behaviors", user)) for user in users]
+            _unasked(report, {part: set(getattr(words, part)) for part in _ASKED}, said, "")
 
 
-def _unasked(report: DocumentReport, own: Mapping[str, Collection[str]], named: Collection[str], root: str) -> None:
-    """Report phrases and answers of a file whose name stands in no expression."""
-    for part, (what, code) in _ASKED.items():
+def _unasked(report: DocumentReport, own: Mapping[str, Collection[str]], said: Iterable[str], root: str) -> None:
+    """Report phrases, answers and lists of a file whose name stands in no expression."""
+    text = "\n".join(said)
+    named = {name for names in (_NAME.findall(text), *_LISTED.findall(text)) for name in names}
+    for part, (message, hint, code) in _ASKED.items():
         for key in own[part]:
-            if key not in named:
-                hint = f"ask `{what}(event.data.result, '{key}')` somewhere, or delete them"
-                report(code, (part, key), f"nothing asks for the {part} `{key}`", hint, key=True, root=root)
+            if key not in named and not (part == "lists" and _COMPUTED.search(text)):
+                them = "it" if part == "lists" else "them"
+                advice = f"{hint.format(key)}, or delete {them}"
+                report(code, (part, key), message.format(key), advice, key=True, root=root)
 
 
 def _said(report: DocumentReport) -> str:
@@ -100,7 +112,7 @@ def _said(report: DocumentReport) -> str:
 
 def _context(machine: MachineDefinition, report: DocumentReport, read: set[str]) -> None:
     written = {key for site in action_sites(machine) for key in getattr(site.step.action, "values", ())}
-    for key in machine.context:
+    for key in report.document.data.get("context") or ():
         if key not in read:
             hint = "use it in an expression, or delete it"
             what = "is set and never read" if key in written else "is declared and never used"

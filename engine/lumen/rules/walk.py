@@ -19,6 +19,7 @@ from lumen.language.actions import (
     Template,
 )
 from lumen.language.commands import GoTo
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, MachineDefinition, State, Transition
 
 
@@ -47,9 +48,10 @@ def action_sites(machine: MachineDefinition) -> Iterator[ActionSite]:
     """All actions, those inside `if` and `parallel` too, in the order of the file."""
     for state in machine.states.values():
         for block in (state.entry, state.do, state.exit):
-            yield from (ActionSite(state, None, step) for step in nested(block))
+            yield from (ActionSite(state, None, step) for step in nested(block) if not _made(step.where))
         for transition in state.transitions:
-            yield from (ActionSite(state, transition, step) for step in nested(transition.actions))
+            steps = (step for step in nested(transition.actions) if not _made(step.where))
+            yield from (ActionSite(state, transition, step) for step in steps)
 
 
 def expression_sites(machine: MachineDefinition) -> Iterator[ExpressionSite]:
@@ -58,11 +60,18 @@ def expression_sites(machine: MachineDefinition) -> Iterator[ExpressionSite]:
         yield from (ExpressionSite(text, None) for text in _values(state.output))
         for invoke in state.invoke:
             yield from _input(invoke, machine.invoked.get(invoke.behavior))
+        if state.for_each:
+            yield ExpressionSite(state.for_each.each, None, expected={"type": "array"})
         for transition in state.transitions:
-            if transition.guard:
+            if transition.guard and not _made(transition.guard.where):
                 yield ExpressionSite(transition.guard, transition, guard=True)
     for site in action_sites(machine):
         yield from _spots(site)
+
+
+def _made(where: NodePath) -> bool:
+    """Whether something that stands there was made of a `for`: its place is that of the `for`, and nobody wrote it."""
+    return where[-1:] == ("for",)
 
 
 def _input(invoke: Invoke, machine: MachineDefinition | None) -> Iterator[ExpressionSite]:

@@ -1,4 +1,4 @@
-"""The phrases and answers of every file, behaviours and words files alike, where they stand."""
+"""The phrases, answers and lists of every file, behaviours and words files alike, where they stand."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -15,6 +15,7 @@ class WordTables(NamedTuple):
     report: DocumentReport
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]]
     answers: Mapping[str, tuple[Answer, ...]]
+    lists: Mapping[str, tuple[Mapping[str, Any], ...]]
 
 
 def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
@@ -25,6 +26,6 @@ def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
             return {entry: content for entry, content in table.items() if (key, entry) not in borrowed}
 
         phrases, answers = own("phrases", machine.phrases), own("answers", machine.answers)
-        yield WordTables(draft.report("behaviors", name), phrases, answers)
+        yield WordTables(draft.report("behaviors", name), phrases, answers, own("lists", machine.lists))
     for name, words in draft.words.items():
-        yield WordTables(draft.report(WORDS_FOLDER, name), words.phrases, words.answers)
+        yield WordTables(draft.report(WORDS_FOLDER, name), words.phrases, words.answers, words.lists)

@@ -81,7 +81,7 @@ class _Watcher(Observer):
 def described(machine: MachineDefinition, transition: Transition) -> str:
     """`ask_name` on `heard`, as GUARD, to `offer`: a transition in words."""
     source = machine.states[transition.source].name
-    guard = f", as {transition.guard.source}" if transition.guard else ""
+    guard = f", as {transition.guard.shown}" if transition.guard else ""
     names = ", ".join(f"`{machine.states[path].name or machine.id}`" for path in transition.targets)
     return f"`{source or machine.id}` {trigger(transition)}{guard}" + (f", to {names}" if names else "")
 

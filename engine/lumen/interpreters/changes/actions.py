@@ -116,7 +116,7 @@ def described(action: Action) -> str:
         case LogText(text):
             return f"logs {quoted(text.text)}"
         case If(guard):
-            return f"decides by {code(guard.source)}"
+            return f"decides by {code(guard.shown)}"
         case Parallel(branches):
             return f"does {len(branches)} things at once"
         case _:

@@ -39,6 +39,7 @@ class _Comparison:
         yield from self.context()
         yield from self.phrases()
         yield from self.answers()
+        yield from self.named("list", self.old.lists, self.new.lists)
         yield from self.named("event", self.old.events, self.new.events)
 
     def presence(self) -> Iterator[Change]:
@@ -78,6 +79,9 @@ class _Comparison:
             yield from block_changes(before, after, title, when, self.file)
         yield from transition_changes(old, new, title, self.file, self.mapped, self.named_now)
         yield from self.invokes(old, new, title)
+        if old.for_each != new.for_each:
+            how = f"goes through {code(new.for_each.each.shown)}" if new.for_each else "goes through no list"
+            yield self.change("state", title, f"{title} {how} now, as its `for` says")
         if old.resume != new.resume:
             yield self.change(
                 "state", title, f"`resume` of {title} {f'is `{new.resume}` now' if new.resume else 'is gone'}"
@@ -146,7 +150,7 @@ class _Comparison:
         for key in dict.fromkeys((*old, *new)):
             if key not in new or key not in old or old[key] != new[key]:
                 how = "added" if key not in old else "removed" if key not in new else "changed"
-                yield self.change(kind, key, f"{kind} `{key}` {how}", part=kind)
+                yield self.change(kind, key, f"{kind} `{key}` {how}", part="lists" if kind == "list" else kind)
 
 
 def _below(parent: str | None, path: str) -> str:

@@ -54,7 +54,7 @@ class _TransitionComparison:
         if old.targets != new.targets:
             yield self.change(f"{self.title} {self.leads(new)} {trigger}{_if(new)} now, not {self.to(old)}")
         elif old.guard != new.guard:
-            condition = f"if {code(new.guard.source)}" if new.guard else "whatever is so"
+            condition = f"if {code(new.guard.shown)}" if new.guard else "whatever is so"
             yield self.change(f"{self.title} {self.leads(new)} {trigger} {condition} now")
         if old.reenter != new.reenter:
             how = "is left and entered" if new.reenter else "stays active"
@@ -102,4 +102,4 @@ def _same(old: Sequence[Transition], new: Sequence[Transition]) -> bool:
 
 
 def _if(transition: Transition) -> str:
-    return f" if {code(transition.guard.source)}" if transition.guard else ""
+    return f" if {code(transition.guard.shown)}" if transition.guard else ""

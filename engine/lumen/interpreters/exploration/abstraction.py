@@ -5,10 +5,10 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lumen.interpreters.exploration.expression_uses import of_state
+from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_state
 from lumen.interpreters.exploration.history_uses import history_uses
 from lumen.interpreters.exploration.liveness import Liveness
-from lumen.interpreters.expressions.tree import FunctionCall, Literal, walk
+from lumen.interpreters.expressions.tree import FunctionCall, Literal, path_of, walk
 from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 from lumen.language.machines import MachineDefinition
 
@@ -24,14 +24,16 @@ class Abstraction:
     Of the context only keys that can still matter count. Of a number only whether it is one of those near the numbers
     that the behaviour mentions, or below or above them all; of a text whether it is empty or one that is mentioned;
     where the behaviour asks for a `size`, of texts, lists and maps also that, as a number.
-    Of a history only what it can still lead back to. Times, ids, what has been drawn and (unless they are asked for)
-    the language and the place do not count.
+    Of a `for` its entry counts, and how many are left. Of a history only what it can still lead back to. Times,
+    ids, what has been drawn and (unless they are asked for) the language and the place do not count.
     """
 
     def __init__(self, machine: MachineDefinition) -> None:
         self._machine = machine
         self._liveness, self._histories = Liveness(machine), history_uses(machine)
-        uses = [use for state in machine.states.values() for use in of_state(state)]
+        self._loops = frozenset(s.for_each.key for s in machine.states.values() if s.for_each)
+        every = (use for state in machine.states.values() for use in of_state(state))
+        uses = [use for use in every if not self._goes_on(use)]
         literals = {node.value for use in uses for node, _ in walk(use.tree) if isinstance(node, Literal)}
         self._texts = {value for value in literals if isinstance(value, str)}
         self._numbers = sorted({v for v in literals if isinstance(v, int | float) and not isinstance(v, bool)} | {0})
@@ -39,14 +41,14 @@ class Abstraction:
             isinstance(n, FunctionCall) and n.function == "size" for use in uses for n, _ in walk(use.tree)
         )
         self._place = any(re.search(r"\bstate\.place\b", t) for t in _guards(machine))
-        self._language = any(re.search(r"\bstate\.language\b", t) for t in _guards(machine))
+        self._language = any(re.search(r"\b(state\.language|in_language)\b", t) for t in _guards(machine))
         self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 
     def key(self, snapshot: Snapshot) -> ConfigurationKey:
         live = self._liveness.of(snapshot.configuration)
         return (
             snapshot.configuration,
-            tuple((k, self.value(snapshot.context.get(k))) for k in sorted(live)),
+            tuple((k, self._known(k, snapshot.context.get(k))) for k in sorted(live)),
             tuple(sorted((t.event if t.kind != "wait" else "", t.state, t.kind) for t in snapshot.timers)),
             tuple((path, _shape(position)) for path, position in sorted(snapshot.doing.items())),
             tuple(self._remembered(snapshot)),
@@ -54,6 +56,15 @@ class Abstraction:
             self.value(snapshot.place) if self._place else "",
             tuple(self._child(id, child) for id, child in sorted(snapshot.invoked.items())),
         )
+
+    def _goes_on(self, use: ExpressionUse) -> bool:
+        """Whether it is what a `for` goes through its list by: its numbers are none that the behaviour mentions."""
+        paths = [path_of(node) for node, _ in walk(use.tree)]
+        return any(path and path[0] == "context" and "left" in path and path[1] in self._loops for path in paths)
+
+    def _known(self, key: str, value: Any) -> Any:
+        """What of a key of the context counts: of a `for` the entry, and how many are left."""
+        return (self.value(value["entry"]), len(value["left"])) if key in self._loops else self.value(value)
 
     def _remembered(self, snapshot: Snapshot) -> Iterator[tuple[Any, ...]]:
         """What histories can still lead back to."""

@@ -5,6 +5,8 @@ from itertools import product
 from math import prod
 from typing import Any
 
+from lumen.interpreters.expressions.kinds import FaultError
+from lumen.interpreters.expressions.phrases import phrases_of
 from lumen.interpreters.expressions.tree import (
     Binary,
     ExpressionNode,
@@ -25,14 +27,17 @@ SAMPLE_TEXT = "Ani"
 FieldPath = tuple[str, ...]
 
 
-def samples(machine: MachineDefinition, schema: Any, trees: Iterable[ExpressionNode]) -> Iterator[Any]:
+def samples(
+    machine: MachineDefinition, schema: Any, trees: Iterable[ExpressionNode], context: Mapping[str, Any]
+) -> Iterator[Any]:
     """Data of an event with that JSON Schema, with every field that the trees read at all values they mention.
 
-    Further ones go on where a field has many values; the first is the plainest.
+    `context` is what the behaviour remembers. Further ones go on where a field has many values; the first is the
+    plainest.
     """
     values: dict[FieldPath, dict[Any, None]] = {}
     for tree in trees:
-        for path, found in _mentioned(machine, tree):
+        for path, found in _mentioned(machine, tree, context):
             values.setdefault(path, {}).update(dict.fromkeys(found))
     for path, mentioned in values.items():
         values[path] = {**dict.fromkeys(_plain(_below(schema, path))), **mentioned}
@@ -89,13 +94,18 @@ def _of_kind(kind: str, schema: Mapping[str, Any]) -> list[Any]:
     return plain.get(kind, [None])
 
 
-def _mentioned(machine: MachineDefinition, tree: ExpressionNode) -> Iterator[tuple[FieldPath, list[Any]]]:
+def _mentioned(
+    machine: MachineDefinition, tree: ExpressionNode, context: Mapping[str, Any]
+) -> Iterator[tuple[FieldPath, list[Any]]]:
     """For each field of the event's data that stands in the tree, values that it is compared with."""
     yield from ((path, []) for path in _fields(tree))
     for node, _ in walk(tree):
         match node:
             case FunctionCall(function=function, arguments=(first, Literal(value=str() as text))):
                 found = _heard(machine, function, text)
+                yield from ((path, found) for path in _fields(first))
+            case FunctionCall(function="heard", arguments=(first, second)):
+                found = _phrases_at(path_of(second), context)
                 yield from ((path, found) for path in _fields(first))
             case Binary(left=left, right=right):
                 for one, other in ((left, right), (right, left)):
@@ -117,6 +127,17 @@ def _heard(machine: MachineDefinition, function: str, text: str) -> list[Any]:
         case "contains" | "matches":
             return [text.strip("^$")]
     return []
+
+
+def _phrases_at(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> list[Any]:
+    """Phrases that stand in the context, one for each language."""
+    value: Any = {"context": context}
+    for key in path or ():
+        value = value.get(key) if isinstance(value, Mapping) else None
+    try:
+        return [text for texts in phrases_of(value).values() for text in texts[:1]] if path and value else []
+    except FaultError:
+        return []
 
 
 def _compared(other: ExpressionNode, *, sized: bool) -> list[Any]:

@@ -61,6 +61,14 @@ class Stimulus(NamedTuple):
         return STIMULUS_COSTS[self.kind] + OVERTAKING_COST * (bool(self.pending) + self.overtaking)
 
 
+class HeardTransition(NamedTuple):
+    """A transition that an event may select, its machine, and what that one remembers."""
+
+    machine: MachineDefinition
+    transition: Transition
+    context: Mapping[str, Any]
+
+
 class StimulusFinder:
     """Finds the stimuli; `events` are those that may come from outside, each with the JSON Schema of its data."""
 
@@ -94,48 +102,57 @@ class StimulusFinder:
         heard = tuple(_heard(self._compiled, snapshot, name))
         if not heard:
             return ()
-        known = (name, *(id(transition) for _, transition in heard))
+        entries = (repr(context[key]["entry"]) for machine, _, context in heard for key in loop_keys(machine))
+        known = (name, *(id(transition) for _, transition, _ in heard), *entries)
         if known not in self._known:
             self._known[known] = tuple(self._sorts(name, heard))
         return self._known[known]
 
-    def _sorts(self, name: str, heard: tuple[tuple[MachineDefinition, Transition], ...]) -> Iterator[Any]:
-        trees = [(machine, use.tree) for machine, transition in heard for use in of_transition(transition)]
-        atoms = [(machine, unparse(node)) for machine, tree in trees for node in _known_of_events(tree)]
+    def _sorts(self, name: str, heard: tuple[HeardTransition, ...]) -> Iterator[Any]:
+        trees = [(one, use.tree) for one in heard for use in of_transition(one.transition)]
+        atoms = [(one, unparse(node)) for one, tree in trees for node in _known_of_events(tree, loop_keys(one.machine))]
         seen = set()
-        for machine in dict.fromkeys(id(m) for m, _ in heard):
-            about = [tree for owner, tree in trees if id(owner) == machine]
-            owner = next(m for m, _ in heard if id(m) == machine)
-            for data in samples(owner, self._events[name], about):
-                sort = tuple(_sort(m, source, name, data) for m, source in atoms)
+        for machine in dict.fromkeys(id(one.machine) for one in heard):
+            about = [tree for owner, tree in trees if id(owner.machine) == machine]
+            owner = next(one for one in heard if id(one.machine) == machine)
+            for data in samples(owner.machine, self._events[name], about, owner.context):
+                sort = tuple(_sort(one, source, name, data) for one, source in atoms)
                 if sort not in seen:
                     seen.add(sort)
                     yield data
 
 
-def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[tuple[MachineDefinition, Transition]]:
+def loop_keys(machine: MachineDefinition) -> frozenset[str]:
+    """The keys of the context that hold the entry of a `for`."""
+    return frozenset(state.for_each.key for state in machine.states.values() if state.for_each)
+
+
+def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[HeardTransition]:
     """The transitions that an event of that name may select, here or in what is invoked."""
     for group in machine.planner.configuration(snapshot.configuration).candidates(name):
-        yield from ((machine.chart.definition, transition.definition) for transition in group)
+        for transition in group:
+            yield HeardTransition(machine.chart.definition, transition.definition, snapshot.context)
     for id, child in snapshot.invoked.items():
         behavior = machine.chart.definition.invoked_behavior(child.state, id)
         yield from _heard(machine.invoked[behavior], child.snapshot, name)
 
 
-def _known_of_events(tree: ExpressionNode) -> Iterator[ExpressionNode]:
-    """The largest parts of an expression that depend on the event's data and on nothing else but it."""
+def _known_of_events(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[ExpressionNode]:
+    """The largest parts of an expression that depend on the event's data and on nothing else but it and entries."""
     speaks = names(tree)
-    alone = not speaks.context and not speaks.functions & {"In", *CLOCK_FUNCTIONS}
+    alone = speaks.context <= loops and not speaks.functions & {"In", *CLOCK_FUNCTIONS}
     if alone and "event" in unparse(tree):
         yield tree
     elif not alone:
         for child in children(tree):
-            yield from _known_of_events(child)
+            yield from _known_of_events(child, loops)
 
 
-def _sort(machine: MachineDefinition, source: str, name: str, data: Any) -> str:
+def _sort(heard: HeardTransition, source: str, name: str, data: Any) -> str:
     """What a part of an expression says of an event, where that can be true, false, empty or something."""
-    scope = Scope(event={"name": name, "data": data}, phrases=machine.phrases, answers=machine.answers)
+    machine, _, context = heard
+    scope = Scope(context, {"name": name, "data": data}, phrases=machine.phrases, answers=machine.answers)
+    scope = scope._replace(lists=machine.lists)
     try:
         value = compile_expression(source)(scope)
     except ExpressionError:

@@ -11,6 +11,7 @@ from lumen.interpreters.expressions.expression_findings import ExpressionFinding
 from lumen.interpreters.expressions.parser import parse_expression
 from lumen.interpreters.expressions.printer import unparse
 from lumen.interpreters.expressions.scope import Scope
+from lumen.interpreters.expressions.substitution import substituted, substituted_template
 from lumen.interpreters.expressions.templates import check_template, compile_template, split_template
 from lumen.interpreters.expressions.tree import ExpressionNode, MentionedNames, names
 from lumen.interpreters.expressions.value_types import schema_of
@@ -30,5 +31,7 @@ __all__ = [
     "parse_expression",
     "schema_of",
     "split_template",
+    "substituted",
+    "substituted_template",
     "unparse",
 ]

@@ -12,7 +12,7 @@ from types import CodeType
 from lumen.interpreters.expressions.error_explanation import EXPRESSION_FILE
 from lumen.interpreters.expressions.functions import FUNCTIONS
 from lumen.interpreters.expressions.kinds import BOOLEAN
-from lumen.interpreters.expressions.scope import ROOTS
+from lumen.interpreters.expressions.scope import Scope
 from lumen.interpreters.expressions.tree import (
     Binary,
     Conditional,
@@ -124,7 +124,7 @@ class CodeBuilder:
             case Literal(value=value):
                 return ast.Constant(value)
             case Identifier(name=name):
-                return _at(_load("scope"), ROOTS.index(name))
+                return _at(_load("scope"), Scope._fields.index(name))
             case FieldAccess(base=base, name=name):
                 return _at(self.hidden(base), name)
             case IndexAccess(base=base, key=Literal(value=str() as key)):

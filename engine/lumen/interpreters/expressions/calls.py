@@ -27,6 +27,7 @@ _ARGUMENTS = {
     **dict.fromkeys(CLOCK_FUNCTIONS, ""),
     "has": "event.data.x", "In": "'state'", "contains": "text, 'part'", "replace": "text, 'old', 'new'",
     "after": "text, 'phrase'", "matches": "text, 'pattern'", "heard": "text, 'name'", "lookup": "text, 'table'",
+    "take": "list, 3", "drop": "list, 1", "shuffle": "list", "pick": "list", "in_language": "value",
 }  # fmt: skip
 
 

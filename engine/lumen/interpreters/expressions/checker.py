@@ -80,20 +80,22 @@ def check_expression(
     phrases: Collection[str] | None = None,
     answers: Collection[str] | None = None,
     states: Collection[str] | None = None,
+    lists: Mapping[str, Any] | None = None,
+    variables: Mapping[str, Any] | None = None,
     expected: Mapping[str, Any] | None = None,
 ) -> list[ExpressionFinding]:
     """Everything wrong with an expression, in the order it stands; never raises, whatever the source.
 
     `context` maps its keys to JSON Schemas; `events` maps the events that can arrive here to those of their data
     (None: of any kind), and is None where any event can. `phrases`, `answers` and `states` are the names there are,
-    None where that is not known. `expected` is the schema that the value has to fit: `{"type": "boolean"}` for a
-    guard.
+    None where that is not known; `lists` and `variables` (which stand for entries of lists) map names to JSON
+    Schemas. `expected` is the schema that the value has to fit: `{"type": "boolean"}` for a guard.
     """
     try:
         tree = parse_expression(source)
     except ExpressionError as error:
         return [ExpressionFinding(EXPRESSION_SYNTAX, error.offset, 1, error.message, error.hint)]
-    return check_tree(tree, Declarations(context, events, phrases, answers, states), expected)
+    return check_tree(tree, Declarations(context, events, phrases, answers, states, lists, variables or {}), expected)
 
 
 class _Checker:
@@ -146,7 +148,11 @@ class _Checker:
         if node.name == "state":
             text = {"type": "string"}
             return ValueType(frozenset((MAP,)), ({"properties": {"path": text, "language": text, "place": text}},))
-        hint = did_you_mean(node.name, ROOTS, "an expression begins with")
+        if node.name == "lists":
+            return ANY if around.lists is None else ValueType(frozenset((MAP,)), ({"properties": around.lists},))
+        if node.name in around.variables:
+            return type_of_schema(around.variables[node.name])
+        hint = did_you_mean(node.name, (*ROOTS, *around.variables), "an expression begins with")
         if around.context and node.name in around.context:
             hint = f"did you mean `context.{node.name}`?"
         elif node.name in FUNCTIONS:

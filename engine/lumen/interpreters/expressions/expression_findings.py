@@ -1,7 +1,7 @@
 """What is wrong with an expression, and the declarations by which that is decided."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions.kinds import KIND_DESCRIPTIONS
@@ -17,6 +17,7 @@ EXPRESSION_SYNTAX = Code("expression-syntax", "expressions", ERROR, "an expressi
 TYPE_MISMATCH = Code(
     "type-mismatch", "expressions", ERROR, "values stand together in an expression that can't go together"
 )
+MISPLACED_DRAW = Code("misplaced-draw", "expressions", ERROR, "`shuffle` or `pick` stands outside `assign`")
 UNGUARDED_FIELD = Code("unguarded-field", "expressions", ERROR, "a field is read that not every event has")
 UNKNOWN_ANSWERS = Code("unknown-answers", "expressions", ERROR, "an answers table is named that the file does not have")
 UNKNOWN_FUNCTION = Code("unknown-function", "expressions", ERROR, "an expression calls a function that does not exist")
@@ -49,7 +50,8 @@ CODES_OF_COMPILE_ERRORS = frozenset(
 class Declarations:
     """What is declared around an expression; None where that is not known.
 
-    `context` and `events` hold JSON Schemas, of the keys and of the events' data (None: of any kind).
+    `context` and `events` hold JSON Schemas, of the keys and of the events' data (None: of any kind); so do `lists`,
+    and the `variables` that stand for entries of lists.
     """
 
     context: Mapping[str, Any] | None = None
@@ -57,6 +59,8 @@ class Declarations:
     phrases: Collection[str] | None = None
     answers: Collection[str] | None = None
     states: Collection[str] | None = None
+    lists: Mapping[str, Any] | None = None
+    variables: Mapping[str, Any] = field(default_factory=dict)
 
 
 class ExpressionFindings:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from datetime import datetime
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions import phrases
+from lumen.interpreters.expressions import lists, phrases
 from lumen.interpreters.expressions.kinds import (
     BOOLEAN,
     KINDS,
@@ -117,11 +117,20 @@ def today(scope: Scope) -> str:
 
 def heard(scope: Scope, text: Any, name: Any) -> bool:
     if type(text) is not str or type(name) is not str:
-        _texts(text, name)
+        _texts(text)
+        if not isinstance(name, str):
+            return _heard_of(text, name)
     known = scope[6]  # `phrases`: by its number in half the time
     if name not in known:
         raise _unnamed("phrases", name, known)
     return phrases.is_heard(text, known[name])
+
+
+def _heard_of(text: str, table: Any) -> bool:
+    """`heard` of phrases that stand in an entry of a list."""
+    if kind_of(table) not in (LIST, MAP):
+        raise WrongKindError(1, table, TEXT, LIST, MAP)
+    return phrases.is_heard(text, phrases.phrases_of(table))
 
 
 def lookup(scope: Scope, text: Any, table: Any) -> Any:
@@ -142,6 +151,7 @@ def active(scope: Scope, state: Any) -> bool:
 
 
 _TEXT, _BOOLEAN, _NUMBER = frozenset((TEXT,)), frozenset((BOOLEAN,)), frozenset((NUMBER,))
+_LIST = frozenset((LIST,))
 
 CLOCK_FUNCTIONS: dict[str, Function] = {
     "now": Function((), _TEXT, now, scoped=True),
@@ -163,7 +173,15 @@ FUNCTIONS: dict[str, Function] = {
     "matches": Function((_TEXT, _TEXT), _BOOLEAN, matches),
     "words": Function((_TEXT,), frozenset((LIST,)), words),
     **CLOCK_FUNCTIONS,
-    "heard": Function((_TEXT, _TEXT), _BOOLEAN, heard, scoped=True),
+    "heard": Function((_TEXT, frozenset((TEXT, LIST, MAP))), _BOOLEAN, heard, scoped=True),
     "lookup": Function((_TEXT, _TEXT), KINDS, lookup, scoped=True),
     "In": Function((_TEXT,), _BOOLEAN, active, scoped=True),
+    "take": Function((_LIST, _NUMBER), _LIST, lists.take),
+    "drop": Function((_LIST, _NUMBER), _LIST, lists.drop),
+    "shuffle": Function((_LIST,), _LIST, lists.shuffle, scoped=True),
+    "pick": Function((_LIST,), KINDS, lists.pick, scoped=True),
+    "in_language": Function((KINDS,), KINDS, lists.in_language, scoped=True),
 }
+
+DRAWING = frozenset(("shuffle", "pick"))
+"""The functions that draw: they stand in `assign` only, where the next draw is remembered."""

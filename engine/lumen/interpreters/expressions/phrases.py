@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, cast
 from unicodedata import category, normalize
 
+from lumen.interpreters.expressions.kinds import FaultError
 from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
 
 _APOSTROPHES = frozenset("'’ʼ‘`´")
@@ -76,6 +77,7 @@ _last = [("", "")]
 """The text compared last, and its words: the guards of a state compare one text, one after the other."""
 
 _answers = _ByIdentity()
+_entries = _ByIdentity()
 
 
 def _prepared(phrases: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
@@ -98,6 +100,18 @@ def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]]) -> bool:
         if phrase in said:
             return True
     return False
+
+
+def phrases_of(value: Any) -> Mapping[str, tuple[str, ...]]:
+    """Phrases as they stand in an entry of a list: a list of texts, or one for each language."""
+    found = _entries.get(value)
+    if found is None:
+        table = value if isinstance(value, Mapping) else {"": value}
+        found = {key: (rows,) if isinstance(rows, str) else tuple(rows or ()) for key, rows in table.items()}
+        if not all(isinstance(text, str) for rows in found.values() for text in rows):
+            raise FaultError("these are no phrases", "write a list of texts, or one for each language")
+        _entries.put(value, found)
+    return cast(Mapping[str, tuple[str, ...]], found)
 
 
 def answer(scope: Scope, text: str, table: Any) -> Any:

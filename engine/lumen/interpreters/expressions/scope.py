@@ -1,9 +1,10 @@
 """What an expression can see, and how large it and its values may be."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from lumen.interpreters.expressions.kinds import FaultError
 from lumen.language.machines import Answer
 
 MAX_EXPRESSION_LENGTH = 2_000
@@ -31,13 +32,18 @@ def _nowhere(state: str) -> bool:
     return False
 
 
+def no_draw(count: int) -> int:
+    """Stands where nothing may be drawn: only an action changes what is drawn next."""
+    raise FaultError("nothing can be drawn here", "`shuffle` and `pick` stand in `assign`")
+
+
 class Scope(NamedTuple):
     """The values that names and functions stand for; plain JSON data throughout.
 
     `event` is `{"name": …, "data": …}`, or None where no event has arrived; `state` has `path`, `language` and `place`.
     `configuration` is whether a state is active, for `In()`. `at` [s] is the time of the event, and `epoch` that of
     the clock's zero [s since 1970, in UTC], and `timezone` that of `hour()` and its kin. `language` is the one that
-    `lookup` answers in.
+    `lookup` answers in; `draw` gives one of as many numbers, from 0.
     """
 
     context: Mapping[str, Any] = _NOTHING
@@ -50,7 +56,9 @@ class Scope(NamedTuple):
     answers: Mapping[str, tuple[Answer, ...]] = _NOTHING
     epoch: float = 0.0
     timezone: str = ""
+    lists: Mapping[str, Sequence[Any]] = _NOTHING
+    draw: Callable[[int], int] = no_draw
 
 
-ROOTS = ("context", "event", "state")
-"""The names that an expression begins with; they are the first fields of `Scope`."""
+ROOTS = ("context", "event", "state", "lists")
+"""The names that an expression begins with; they are fields of `Scope`."""

@@ -5,6 +5,7 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 from lumen.interpreters.migration.identity import Identity
+from lumen.interpreters.migration.rounds import carried_round
 from lumen.interpreters.statechart.chart import Chart, StateNode
 from lumen.interpreters.statechart.execution_context import ExecutionContext
 from lumen.interpreters.statechart.history import History
@@ -27,6 +28,9 @@ def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identit
     """Every key still declared keeps its value where that is of the key's type; others have their first values."""
     first, names = new.definition.context, identity.keys()
     kept = {key: values[was] for key, was in names.items() if was in values and fits(values[was], new.checks[key])}
+    for state in new.definition.states.values():
+        if (loop := state.for_each) and loop.key in kept:
+            kept[loop.key] = carried_round(old.definition, new.definition, loop, kept[loop.key])
     notes = [
         f"`{key}` begins anew: it was a {type_name(values[was])} and is {new.checks[key]} now"
         for key, was in names.items()

@@ -148,6 +148,7 @@ class ExecutionContext:
             seen = (
                 self.data, self.event_data, self.node.view(self.language, self.place), self.is_active, self.at,
                 self.language, definition.phrases, definition.answers, self.epoch, self.timezone,
+                definition.lists, self.draw,
             )  # fmt: skip
             scope = self.cached_scope = _new(Scope, seen)
         return scope

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar
 
 from lumen.interpreters.expressions import ExpressionError, Scope
+from lumen.interpreters.expressions.scope import no_draw
 from lumen.interpreters.statechart.blocks import compile_value
 from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
 from lumen.interpreters.statechart.plans import Candidates, Configuration, MicrostepPlan, MicrostepPlanner, make_room
@@ -112,8 +113,12 @@ class FastPaths:
         definition = self.definition
         event_data = {"name": name, "data": data} if uses_event else None
         scope = _new(
-            Scope, (context, event_data, None, None, at, language, definition.phrases, definition.answers, epoch, zone)
-        )
+            Scope,
+            (
+                context, event_data, None, None, at, language, definition.phrases, definition.answers, epoch,
+                zone, definition.lists, no_draw,
+            ),
+        )  # fmt: skip
         try:
             if guard is not None and (guard is _never or not guard(scope)):
                 _, plain, assigns, target, exited, entered, transitions, after_timers = otherwise(scope)

@@ -1,0 +1,65 @@
+"""What the language does with lists: parts of them, what is drawn from them, and texts in several languages in them."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.interpreters.expressions.kinds import LIST, NUMBER, FaultError, WrongKindError
+from lumen.interpreters.expressions.scope import Scope
+
+_LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
+
+
+def take(values: Any, count: Any) -> list[Any]:
+    """The first elements."""
+    return list(_list(values)[: _count(count)])
+
+
+def drop(values: Any, count: Any) -> list[Any]:
+    """All but the first elements."""
+    return list(_list(values)[_count(count) :])
+
+
+def shuffle(scope: Scope, values: Any) -> list[Any]:
+    """All elements in an order that is drawn (Fisher and Yates, as Durstenfeld has it)."""
+    drawn = list(_list(values))
+    for last in range(len(drawn) - 1, 0, -1):
+        other = scope.draw(last + 1)
+        drawn[last], drawn[other] = drawn[other], drawn[last]
+    return drawn
+
+
+def pick(scope: Scope, values: Any) -> Any:
+    """One element, drawn."""
+    if not _list(values):
+        raise FaultError("nothing can be picked of an empty list", "guard it with size(…) > 0")
+    return values[scope.draw(len(values))]
+
+
+def in_language(scope: Scope, value: Any) -> Any:
+    """Of a text in several languages the one in the current language, or the first; another value as it is."""
+    if not is_text_by_language(value):
+        return value
+    return value[scope.language] if scope.language in value else next(iter(value.values()))
+
+
+def by_language(value: Any) -> bool:
+    """Whether a value is a map whose keys are languages."""
+    return isinstance(value, Mapping) and bool(value) and all(_LANGUAGE.fullmatch(str(key)) for key in value)
+
+
+def is_text_by_language(value: Any) -> bool:
+    """Whether a value is a map from languages to texts."""
+    return by_language(value) and all(isinstance(text, str) for text in value.values())
+
+
+def _list(value: Any) -> Any:
+    if not isinstance(value, list | tuple):
+        raise WrongKindError(0, value, LIST)
+    return value
+
+
+def _count(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise WrongKindError(1, value, NUMBER)
+    return max(0, int(min(value, 2**31)))

@@ -1,0 +1,120 @@
+"""`for` of a state: what is in it runs once for each entry of a list. It is read as a statechart without `for`.
+
+A key of the context holds the entry and those that are left. The state begins in a final child that stands for "none is
+left"; whenever it is done and an entry is left, that entry is taken, and it begins with its first child. Only then do
+the file's own `onDone` have their turn. Expressions within say `context.KEY.entry` where the file says `question`.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from lumen.language.actions import Assign, Expression, PlacedAction
+from lumen.language.diagnostics import ERROR, Code, NodePath
+from lumen.language.machines import ForEach, State, StateKind, Transition
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.outline import BehaviorOutline, OutlinedState
+
+BAD_FOR = Code("bad-for", "statecharts", ERROR, "a `for` stands where it can't run through its list")
+
+NOTHING_YET: Mapping[str, Any] = {"entry": {}, "left": []}
+"""What the key of a `for` holds before the state is entered."""
+
+ReadExpression = Callable[[str, NodePath], Expression | None]
+
+_TAKEN = frozenset(("context", "event", "state", "lists"))
+_WITHIN = (("states",), ("on",), ("after",), ("at",))
+"""Where in a state with `for` its entry is known: not yet where it begins, and no longer where all is done."""
+
+
+class Rounds:
+    """The `for`s of one document, by the paths of their states."""
+
+    def __init__(self, outline: BehaviorOutline, report: DocumentReport, context: Mapping[str, Any]) -> None:
+        self.report = report
+        self.by_place: dict[NodePath, tuple[str, str]] = {}
+        self.keys: dict[str, str] = {}
+        for entry in outline.entries.values():
+            if "for" in entry.data and self._sound(entry):
+                name, key = entry.data["for"]["as"], self._key(entry, context)
+                self.keys[entry.path] = key
+                self.by_place[entry.where] = name, key
+
+    def variables(self, where: NodePath) -> dict[str, str]:
+        """What the names of entries mean in an expression that stands there."""
+        found = {}
+        for place, (name, key) in self.by_place.items():
+            if where[: len(place)] == place and where[len(place) : len(place) + 1] in _WITHIN:
+                found[name] = f"context.{key}.entry"
+        return found
+
+    def read(self, entry: OutlinedState, expression: ReadExpression) -> ForEach | None:
+        """The `for` of a state, None where it has none that can be read."""
+        if entry.path not in self.keys:
+            return None
+        data, where = entry.data["for"], (*entry.where, "for")
+        each = expression(data["each"], (*where, "each"))
+        if each is None:
+            return None
+        key = self.keys[entry.path]
+        return ForEach(each, data["as"], key, data.get("shuffle", False), data.get("most"), where)
+
+    def elsewhere(self, name: str) -> str:
+        """Where a name stands for an entry; empty for nowhere."""
+        return next((".".join(map(str, at[1::2])) for at, (known, _) in self.by_place.items() if known == name), "")
+
+    def _sound(self, entry: OutlinedState) -> bool:
+        """Whether a state may have a `for`, and its name is free; reported where not."""
+        name, where = entry.data["for"]["as"], (*entry.where, "for")
+        if entry.kind is not StateKind.COMPOUND:
+            if entry.kind in (StateKind.ATOMIC, StateKind.PARALLEL):
+                hint = "give it `states`, one of them final: reaching that one takes the next entry"
+                message = f"{entry.title} has no states of which one after the other is active"
+                self.report(BAD_FOR, where, message, hint, key=True)
+            return False
+        if entry.parent and entry.parent.kind is StateKind.PARALLEL:
+            hint = "put it into a state within the region"
+            self.report(BAD_FOR, where, f"{entry.title} is a region of a parallel state", hint, key=True)
+            return False
+        if not any(child.kind is StateKind.FINAL for child in entry.children.values()):
+            hint = "add a state with `type: final`: reaching it takes the next entry"
+            self.report(
+                BAD_FOR, where, f"{entry.title} never comes to a second entry: nothing in it is final", hint, key=True
+            )
+        outer = [p for p, (other, _) in self.by_place.items() if other == name and entry.where[: len(p)] == p]
+        if name in _TAKEN or outer:
+            what = "what a `for` around it calls its entry" if outer else "a name that every expression knows"
+            self.report(BAD_FOR, (*where, "as"), f"`{name}` is {what}", "choose another name")
+            return False
+        return True
+
+    def _key(self, entry: OutlinedState, context: Mapping[str, Any]) -> str:
+        key = f"{entry.data['for']['as']}_in_{re.sub(r'[^A-Za-z0-9]', '_', entry.path)}"
+        while key in context or key in self.keys.values():
+            key += "_"
+        return key
+
+
+def unrolled(state: State, first: tuple[str, ...]) -> Iterator[State]:
+    """The state with a `for` as a statechart knows it, and the child in which it begins; `first` are its first ones."""
+    loop = state.for_each
+    assert loop is not None
+    where, key = loop.where, f"context.{loop.key}"
+    order = f"shuffle({loop.each.source})" if loop.shuffle else loop.each.source
+    order = order if loop.most is None else f"take({order}, {loop.most})"
+
+    def assign(source: str) -> tuple[PlacedAction, ...]:
+        return (PlacedAction(Assign({loop.key: Expression(source, where)}), where),)
+
+    begin = assign(f"{{'entry': {{}}, 'left': {order}}}")
+    following = assign(f"{{'entry': {key}.left[0], 'left': drop({key}.left, 1)}}")
+    more = Expression(f"size({key}.left) > 0", where, f"there is a next {loop.variable}")
+    onward = Transition(state.path, f"done.state.{state.name}", first, more, following, exact=True, where=where)
+    name = "begin"
+    while f"{state.path}.{name}" in state.children:
+        name += "_"
+    child = State(f"{state.path}.{name}", StateKind.FINAL, state.path, entry=begin, where=where)
+    transitions = (onward, *state.transitions)
+    yield replace(state, children=(*state.children, child.path), initial=(child.path,), transitions=transitions)
+    yield child

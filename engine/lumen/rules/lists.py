@@ -1,0 +1,67 @@
+"""Lists of entries: every entry of one has the same keys."""
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from lumen.interpreters.expressions.lists import by_language, is_text_by_language
+from lumen.interpreters.expressions.value_types import schema_of
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.word_tables import WordTables, word_tables
+
+UNEVEN_LIST = Code("uneven-list", "references", ERROR, "an entry of a list has other keys than the rest")
+
+Entries = Sequence[Mapping[str, Any]]
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report entries that lack a key, or have one that no other has."""
+    for tables in word_tables(draft):
+        for name, entries in tables.lists.items():
+            _even(tables.report, name, entries)
+
+
+def listed_texts(
+    tables: Iterable[WordTables], languages: Collection[str]
+) -> Iterator[tuple[DocumentReport, NodePath, Mapping[str, Any]]]:
+    """The texts and phrases in entries that stand there by language, as one knows by any of these languages."""
+    for table in tables:
+        for name, entries in table.lists.items():
+            for i, entry in enumerate(entries):
+                for key, value in entry.items():
+                    if by_language(value) and not value.keys().isdisjoint(languages):
+                        yield table.report, ("lists", name, i, key), value
+
+
+def entry_schema(entries: Entries) -> dict[str, Any]:
+    """The JSON Schema of what stands in a list; that an entry lacks a key is told of the entry."""
+    fields = {key: _field([e[key] for e in entries if key in e]) for entry in entries for key in entry}
+    return {"type": "object", "properties": fields, "required": sorted(fields)}
+
+
+def list_schema(entries: Entries) -> dict[str, Any]:
+    """The JSON Schema of a whole list."""
+    return {"type": "array", "items": entry_schema(entries) if entries else {}}
+
+
+def _field(values: list[Any]) -> dict[str, Any]:
+    """The schema of what expressions find under a key, a text by language being a text."""
+    kinds = {"string" if is_text_by_language(value) else schema_of(value)["type"] for value in values}
+    return {"type": sorted(kinds)}
+
+
+def _even(report: DocumentReport, name: str, entries: Entries) -> None:
+    have = Counter(key for entry in entries for key in entry)
+    usual = [key for key, count in have.items() if 2 * count > len(entries)]
+    for i, entry in enumerate(entries):
+        where = ("lists", name, i)
+        missing = [key for key in usual if key not in entry and (*where, key) not in report.pruned]
+        odd = [key for key in entry if key not in usual and len(entries) > 1]
+        for key in odd:
+            hint = did_you_mean(key, missing or usual, "they have")
+            report(UNEVEN_LIST, (*where, key), f"no other entry of `{name}` has `{key}`", hint, key=True)
+        for key in missing if not odd else ():
+            message = f"this entry of `{name}` has no `{key}`"
+            report(UNEVEN_LIST, where, message, f"add `{key}`: an expression reads it of every entry")
