@@ -32,10 +32,14 @@ HASHING = "rabbit_password_hashing_sha256"
 USERS = {
     "guest": (".*", ".*"),
     "visual": (r"^lumen\.visual\.", r"^avatar\."),
+    "lamp": (r"^museum\.button$", r"^museum\.lamp\."),
     "eyes": (r"^lumen\.visual\.", r"^avatar\.NAO\.data\.image$"),
 }
 """Who may use the broker: which keys of `amq.topic` each may write, and which read."""
-RIGHTS = {"eyes": ("^amq\\.gen", "^(amq\\.topic|amq\\.gen|amq\\.default)", "^(amq\\.topic|amq\\.gen)")}
+RIGHTS = {
+    "eyes": ("^amq\\.gen", "^(amq\\.topic|amq\\.gen|amq\\.default)", "^(amq\\.topic|amq\\.gen)"),
+    "lamp": ("^mqtt-subscription", "^(amq\\.topic|mqtt-subscription)", "^(amq\\.topic|mqtt-subscription)"),
+}
 """What a user may configure, write and read, where that is not everything: as docs/broker.md has it for a module."""
 
 NOWHERE = {
@@ -51,13 +55,13 @@ class RabbitMQ:
     """A broker in a folder of its own; `url` is where it listens once `start` has returned.
 
     With a folder of certificates it listens for TLS too, on the port `secure`, and has the policy of docs/broker.md for
-    messages that nobody waits for.
+    messages that nobody waits for. With `speaks_mqtt` its plug-in for MQTT listens on the port `mqtt`.
     """
 
-    def __init__(self, certificate: Path | None = None) -> None:
-        self._script, self.certificate = _script(), certificate
+    def __init__(self, certificate: Path | None = None, *, speaks_mqtt: bool = False) -> None:
+        self._script, self.certificate, self._speaks_mqtt = _script(), certificate, speaks_mqtt
         self.folder = temporary_folder("lumen-rabbitmq-")
-        self.port, self.distribution, self.epmd, self.secure = _free_ports(4)
+        self.port, self.distribution, self.epmd, self.secure, self.mqtt = _free_ports(5)
         self.url = self.url_of("guest")
         self._process: Guarded[bytes] | None = None
         self._names: Guarded[bytes] | None = None
@@ -68,7 +72,7 @@ class RabbitMQ:
 
     def start(self) -> None:
         """Start it, or start it again with what it had stored, and wait until it accepts connections."""
-        (self.folder / "plugins").write_text("[].")
+        (self.folder / "plugins").write_text("[rabbitmq_mqtt]." if self._speaks_mqtt else "[].")
         (self.folder / "rabbitmq.conf").write_text("\n".join(self._settings()))
         (self.folder / "definitions.json").write_text(json.dumps(_definitions(nowhere=self.certificate is not None)))
         if self._names is None:
@@ -77,6 +81,8 @@ class RabbitMQ:
             self._await(self._names, lambda: _listens(self.epmd))
         self._process = self._begin(self._script)
         self._await(self._process, lambda: _speaks_amqp(self.port))
+        if self._speaks_mqtt:
+            self._await(self._process, lambda: _listens(self.mqtt))
 
     def _begin(self, *command: str) -> Guarded[bytes]:
         with (self.folder / "log").open("ab") as log:
@@ -94,6 +100,8 @@ class RabbitMQ:
     def _settings(self) -> list[str]:
         """Users, and where there is a certificate (`server.pem`, `server.key`, signed by `ca.pem`) a port for TLS."""
         settings = [f"load_definitions = {self.folder}/definitions.json"]
+        if self._speaks_mqtt:
+            settings += [f"mqtt.listeners.tcp.1 = 127.0.0.1:{self.mqtt}", "mqtt.allow_anonymous = false"]
         if self.certificate:
             names = (("cacertfile", "ca.pem"), ("certfile", "server.pem"), ("keyfile", "server.key"))
             settings.append(f"listeners.ssl.1 = 127.0.0.1:{self.secure}")

@@ -22,7 +22,7 @@ LumenError
  │    ├── BusFullError            too much waits to be sent already
  │    └── BadMessageError         the body or the key can't be sent
  ├── Refused           a subscriber's word for a message that it can't use
- ├── ModuleError       a module (memory, eyes, ears, voice, social) can't do its work
+ ├── ModuleError       a module (memory, eyes, ears, voice, social, show) can't do its work
  └── UndeliveredError  an alert did not reach who was to be told
 
 A fault in somebody's YAML is a `Diagnostic`, collected and returned; a fault in the world is one of these, and

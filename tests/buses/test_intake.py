@@ -12,9 +12,9 @@ from lumen.bus import Bus, connect
 from lumen.buses import intake as taking
 from lumen.buses.intake import SPENT_BATCH, Intake
 from lumen.buses.properties import MessageProperties
-from lumen.buses.ratelimit import BURST, RateLimiter
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.language.routes import MAX_RATE, USUAL_RATE, Carried, Direction, Route
+from lumen.upkeep.ratelimit import BURST, RateLimiter
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until
 

@@ -17,7 +17,6 @@ How RabbitMQ is used, from the inside out:
     declarer.py       declares queues, binds and deletes them
     subscriptions.py  who has subscribed, and what is delivered to whom
     outbox.py         what waits to be sent: bounded
-    ratelimit.py      how many messages a second are taken under a key
     intake.py         what of all that comes is taken, held back or dropped, and counted
     connection.py     a connection that belongs to one thread, and is opened again when it is lost
     properties.py     what AMQP says of a message, whatever it says

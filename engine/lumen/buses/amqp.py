@@ -54,6 +54,11 @@ class AmqpBus:
             raise
 
     @property
+    def host(self) -> str:
+        """The machine of the broker."""
+        return str(self._address.parameters.host)
+
+    @property
     def away(self) -> bool:
         """Whether the broker can't be reached now."""
         return self._outage.going_on

@@ -3,9 +3,9 @@
 import logging
 from collections.abc import Callable
 
-from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery
 from lumen.upkeep.drops import DropLog
+from lumen.upkeep.ratelimit import RateLimiter
 
 ANSWERED_RATE = 10.0
 """How many messages a second that must arrive, and are too many, are answered and put aside; the rest is counted."""

@@ -12,10 +12,10 @@ from lumen.buses.dispatcher import FLUSH_MARK, Dispatcher
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.publisher import Publisher
 from lumen.buses.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY
-from lumen.buses.ratelimit import RateLimiter
 from lumen.buses.subscriptions import Delivery
 from lumen.language.routing_keys import KEY_PREFIXES
 from lumen.upkeep.drops import DropLog
+from lumen.upkeep.ratelimit import RateLimiter
 
 ASIDE_RATE = 10.0
 """How many messages a second that nobody could use are put aside of one key: a flood leaves room for others'."""

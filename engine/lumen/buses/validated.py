@@ -35,6 +35,11 @@ class ValidatedBus:
         self.use(project)
 
     @property
+    def host(self) -> str:
+        """The machine of the broker, empty where there is none."""
+        return str(getattr(self._bus, "host", ""))
+
+    @property
     def away(self) -> bool:
         """Whether the broker can't be reached now; a bus without one is always there."""
         return bool(getattr(self._bus, "away", False))

@@ -58,7 +58,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "--only",
         metavar="PARTS",
-        help="one process of several: robot, brain, motion, visitor, memory, eyes, ears, voice, social; commas between",
+        help="one process of several: robot, brain, motion, visitor, memory, eyes, ears, voice, social, show; a list",
     )
     add("--robot-url", metavar="URL", help="where the real one is (--robot naoqi); default: tcp://nao.local:9559")
     add("--speed", choices=SPEEDS, default="1", help="simulated time, times real time (default: 1)")

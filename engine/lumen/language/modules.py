@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-MEMORY, EYES, EARS, VOICE, SOCIAL = MODULES = ("memory", "eyes", "ears", "voice", "social")
+MEMORY, EYES, EARS, VOICE, SOCIAL, SHOW = MODULES = ("memory", "eyes", "ears", "voice", "social", "show")
 
 
 @dataclass(frozen=True, slots=True)

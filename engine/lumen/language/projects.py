@@ -12,6 +12,7 @@ from lumen.language.modules import ModuleSettings
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.language.routes import Route
+from lumen.language.show import Show
 from lumen.language.stories import Story
 
 DEFAULT_PATIENCE = 60.0
@@ -33,7 +34,8 @@ class Project:
     `robot` is the robot's name in routing keys; `behavior` names the one of `behaviors` that runs; `languages` has the
     default first; `messages` maps a message's name to its JSON Schema; `documents` know where in each file what
     stands. `timezone` is where it is, empty for wherever it runs. `patience` [s] is how long saved files wait for what
-    is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by name.
+    is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by name;
+    `show` is what goes to lamps, screens and sound desks.
     """
 
     root: str
@@ -57,6 +59,7 @@ class Project:
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     alerts: Alerts = field(default_factory=Alerts)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
+    show: Show = field(default_factory=Show)
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

@@ -104,6 +104,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         bus=settings.bus,
         patience=settings.patience,
         modules=settings.modules,
+        show=settings.show,
         alerts=settings.alerts,
         places=settings.places,
         hash=fingerprint(found.files),

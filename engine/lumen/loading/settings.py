@@ -11,13 +11,15 @@ from lumen.interpreters.wall_clock import zone
 from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import ERROR, Code, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
-from lumen.language.modules import ModuleSettings
+from lumen.language.modules import SHOW, ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
+from lumen.language.show import Show
 from lumen.loading.alerts import build_alerts
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import finite
 from lumen.loading.routes import build_routes, duration
+from lumen.loading.show import build_show
 from lumen.loading.units import ANGLES, LENGTHS
 
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the stage does not hold the place where the robot starts")
@@ -43,13 +45,14 @@ class Settings:
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     alerts: Alerts = field(default_factory=Alerts)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
+    show: Show = field(default_factory=Show)
 
 
 def build_settings(data: Any, report: DocumentReport) -> Settings:
     """The settings in the data of lumen.yaml, which has the shape of lumen.schema.json but may lack any key."""
     if not isinstance(data, Mapping):
         return Settings()
-    robot = data.get("robot", {})
+    robot, modules = data.get("robot", {}), data.get("modules", {})
     return Settings(
         name=data.get("name", ""),
         robot=robot.get("name", Settings.robot),
@@ -63,14 +66,17 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         stage=_stage(data, report),
         bus=data.get("bus", Settings.bus),
         patience=_patience(data, report),
-        modules={name: _module(row) for name, row in data.get("modules", {}).items()},
+        modules={name: _module(name, row) for name, row in modules.items()},
         alerts=build_alerts(data.get("alerts", {}), report),
         places=_places(data, report),
+        show=build_show(modules.get(SHOW, {})),
     )
 
 
-def _module(row: Mapping[str, Any]) -> ModuleSettings:
-    return ModuleSettings(row.get("here", False), {key: value for key, value in row.items() if key != "here"})
+def _module(name: str, row: Mapping[str, Any]) -> ModuleSettings:
+    """What is said of the show is in `Settings.show`, and counts while it runs."""
+    options = {} if name == SHOW else {key: value for key, value in row.items() if key != "here"}
+    return ModuleSettings(row.get("here", False), options)
 
 
 def _patience(data: Mapping[str, Any], report: DocumentReport) -> float:

@@ -58,6 +58,7 @@ _KEYS: Mapping[str, Table] = {
         **_WORD_LANGUAGES,
     },
     "words": _WORD_LANGUAGES,
+    "lumen": {(way, "routes", "*"): NameKind.ROUTE for way in ("mqtt", "osc", "dmx")},
     "story": {("context", "*"): NameKind.CONTEXT},
     "controller": {("sweep", "*"): NameKind.JOINT, ("ahead", "*"): NameKind.JOINT},
     "motion": {("joints", "*"): NameKind.JOINT, ("handles", "*"): NameKind.JOINT},

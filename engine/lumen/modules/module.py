@@ -54,6 +54,11 @@ class Module:
         raise NotImplementedError
 
     @property
+    def refused(self) -> int:
+        """How many messages it did not carry on, where it counts them."""
+        return 0
+
+    @property
     def settings(self) -> ModuleSettings:
         """What `lumen.yaml` says of it."""
         return self.project.modules.get(self.name, ModuleSettings())

@@ -26,7 +26,7 @@ def check(draft: ProjectDraft) -> None:
             _action(draft, report, references, site)
 
 
-def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, route: str) -> bool:
+def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, route: str, *, key: bool = False) -> bool:
     """Whether lumen.yaml has that route; reported at `path` where it does not, and was readable."""
     if draft.settings is None or draft.main is None:
         return False
@@ -36,7 +36,7 @@ def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, rou
         hint, cause = did_you_mean(route, draft.settings.routes, "lumen.yaml has"), f"name {route}"
         if not draft.settings.routes:
             hint, cause = "lumen.yaml has no `routes`", "no routes"
-        report(UNKNOWN_ROUTE, path, f"there is no route `{route}`", hint, cause=cause)
+        report(UNKNOWN_ROUTE, path, f"there is no route `{route}`", hint, key=key, cause=cause)
     return False
 
 

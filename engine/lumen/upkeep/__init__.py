@@ -1,1 +1,1 @@
-"""What keeps an exhibition going: threads that are begun again, and a count of what is dropped."""
+"""What keeps an exhibition going: threads that are begun again, a count of what is dropped, limits of rate."""

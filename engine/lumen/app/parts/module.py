@@ -1,4 +1,4 @@
-"""A module of an exhibition: memory, eyes, ears, voice or social, without knowing who else is there."""
+"""A module of an exhibition: memory, eyes, ears, voice, social or show, without knowing who else is there."""
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -46,7 +46,8 @@ class ModulePart(Part):
         self._module.use(project)
 
     def summary(self) -> Iterator[str]:
-        yield f"{self.name}: {self._module.handled} messages"
+        refused = f", {self._module.refused} dropped" if self._module.refused else ""
+        yield f"{self.name}: {self._module.handled} messages{refused}"
 
     def close(self) -> None:
         self._module.close()

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.language.modules import EARS, EYES, MEMORY, MODULES, SOCIAL, VOICE
+from lumen.language.modules import EARS, EYES, MEMORY, MODULES, SHOW, SOCIAL, VOICE
 from lumen.language.projects import Project
 from lumen.modules.module import Module
 from lumen.ports import Bus
@@ -37,4 +37,8 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
         from lumen.modules.social import POSTS_FILE, Social
 
         return Social(project, bus, tell, folder and folder / POSTS_FILE)
+    if name == SHOW:
+        from lumen.modules.show import ShowControl
+
+        return ShowControl(project, bus, tell)
     raise UsageError(f"no module `{name}`: there are {', '.join(MODULES)}")

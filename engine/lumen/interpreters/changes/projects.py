@@ -17,7 +17,9 @@ MAX_SUMMARY_CHANGES = 4
 
 T = TypeVar("T")
 
-_PARTS = ("behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places")
+_PARTS = (
+    "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "alerts", "places", "show",
+)  # fmt: skip
 _SELF = ("root", "hash", "documents")
 
 
@@ -80,6 +82,9 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
         yield Change("language", "", f"`{new.languages[0]}` is spoken first now", Risk.BEHAVIOR, "lumen.yaml")
     if old.alerts != new.alerts:
         yield Change("alerts", "", "who is told of troubles (`alerts`) changed", Risk.COSMETIC, "lumen.yaml")
+    if old.show != new.show:
+        sentence = "what goes to lamps, screens and sound desks (`modules.show`) changed"
+        yield Change("show", "", sentence, Risk.WIRING, "lumen.yaml")
     for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_PARTS, *_SELF)):
         before, after = getattr(old, field), getattr(new, field)
         if before != after:

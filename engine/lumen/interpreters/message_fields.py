@@ -1,0 +1,44 @@
+"""The fields of a message, as its JSON Schema declares them, for ways that carry bare values in an order."""
+
+from collections.abc import Mapping
+from enum import StrEnum
+from typing import Any, NamedTuple
+
+
+class FieldKind(StrEnum):
+    """What a field holds, where that is one certain kind of value; `MIXED` for everything else."""
+
+    NUMBER = "number"
+    INTEGER = "integer"
+    STRING = "string"
+    BOOLEAN = "boolean"
+    MIXED = ""
+
+
+class MessageField(NamedTuple):
+    """A property of a message's schema, and the range of its numbers where it says one."""
+
+    name: str
+    kind: FieldKind
+    low: float | None = None
+    high: float | None = None
+
+
+def message_fields(schema: Mapping[str, Any] | None) -> Mapping[str, MessageField]:
+    """The fields under their names, in the order of the schema; none where there is no schema."""
+    rows = (schema or {}).get("properties")
+    return {name: _field(name, row) for name, row in rows.items()} if isinstance(rows, Mapping) else {}
+
+
+def _field(name: str, row: Any) -> MessageField:
+    if not isinstance(row, Mapping):
+        return MessageField(name, FieldKind.MIXED)
+    kind, options = row.get("type"), row.get("enum")
+    if kind is None and isinstance(options, list) and options and all(isinstance(o, str) for o in options):
+        kind = "string"
+    known = FieldKind(kind) if isinstance(kind, str) and kind in {*FieldKind} else FieldKind.MIXED
+    return MessageField(name, known, _number(row.get("minimum")), _number(row.get("maximum")))
+
+
+def _number(value: Any) -> float | None:
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None

@@ -1,0 +1,55 @@
+"""What stands under `modules: {show: …}` of lumen.yaml, from its plain data to `Show`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.show import (
+    MQTT_PORT,
+    MQTT_TLS_PORT,
+    AddressMapping,
+    DmxLink,
+    MqttLink,
+    OscLink,
+    Show,
+    TopicMapping,
+)
+
+
+def build_show(data: Mapping[str, Any]) -> Show:
+    """The devices, from data in the shape of the schema; a link that was refused is left out."""
+    return Show(_mqtt(data.get("mqtt", {})), _osc(data.get("osc", {})), _dmx(data.get("dmx", {})))
+
+
+def _mqtt(data: Mapping[str, Any]) -> MqttLink | None:
+    if "host" not in data:
+        return None
+    tls = data.get("tls", False)
+    port = data.get("port", MQTT_TLS_PORT if tls else MQTT_PORT)
+    return MqttLink(data["host"], int(port), tls, {n: _topic(row) for n, row in data.get("routes", {}).items()})
+
+
+def _topic(row: str | Mapping[str, Any]) -> TopicMapping:
+    if isinstance(row, str):
+        return TopicMapping(row)
+    return TopicMapping(row.get("topic", ""), row.get("field", ""), row.get("retain", False))
+
+
+def _osc(data: Mapping[str, Any]) -> OscLink | None:
+    if not {"host", "port"} <= data.keys():
+        return None
+    listen, rows = data.get("listen"), data.get("routes", {})
+    routes = {name: _address(row) for name, row in rows.items()}
+    return OscLink(data["host"], int(data["port"]), listen if listen is None else int(listen), routes)
+
+
+def _address(row: str | Mapping[str, Any]) -> AddressMapping:
+    if isinstance(row, str):
+        return AddressMapping(row)
+    return AddressMapping(row.get("address", ""), tuple(row["fields"]) if "fields" in row else None)
+
+
+def _dmx(data: Mapping[str, Any]) -> DmxLink | None:
+    if "universe" not in data:
+        return None
+    routes = {name: {key: int(n) for key, n in row.items()} for name, row in data.get("routes", {}).items()}
+    return DmxLink(int(data["universe"]), data.get("host", ""), routes)

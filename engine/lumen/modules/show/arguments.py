@@ -1,0 +1,73 @@
+"""Bodies as messages of OSC: fields as arguments, each of the type that its schema declares (OSC 1.0)."""
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+from pythonosc.osc_message_builder import BuildError, OscMessageBuilder
+from pythonosc.osc_packet import OscPacket, ParseError
+
+from lumen.errors import ModuleError
+from lumen.interpreters.message_fields import FieldKind, MessageField
+
+
+def message_of(address: str, body: Any, fields: Sequence[MessageField]) -> bytes:
+    """The body's fields as a message to that address. Raises ModuleError for what can't be carried so."""
+    builder = OscMessageBuilder(address)
+    for field in fields:
+        if not isinstance(body, Mapping) or field.name not in body:
+            raise ModuleError(f"the body has no `{field.name}`")
+        kind, value = _argument(field, body[field.name])
+        builder.add_arg(value, kind)
+    try:
+        return bytes(builder.build().dgram)
+    except (BuildError, UnicodeEncodeError, OverflowError) as error:
+        raise ModuleError(f"it can't be written as OSC: {error}") from None
+
+
+def messages_of(data: bytes) -> list[tuple[str, list[Any]]]:
+    """The messages in a datagram, those of a bundle too; raises ModuleError for what is no OSC."""
+    try:
+        return [(timed.message.address, list(timed.message.params)) for timed in OscPacket(data).messages]
+    except (ParseError, RecursionError, ValueError, IndexError, OverflowError) as error:
+        raise ModuleError(f"it is no OSC: {error}") from None
+
+
+def body_of_arguments(arguments: Sequence[Any], fields: Sequence[MessageField]) -> dict[str, Any]:
+    """The arguments under the names of the fields; raises ModuleError where number or types differ."""
+    if len(arguments) != len(fields):
+        names = ", ".join(field.name for field in fields) or "none"
+        raise ModuleError(f"it has {len(arguments)} arguments; the route has {len(fields)} fields ({names})")
+    return {field.name: _value(field, value) for field, value in zip(fields, arguments, strict=True)}
+
+
+def _argument(field: MessageField, value: Any) -> tuple[str, Any]:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    match field.kind:
+        case FieldKind.NUMBER if number:
+            return OscMessageBuilder.ARG_TYPE_FLOAT, float(value)
+        case FieldKind.INTEGER if number and value == int(value):
+            small = -(2**31) <= value < 2**31
+            return OscMessageBuilder.ARG_TYPE_INT if small else OscMessageBuilder.ARG_TYPE_INT64, int(value)
+        case FieldKind.BOOLEAN if isinstance(value, bool):
+            return OscMessageBuilder.ARG_TYPE_TRUE if value else OscMessageBuilder.ARG_TYPE_FALSE, value
+        case FieldKind.STRING if isinstance(value, str) and "\0" not in value:
+            return OscMessageBuilder.ARG_TYPE_STRING, value
+    raise ModuleError(
+        f"`{field.name}` can't be an argument of OSC: it is no {field.kind or 'number, text or yes or no'}"
+    )
+
+
+def _value(field: MessageField, value: Any) -> Any:
+    """An argument as the field has it: desks send whole numbers as floats, and 1 and 0 for yes and no."""
+    number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+    match field.kind:
+        case FieldKind.NUMBER if number:
+            return value
+        case FieldKind.INTEGER if number and value == int(value):
+            return int(value)
+        case FieldKind.BOOLEAN if isinstance(value, bool) or (number and value in (0, 1)):
+            return bool(value)
+        case FieldKind.STRING if isinstance(value, str):
+            return value
+    raise ModuleError(f"its argument for `{field.name}` is no {field.kind or 'value that the route can have'}")

@@ -1,0 +1,51 @@
+"""Bodies as channels of DMX, and a universe of them as a packet of sACN (ANSI E1.31-2018)."""
+
+import struct
+from typing import Any
+
+from lumen.errors import ModuleError
+from lumen.interpreters.message_fields import MessageField
+
+CHANNELS = 512
+PORT = 5568
+"""Of sACN (E1.31, 9.2)."""
+PRIORITY = 100
+"""The usual one (E1.31, 6.2.3): of several sources a receiver takes the greatest."""
+FULL = 255
+_LAYOUT = struct.Struct(">HH12sHI16sHI64sBHBBHHBBHHH")
+_TERMINATED = 0x40
+
+
+def channel_level(value: Any, field: MessageField) -> int:
+    """From 0 to 255: where in the field's range the value is; yes is 255. Raises ModuleError for what is no number."""
+    if isinstance(value, bool):
+        return FULL * value
+    if not isinstance(value, int | float):
+        raise ModuleError(f"`{field.name}` is no number")
+    low, high = field.low or 0.0, FULL if field.high is None else field.high
+    return round(FULL * min(max((value - low) / (high - low), 0.0), 1.0))
+
+
+def data_packet(
+    levels: bytes, universe: int, sequence: int, *, source: str, component: bytes, terminated: bool = False
+) -> bytes:
+    """A packet of 638 bytes with 512 levels; `component` are the 16 bytes of who sends, `sequence` goes from 0 to 255.
+
+    `terminated` says that no more come (E1.31, 6.2.6).
+    """
+    head = _LAYOUT.pack(
+        0x0010, 0, b"ASC-E1.17\0\0\0", _length(16), 4, component,
+        _length(38), 2, source.encode()[:63], PRIORITY, 0, sequence, _TERMINATED * terminated, universe,
+        _length(115), 2, 0xA1, 0, 1, CHANNELS + 1,
+    )  # fmt: skip
+    return head + b"\0" + levels
+
+
+def multicast_group(universe: int) -> str:
+    """Where receivers of a universe listen (E1.31, 9.3.1)."""
+    return f"239.255.{universe >> 8}.{universe & 0xFF}"
+
+
+def _length(offset: int) -> int:
+    """Flags and length of a layer that begins at that byte and ends with the packet."""
+    return 0x7000 | (_LAYOUT.size + 1 + CHANNELS - offset)

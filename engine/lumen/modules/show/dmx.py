@@ -1,0 +1,100 @@
+"""A universe of DMX over sACN: the newest level of each channel, sent at each change and kept alive."""
+
+import ipaddress
+import socket
+import time
+import uuid
+from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
+from typing import Any
+
+from lumen.errors import ModuleError
+from lumen.interpreters.message_fields import MessageField
+from lumen.language.show import DmxLink
+from lumen.modules.show.channels import CHANNELS, PORT, channel_level, data_packet, multicast_group
+from lumen.modules.show.health import LinkHealth
+
+KEEP_ALIVE = 0.8
+"""How often levels are sent that do not change [s]; E1.31 (6.6.2) wants 0.8 to 1.0."""
+GOODBYES = 3
+"""Packets that say that no more come (E1.31, 6.2.6)."""
+MULTICAST_REACH = 8
+"""Routers that multicast may pass."""
+
+
+class DmxUniverse:
+    """Sends one universe. Nothing is sent before the first message, so that beginning darkens no hall.
+
+    A channel that no field has is 0, and one of a field that was not said yet; a field that a body lacks stays.
+    """
+
+    def __init__(
+        self,
+        link: DmxLink,
+        fields: Mapping[str, Mapping[str, MessageField]],
+        source: str,
+        health: LinkHealth,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._link, self._fields, self._source = link, fields, source
+        self._health, self._clock = health, clock
+        self._component = uuid.uuid4().bytes
+        self._levels = bytearray(CHANNELS)
+        self._sequence = 0
+        self._sent: float | None = None
+        self._socket: socket.socket | None = None
+
+    @property
+    def routes(self) -> Collection[str]:
+        return self._link.routes
+
+    def begin(self) -> None:
+        """Nothing is there to be reached: DMX has no answers."""
+
+    def send(self, route: str, body: Any) -> None:
+        if not isinstance(body, Mapping):
+            raise ModuleError("the body has no fields")
+        wanted = {
+            channel: channel_level(body[name], self._fields[route][name])
+            for name, channel in self._link.routes[route].items()
+            if name in body
+        }
+        for channel, level in wanted.items():
+            self._levels[channel - 1] = level
+        self._transmit()
+
+    def tick(self) -> None:
+        if self._sent is not None and self._clock() - self._sent >= KEEP_ALIVE:
+            self._transmit()
+        self._health.tick()
+
+    def close(self) -> None:
+        if self._sent is not None:
+            for _ in range(GOODBYES):
+                self._transmit(terminated=True)
+        if self._socket:
+            self._socket.close()
+
+    def _transmit(self, *, terminated: bool = False) -> None:
+        packet = data_packet(
+            bytes(self._levels), self._link.universe, self._sequence,
+            source=self._source, component=self._component, terminated=terminated,
+        )  # fmt: skip
+        self._sequence, self._sent = (self._sequence + 1) % 256, self._clock()
+        try:
+            self._opened().sendto(packet, (self._link.host or multicast_group(self._link.universe), PORT))
+        except (OSError, UnicodeError) as error:
+            why = getattr(error, "strerror", None) or error
+            self._health.down(f"can't be sent to ({why}): it is tried again")
+        else:
+            self._health.up()
+
+    def _opened(self) -> socket.socket:
+        if self._socket is None:
+            family = socket.AF_INET
+            with suppress(ValueError):
+                family = socket.AF_INET6 if ipaddress.ip_address(self._link.host).version == 6 else family
+            self._socket = socket.socket(family, socket.SOCK_DGRAM)
+            if not self._link.host:
+                self._socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, MULTICAST_REACH)
+        return self._socket

@@ -1,0 +1,168 @@
+"""A broker of MQTT 3.1.1: routes as topics, by Eclipse Paho on a thread of its own."""
+
+import os
+import secrets
+import ssl
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from paho.mqtt.client import Client, MQTTMessage
+from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode, MQTTProtocolVersion
+
+from lumen.errors import ModuleError
+from lumen.interpreters.message_fields import MessageField
+from lumen.language.routes import Carried, Route
+from lumen.language.show import MqttLink
+from lumen.modules.show.device_link import TakeFromDevice
+from lumen.modules.show.health import LinkHealth
+from lumen.modules.show.payloads import body_of_payload, payload_of
+from lumen.modules.show.refusals import Refusals
+from lumen.upkeep.threads import WatchedThread
+
+CREDENTIALS_VARIABLE = "LUMEN_MQTT_CREDENTIALS"
+"""The environment variable that names a file with `NAME:PASSWORD`."""
+MAX_PAYLOAD = 65_536
+"""How long a payload that comes may be [bytes]."""
+MAX_WAITING = 1_000
+"""Messages that wait for the broker's word that it has them."""
+FIRST_PAUSE, LONGEST_PAUSE = 1, 30
+"""How long after an attempt to connect the next one comes [s]: twice as long each time."""
+KEEP_ALIVE = 15
+"""How often a broker that says nothing is asked whether it is there [s]."""
+
+
+class MqttBroker:
+    """Publishes routes of `link`, and hands what comes on the topics of `incoming` to `deliver`.
+
+    A `carried: telemetry` route is sent at most once (QoS 0), any other at least once (QoS 1). While the broker is away
+    nothing waits: a command that comes late is worse than none; only of a topic that it retains the newest is sent when
+    it is back.
+    """
+
+    def __init__(
+        self,
+        link: MqttLink,
+        routes: Mapping[str, Route],
+        fields: Mapping[str, MessageField | None],
+        incoming: Sequence[str],
+        deliver: TakeFromDevice,
+        refusals: Refusals,
+        health: LinkHealth,
+        name: str = "lumen",
+    ) -> None:
+        self._link, self._routes, self._fields, self._deliver = link, routes, fields, deliver
+        self._incoming = {link.routes[route].topic: route for route in incoming}
+        self._refusals, self._health = refusals, health
+        self._retained: dict[str, bytes] = {}
+        self._closing = False
+        self._client = self._made(f"{name}-{secrets.token_hex(4)}")
+        self._thread = WatchedThread("lumen-show-mqtt", self._run)
+
+    @property
+    def routes(self) -> Collection[str]:
+        return self._link.routes
+
+    def begin(self) -> None:
+        self._thread.start()
+
+    def send(self, route: str, body: Any) -> None:
+        row, mapping = self._routes[route], self._link.routes[route]
+        payload = payload_of(body, self._fields[route])
+        if mapping.retain:
+            self._retained[route] = payload
+        if not self._client.is_connected():
+            if mapping.retain:
+                return
+            raise ModuleError("the broker is away")
+        self._publish(mapping.topic, payload, row, retain=mapping.retain)
+
+    def tick(self) -> None:
+        if self._client.is_connected():
+            self._health.up()
+        self._health.tick()
+
+    def close(self) -> None:
+        self._closing = True
+        self._client.disconnect()
+        self._thread.join(5.0)
+
+    def _made(self, identity: str) -> Client:
+        client = Client(
+            CallbackAPIVersion.VERSION2, identity, clean_session=True, protocol=MQTTProtocolVersion.MQTTv311
+        )
+        if self._link.tls:
+            client.tls_set_context(ssl.create_default_context())
+        if file := os.environ.get(CREDENTIALS_VARIABLE):
+            client.username_pw_set(*_credentials(file))
+        client.reconnect_delay_set(FIRST_PAUSE, LONGEST_PAUSE)
+        client.max_queued_messages_set(MAX_WAITING)
+        client.on_connect = self._connected
+        client.on_connect_fail = self._unreachable
+        client.on_disconnect = self._disconnected
+        client.on_subscribe = self._subscribed
+        client.on_message = self._message
+        return client
+
+    def _run(self) -> None:
+        if not self._closing:
+            self._client.connect_async(self._link.host, self._link.port, KEEP_ALIVE)
+            try:
+                self._client.loop_forever(retry_first_connection=True)
+            except UnicodeError:
+                self._health.down("has a name that nobody can have: mend `host`")
+
+    def _publish(self, topic: str, payload: bytes, row: Route, *, retain: bool) -> None:
+        quality = 0 if row.carried is Carried.TELEMETRY else 1
+        try:
+            done = self._client.publish(topic, payload, quality, retain)
+        except ValueError as error:
+            raise ModuleError(f"it can't be published: {error}") from None
+        if done.rc is not MQTTErrorCode.MQTT_ERR_SUCCESS:
+            raise ModuleError(
+                "the broker takes no more" if done.rc is MQTTErrorCode.MQTT_ERR_QUEUE_SIZE else "it is away"
+            )
+
+    def _connected(self, client: Client, data: Any, flags: Any, reason: Any, properties: Any) -> None:
+        if reason.is_failure:
+            self._health.down(f"lets nobody in ({str(reason).lower()}): check {CREDENTIALS_VARIABLE}")
+            return
+        self._health.up()
+        for topic in self._incoming:
+            client.subscribe(topic, 1)
+        for route, payload in [*self._retained.items()]:
+            self._publish(self._link.routes[route].topic, payload, self._routes[route], retain=True)
+
+    def _unreachable(self, client: Client, data: Any) -> None:
+        self._health.down("can't be reached: it is tried again until it is there")
+
+    def _disconnected(self, client: Client, data: Any, flags: Any, reason: Any, properties: Any) -> None:
+        if not self._closing:
+            self._health.down("is gone: it is tried again until it is there")
+
+    def _subscribed(self, client: Client, data: Any, number: int, reasons: Any, properties: Any) -> None:
+        if any(reason.is_failure for reason in reasons):
+            self._health.down("does not let us listen to one of our topics")
+
+    def _message(self, client: Client, data: Any, message: MQTTMessage) -> None:
+        try:
+            route = self._incoming.get(message.topic)
+        except UnicodeDecodeError:
+            route = None
+        if route is None or (message.retain and not self._link.routes[route].retain):
+            return
+        place, payload, field = f"{message.topic} (MQTT)", bytes(message.payload), self._fields[route]
+        if len(payload) > MAX_PAYLOAD:
+            self._refusals.add(place, f"it is longer than {MAX_PAYLOAD} bytes")
+            return
+        self._deliver(route, place, lambda: body_of_payload(payload, field))
+
+
+def _credentials(file: str) -> tuple[str, str]:
+    try:
+        name, separator, password = Path(file).read_text("utf-8").strip().partition(":")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ModuleError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names can't be read: {error}") from None
+    if not separator or not name or "\n" in password:
+        raise ModuleError(f"the file `{file}` that {CREDENTIALS_VARIABLE} names holds no line `NAME:PASSWORD`")
+    return name, password

@@ -1,0 +1,42 @@
+"""Bodies as payloads of MQTT: JSON, or one field as bare text."""
+
+from typing import Any
+
+import orjson
+
+from lumen.errors import ModuleError
+from lumen.interpreters.message_fields import FieldKind, MessageField
+
+
+def payload_of(body: Any, field: MessageField | None) -> bytes:
+    """The body as JSON, or its field as bare text. Raises ModuleError for what can't be carried so."""
+    if field is None:
+        return _json(body)
+    if not isinstance(body, dict) or field.name not in body:
+        raise ModuleError(f"the body has no `{field.name}`")
+    value = body[field.name]
+    try:
+        return value.encode() if isinstance(value, str) else _json(value)
+    except UnicodeEncodeError:
+        raise ModuleError(f"`{field.name}` holds half a character") from None
+
+
+def body_of_payload(payload: bytes, field: MessageField | None) -> Any:
+    """What a payload says; raises ModuleError for what is no JSON, or no text."""
+    if field and field.kind is FieldKind.STRING:
+        try:
+            return {field.name: payload.decode()}
+        except UnicodeDecodeError:
+            raise ModuleError("it is no text in UTF-8") from None
+    try:
+        value = orjson.loads(payload)
+    except orjson.JSONDecodeError:
+        raise ModuleError("it is no JSON") from None
+    return {field.name: value} if field else value
+
+
+def _json(value: Any) -> bytes:
+    try:
+        return orjson.dumps(value)
+    except TypeError as error:
+        raise ModuleError(f"it can't be written as JSON: {error}") from None

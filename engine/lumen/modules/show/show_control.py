@@ -1,0 +1,181 @@
+"""The module `show`: what goes out to devices, and what comes from them, limited, checked and counted."""
+
+import socket
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from lumen.errors import BusError, ModuleError
+from lumen.interpreters.message_fields import MessageField, message_fields
+from lumen.language.modules import SHOW
+from lumen.language.projects import Project
+from lumen.language.routes import Direction
+from lumen.language.show import MqttLink, Show, TopicMapping, may_come_from_devices
+from lumen.modules.module import Module
+from lumen.modules.show.device_link import DeviceLink
+from lumen.modules.show.health import LinkHealth
+from lumen.modules.show.refusals import Refusals
+from lumen.ports import Bus, Message, MessageHandler
+from lumen.upkeep.ratelimit import RateLimiter
+
+LACKING = "MQTT and OSC need two libraries: type `pip install lumen-robot[show]`"
+TICK = 0.2
+"""How often the devices are looked after [s]."""
+
+
+class ShowControl(Module):
+    """Carries routes to the devices of `Project.show`, and what they send to routes that may come from devices.
+
+    A device that is not there, or a message that can't be carried, costs a line and nothing else. Whatever changes in
+    lumen.yaml counts when that is saved: connections are made anew.
+    """
+
+    name = SHOW
+
+    def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None]) -> None:
+        super().__init__(project, bus, tell)
+        self._refusals = Refusals(self.tell)
+        self._limiter, self._counting = RateLimiter(), threading.Lock()
+        self._links: dict[str, DeviceLink] = {}
+        self._linked: Project | None = None
+
+    @property
+    def refused(self) -> int:
+        return self._refusals.count
+
+    def hears(self) -> Mapping[str, MessageHandler]:
+        show, routes = self.project.show, self.project.routes
+        out = [name for name in show.routes if name in routes and routes[name].direction is Direction.OUT]
+        return {name: partial(self._send, name) for name in sorted(out)}
+
+    def idle(self) -> float | None:
+        self._link()
+        for link in self._links.values():
+            link.tick()
+        self._refusals.tick()
+        return TICK
+
+    def end(self) -> None:
+        self._unlink()
+        self._refusals.tick(all=True)
+
+    def _send(self, route: str, message: Message) -> None:
+        self._link()
+        for name, link in self._links.items():
+            if route in link.routes:
+                try:
+                    link.send(route, message.body)
+                except ModuleError as error:
+                    self._refusals.add(f"{route} ({name.upper()})", str(error))
+
+    def _deliver(self, route: str, place: str, make: Callable[[], Any]) -> None:
+        """What a device sent; called on the threads of the links."""
+        row = self.project.routes.get(route)
+        if row is None or not may_come_from_devices(row):
+            self._refusals.add(place, f"devices may not send on the route `{route}`")
+            return
+        with self._counting:
+            rate = row.rate
+            if rate and self._limiter.wait(route, rate):
+                self._refusals.add(place, f"more than {rate:g} a second")
+                return
+            self.handled += 1
+        try:
+            self.bus.publish(row.key_for(self.project.robot), make(), ttl=row.ttl)
+        except (ModuleError, BusError) as error:
+            self._refusals.add(place, str(error))
+
+    def _link(self) -> None:
+        """Open what lumen.yaml says now, where that is not what is open."""
+        project, before = self.project, self._linked
+        if before and (before.show, before.routes, before.messages) == (project.show, project.routes, project.messages):
+            return
+        self._unlink()
+        self._linked = project
+        for name in ("mqtt", "osc", "dmx"):
+            try:
+                if found := getattr(self, f"_{name}")(project.show):
+                    self._links[name] = found
+                    found.begin()
+            except (ModuleError, ImportError) as error:
+                self.tell(f"{name}: {error}" if isinstance(error, ModuleError) else LACKING)
+
+    def _unlink(self) -> None:
+        for link in self._links.values():
+            link.close()
+        self._links = {}
+
+    def _mqtt(self, show: Show) -> DeviceLink | None:
+        if show.mqtt is None:
+            return None
+        from lumen.modules.show.mqtt import MqttBroker
+
+        link = replace(show.mqtt, routes=self._foreign(show.mqtt))
+        return MqttBroker(
+            link,
+            self.project.routes,
+            {name: self._fields(name).get(row.field) for name, row in link.routes.items()},
+            self._incoming(link.routes),
+            self._deliver,
+            self._refusals,
+            self._health(f"the MQTT broker {link.host}:{link.port}"),
+            f"lumen-{self.project.robot}",
+        )
+
+    def _osc(self, show: Show) -> DeviceLink | None:
+        if show.osc is None:
+            return None
+        from lumen.modules.show.osc import OscDevice
+
+        link = show.osc
+        fields = {}
+        for name, row in link.routes.items():
+            known = self._fields(name)
+            fields[name] = [known[field] for field in (known if row.fields is None else row.fields) if field in known]
+        health = self._health(f"the OSC device {link.host}:{link.port}")
+        return OscDevice(link, fields, self._incoming(link.routes), self._deliver, self._refusals, health)
+
+    def _dmx(self, show: Show) -> DeviceLink | None:
+        if show.dmx is None:
+            return None
+        from lumen.modules.show.dmx import DmxUniverse
+
+        link = show.dmx
+        fields = {name: self._fields(name) for name in link.routes}
+        return DmxUniverse(link, fields, f"Lumen {self.project.robot}", self._health(f"DMX universe {link.universe}"))
+
+    def _foreign(self, link: MqttLink) -> Mapping[str, TopicMapping]:
+        """The routes but those that our own broker carries itself: what we sent would come back for ever."""
+        project, routes = self.project, dict(link.routes)
+        if not same_machine(getattr(self.bus, "host", ""), link.host):
+            return routes
+        for name, row in link.routes.items():
+            if name in project.routes and row.topic.replace("/", ".") == project.routes[name].key_for(project.robot):
+                del routes[name]
+                self.tell(f"RabbitMQ carries `{name}` to and from {row.topic} by itself: take it out of `mqtt`")
+        return routes
+
+    def _health(self, device: str) -> LinkHealth:
+        return LinkHealth(device, self.tell, self.well)
+
+    def _incoming(self, routes: Mapping[str, Any]) -> list[str]:
+        known = self.project.routes
+        return [name for name in routes if name in known and known[name].direction is Direction.IN]
+
+    def _fields(self, route: str) -> Mapping[str, MessageField]:
+        """The fields of a route's bodies."""
+        row = self.project.routes.get(route)
+        return message_fields(self.project.messages.get(row.schema) if row else None)
+
+
+def same_machine(one: str, other: str) -> bool:
+    """Whether two names are the same machine's, as far as its addresses say; none is nobody's."""
+    if not one or one == other:
+        return bool(one)
+    try:
+        first, second = ({row[4][0] for row in socket.getaddrinfo(name, None)} for name in (one, other))
+    except (OSError, UnicodeError):
+        return False
+    return bool(first & second)

@@ -1,0 +1,186 @@
+"""What goes to lamps, screens and sound desks, and comes from them: whether the ways can carry it."""
+
+from collections.abc import Iterator, Mapping
+
+from lumen.interpreters.message_fields import FieldKind, MessageField, message_fields
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.language.routes import Direction, Route
+from lumen.language.show import SHOW_PATH, DmxLink, MqttLink, OscLink, may_come_from_devices
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.references import known_route
+
+SHOW_ADDRESS = Code("show-address", "routes", ERROR, "a topic, an address or a channel is none, or is used twice")
+SHOW_DIRECTION = Code(
+    "show-direction", "routes", ERROR, "devices are to send on a route on which they can't, or may not"
+)
+SHOW_FIELD = Code("show-field", "routes", ERROR, "a field of a message can't be carried to a device, or from one")
+
+MAX_TOPIC_BYTES = 65_535
+"""Of MQTT 3.1.1 (4.7.3)."""
+_OSC_RESERVED = " #*,?[]{}"
+"""What no address of a message may hold (OSC 1.0)."""
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report what is wrong with each way to devices."""
+    settings, report = draft.settings, draft.main
+    if settings is None or report is None:
+        return
+    ways = _Ways(draft, report)
+    if settings.show.mqtt:
+        ways.mqtt(settings.show.mqtt)
+    if settings.show.osc:
+        ways.osc(settings.show.osc)
+    if settings.show.dmx:
+        ways.dmx(settings.show.dmx)
+
+
+class _Ways:
+    """The rules of each way; `draft` has settings."""
+
+    def __init__(self, draft: ProjectDraft, report: DocumentReport) -> None:
+        self.draft, self.report = draft, report
+
+    def mqtt(self, link: MqttLink) -> None:
+        path, taken = (*SHOW_PATH, "mqtt", "routes"), dict[str, str]()
+        for name, row in link.routes.items():
+            where = _value(self.report, (*path, name), "topic")
+            if fault := _topic_fault(row.topic):
+                self.report(SHOW_ADDRESS, where, *fault)
+            else:
+                self.twice(taken, row.topic, name, where)
+        for name, route in self.routes(path, link.routes):
+            self.may_come(route, (*path, name))
+            if field := link.routes[name].field:
+                where = (*path, name, "field")
+                kinds = (FieldKind.STRING, FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
+                self.field(route, field, where, kinds, "bare text holds a text, a number, or true and false")
+
+    def osc(self, link: OscLink) -> None:
+        path, taken = (*SHOW_PATH, "osc", "routes"), dict[str, str]()
+        for name, row in link.routes.items():
+            where = _value(self.report, (*path, name), "address")
+            if fault := _address_fault(row.address):
+                self.report(SHOW_ADDRESS, where, *fault)
+            else:
+                self.twice(taken, row.address, name, where)
+        for name, route in self.routes(path, link.routes):
+            if self.may_come(route, (*path, name)) and route.direction is Direction.IN and link.listen is None:
+                message = f"`{name}` comes in, and nobody listens for what the device sends"
+                self.report(SHOW_DIRECTION, (*path, name), message, "write `listen:` with a port of ours", key=True)
+            self.arguments(route, link.routes[name].fields, (*path, name))
+
+    def dmx(self, link: DmxLink) -> None:
+        path, taken = (*SHOW_PATH, "dmx", "routes"), dict[int, NodePath]()
+        for name, channels in link.routes.items():
+            for field, channel in channels.items():
+                where = (*path, name, field)
+                if channel in taken:
+                    related = [(taken[channel], "it has it already")]
+                    hint = "give each field a channel of its own"
+                    self.report(SHOW_ADDRESS, where, f"the channel {channel} is used twice", hint, related=related)
+                taken.setdefault(channel, where)
+        for name, route in self.routes(path, link.routes):
+            if route.direction is Direction.IN:
+                message = f"`{name}` comes in, and DMX only goes out"
+                self.report(SHOW_DIRECTION, (*path, name), message, "choose a route with `direction: out`", key=True)
+                continue
+            for field in link.routes[name]:
+                where, kinds = (*path, name, field), (FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
+                found = self.field(route, field, where, kinds, "a channel holds a number, or yes and no", key=True)
+                if found and found.kind is not FieldKind.BOOLEAN and not _ranged(found):
+                    message = f"`{field}` has no range that could become 0 to 255"
+                    hint = f"write `minimum` and `maximum` into schemas/messages/{route.schema}.schema.json"
+                    self.report(SHOW_FIELD, where, message, hint, key=True)
+
+    def routes(self, path: NodePath, names: Mapping[str, object]) -> Iterator[tuple[str, Route]]:
+        """Those that lumen.yaml has; the others are reported."""
+        assert self.draft.settings
+        for name in names:
+            if known_route(self.draft, self.report, (*path, name), name, key=True):
+                yield name, self.draft.settings.routes[name]
+
+    def may_come(self, route: Route, path: NodePath) -> bool:
+        if route.direction is Direction.OUT or may_come_from_devices(route):
+            return True
+        message = f"`{route.name}` has a key of Lumen's own ({route.key}), on which no device may send"
+        hint = f"make a route with a key of your own, such as `museum.{route.name}`"
+        self.report(SHOW_DIRECTION, path, message, hint, key=True)
+        return False
+
+    def twice(self, taken: dict[str, str], place: str, name: str, path: NodePath) -> None:
+        if (other := taken.setdefault(place, name)) != name:
+            message = f"`{other}` has {place} already: what goes out on one would come in on the other, or twice"
+            self.report(SHOW_ADDRESS, path, message, "give each route a place of its own")
+
+    def arguments(self, route: Route, fields: tuple[str, ...] | None, path: NodePath) -> None:
+        """Each field that becomes an argument, those of the schema where none are named."""
+        known, kinds = self.fields(route), (FieldKind.STRING, FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
+        can = "an argument is a text, a number, or yes and no"
+        if fields is None and not known:
+            if self.has_schema(route):
+                message = f"`{route.name}` has no schema whose fields would be the arguments"
+                self.report(SHOW_FIELD, path, message, "write `fields: []` where there are none", key=True)
+            return
+        for i, field in enumerate(known if fields is None else fields):
+            where = path if fields is None else (*path, "fields", i)
+            self.field(route, field, where, kinds, can, key=fields is None)
+
+    def field(
+        self,
+        route: Route,
+        name: str,
+        path: NodePath,
+        kinds: tuple[FieldKind, ...],
+        can: str,
+        *,
+        key: bool = False,
+    ) -> MessageField | None:
+        """The field, where a body has it and it is of one of those kinds; else that is reported."""
+        known = self.fields(route)
+        if name not in known:
+            if self.has_schema(route):
+                hint = did_you_mean(name, known, "it has") if known else "give the route a `schema` that has it"
+                self.report(SHOW_FIELD, path, f"`{route.name}` has no field `{name}`", hint, key=key)
+            return None
+        if known[name].kind not in kinds:
+            hint = f"{can}: give it one such `type` in schemas/messages/{route.schema}.schema.json"
+            self.report(SHOW_FIELD, path, f"`{name}` of `{route.name}` can't be carried there", hint, key=key)
+            return None
+        return known[name]
+
+    def fields(self, route: Route) -> Mapping[str, MessageField]:
+        return message_fields(self.draft.messages.get(route.schema))
+
+    def has_schema(self, route: Route) -> bool:
+        """Whether what is missing in its schema is missing: not where the file has been refused."""
+        return not route.schema or route.schema in self.draft.messages
+
+
+def _value(report: DocumentReport, path: NodePath, name: str) -> NodePath:
+    """The place of a value that stands alone or under its name."""
+    long = (*path, name)
+    return long if long in report.document.spans else path
+
+
+def _ranged(field: MessageField) -> bool:
+    return field.low is not None and field.high is not None and field.low < field.high
+
+
+def _topic_fault(topic: str) -> tuple[str, str] | None:
+    if "+" in topic or "#" in topic:
+        return f"`{topic}` holds a wildcard, and a message has one certain topic", "write the whole topic"
+    if "\0" in topic or len(topic.encode("utf-8", "replace")) > MAX_TOPIC_BYTES:
+        return "no topic is that long, or holds that sign", "write words with `/` between them"
+    if topic.startswith("$"):
+        return f"`{topic}` begins with $, as the broker's own topics do", "choose another first word"
+    return None
+
+
+def _address_fault(address: str) -> tuple[str, str] | None:
+    if not address.startswith("/"):
+        return f"`{address}` does not begin with /", f"write `/{address}`"
+    if bad := [sign for sign in address if sign in _OSC_RESERVED or not 32 < ord(sign) < 127]:
+        return f"no address of OSC holds `{bad[0]}`", "write words of ASCII with `/` between them"
+    return None
