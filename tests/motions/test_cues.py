@@ -11,9 +11,10 @@ import lumen
 from lumen.app.setup import Setup
 from lumen.app.whole_node import WholeNode
 from lumen.clocks.simulated import SimulatedClock
-from lumen.language.commands import Command, Say, Start
+from lumen.language.commands import Command, PlaySound, Say, Start
 from lumen.language.events import CUE, Event
 from lumen.language.projects import Project
+from lumen.modules.sound import Sound, save
 from lumen.ports import Perform
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
@@ -132,7 +133,11 @@ def test_a_sound_is_told_and_one_that_is_missing_is_logged_once(
     assert sum("sounds/beat.wav" in record.getMessage() for record in caplog.records) == 1
     there = Path(project.root) / "sounds"
     there.mkdir()
-    (there / "beat.wav").write_bytes(b"")
+    beat = Sound(8_000, bytes(8_000))
+    save(there / "beat.wav", beat)
     caplog.clear()
-    run(project, 4.0)
+    _, robot, _ = run(project, 4.0)
     assert not caplog.records
+    assert [command for _, command in robot.performed if isinstance(command, PlaySound)] == [
+        PlaySound("sounds/beat.wav", beat.duration)
+    ]

@@ -6,7 +6,7 @@ from math import hypot, nan
 
 import pytest
 
-from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake, Walk
+from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, Sense, Sonar
@@ -80,17 +80,12 @@ def test_cancelled_motions_end_and_go_back_to_where_they_began(robot: Lockstep, 
     assert angles["LKneePitch"] == pytest.approx(stand["LKneePitch"])
 
 
-def test_lights_and_sounds(robot: Lockstep, live: Live, caplog: pytest.LogCaptureFixture) -> None:
-    robot.nao.world.sounds = {"/home/nao/lumen/sounds/beat.wav"}
+def test_lights_and_sounds_of_a_motion(robot: Lockstep, live: Live) -> None:
     cues = (Cue(0.0, "leds", {"eyes": "red", "left_ear": "#0000ff"}), Cue(0.1, "sound", "sounds/beat.wav"))
-    motion = MotionDefinition("show", 0.5, {}, (*cues, Cue(0.2, "sound", "sounds/none.wav")))
-    robot.start("a", Perform(motion))
-    with caplog.at_level(logging.WARNING):
-        events = live(1.0)
-    assert answers(events) == ["cue", "cue", "done.command.a"]
+    robot.start("a", Perform(MotionDefinition("show", 0.5, {}, cues)))
+    assert answers(live(1.0)) == ["cue", "done.command.a"]
     fades = [(group, colour) for group, colour, _ in robot.nao.world.called("fadeRGB")]
     assert sorted(fades) == [("FaceLeds", 0xFF0000), ("LeftEarLeds", 0x0000FF)]  # sent together
-    assert ["none.wav" in record.getMessage() for record in caplog.records] == [True]
 
 
 def test_lights_of_a_behaviour(robot: Lockstep, live: Live) -> None:
@@ -101,6 +96,19 @@ def test_lights_of_a_behaviour(robot: Lockstep, live: Live) -> None:
         ("FaceLeds", 0x663399, 0.5),
         ("LeftEarLeds", 0x000000, 0.5),
     ]
+
+
+def test_a_sound_is_played_from_its_own_disk(robot: Lockstep, live: Live) -> None:
+    robot.nao.world.sounds = {"/home/nao/lumen/sounds/bell.wav"}
+    robot.start("a", PlaySound("sounds/bell.wav", 5.0))
+    robot.start("b", PlaySound("sounds/none.wav", 1.0))
+    assert answers(live(1.0)) == ["error.command.b"]
+    assert answers(live(5.0)) == ["done.command.a"]
+    robot.start("c", PlaySound("sounds/bell.wav", 5.0))
+    assert answers(live(1.0)) == []
+    robot.start("d", Stop("play"))
+    assert sorted(answers(live(1.0))) == ["cancelled.command.c", "done.command.d"]
+    assert robot.nao.world.called("ALAudioPlayer.stopAll")
 
 
 def test_volume_is_that_of_its_speech(robot: Lockstep, live: Live) -> None:

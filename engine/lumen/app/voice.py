@@ -1,6 +1,5 @@
 """`--voice espeak`: the simulated robot's texts as sound, in a file or on a device."""
 
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -9,28 +8,30 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
+from lumen.app.loudspeaker import player_here
 from lumen.app.setup import Setup
 from lumen.errors import ModuleError, UsageError
+from lumen.modules.audio_track import AudioTrack
 from lumen.modules.sound import Sound, save
 from lumen.modules.voice import espeak
 from lumen.ports import Robot
-
-PLAYERS = (("aplay", "-q"), ("paplay",), ("afplay",), ("pw-play",))
 
 
 class Speaker:
     """A voice of the simulated robot: each text takes as long as its sound.
 
     With a `file` it writes the sound of the whole run, each text where it was said in simulated time; else the
-    machine's own player gets it. A language that espeak-ng lacks is spoken in `language`.
+    machine's own player gets it. What is said goes into `heard`, too, where that is given. A language that espeak-ng
+    lacks is spoken in `language`.
     """
 
-    def __init__(self, language: str, file: Path | None) -> None:
+    def __init__(self, language: str, file: Path | None, heard: AudioTrack | None = None) -> None:
         self._espeak, self._language, self._file = espeak(), language, file
-        self._track: list[bytes] = []
+        self._heard, self._track = heard, list[bytes]()
         self._length = 0
+        self._cut: Callable[[float], None] | None = None
         self._saying: tuple[Sound, float] | None = None
-        self._player = None if file else next((p for p in PLAYERS if shutil.which(p[0])), None)
+        self._player = None if file else player_here()
         self._playing: subprocess.Popen[bytes] | None = None
         self._sheet: IO[bytes] | None = None
 
@@ -46,6 +47,7 @@ class Speaker:
             sound = self._espeak.speak(text, self._language)
         sound = sound.at_volume(volume)
         self._saying = (sound, now)
+        self._cut = self._heard.add(sound, now) if self._heard is not None else None
         if self._player:
             self._play(self._player, sound)
         return sound.duration
@@ -55,6 +57,8 @@ class Speaker:
             return
         (sound, began), self._saying = self._saying, None
         self._hush()
+        if self._cut:
+            self._cut(now)
         if self._file:
             self._append(sound.until(now - began), began)
 
@@ -90,19 +94,23 @@ class Speaker:
             self._sheet = None
 
 
-def voiced(chosen: Setup, voice: str, file: Path | None, language: str) -> Callable[[], None]:
+def voiced(
+    chosen: Setup, voice: str, file: Path | None, language: str, track: AudioTrack | None = None
+) -> Callable[[], None]:
     """Give the robot the voice that was asked for; what ends it.
 
     Raises UsageError or ModuleError where that can't be had.
     """
-    found = speaker(voice, file, chosen.robot, language)
+    found = speaker(voice, file, chosen.robot, language, track)
     if found is None:
         return lambda: None
     chosen.robot.speak_with(found)  # type: ignore[attr-defined]
     return found.close
 
 
-def speaker(voice: str, file: Path | None, robot: Robot, language: str) -> Speaker | None:
+def speaker(
+    voice: str, file: Path | None, robot: Robot, language: str, track: AudioTrack | None = None
+) -> Speaker | None:
     """The voice that was asked for; None for none. Raises UsageError or ModuleError where it can't be had."""
     if voice == "none":
         if file:
@@ -112,7 +120,7 @@ def speaker(voice: str, file: Path | None, robot: Robot, language: str) -> Speak
         raise UsageError("--voice gives the simulated robot a voice: leave out --robot")
     if file and (file.suffix != ".wav" or not file.parent.is_dir()):
         raise UsageError(f"can't write a sound to {file}: name a .wav file in a folder that is there")
-    found = Speaker(language, file)
+    found = Speaker(language, file, track)
     if found.mute:
         print(
             "There is no sound player here: texts take their time, and `--sound FILE.wav` keeps them.", file=sys.stderr

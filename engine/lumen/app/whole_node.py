@@ -21,6 +21,7 @@ from lumen.errors import LumenError
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.language.stories import Story
+from lumen.modules.audio_track import AudioTrack
 from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART
 from lumen.runtime.story import StoryPlayer
@@ -86,9 +87,9 @@ class WholeNode(Node):
         where = self.parts.index(self.brain)
         self.parts[where:where] = parts
 
-    def add_film(self, path: Path) -> None:
-        """Write a film of a simulated robot. Raises RobotError where nothing can be drawn."""
-        self.add(FilmPart(path, self.setup.robot))
+    def add_film(self, path: Path, track: AudioTrack | None = None) -> None:
+        """Write a film of a simulated robot, with what `track` hears. Raises RobotError where nothing can be drawn."""
+        self.add(FilmPart(path, self.setup.robot, track))
 
     def add_modules(self, folder: Path | None = None, *, awaited: bool = False) -> None:
         """Let the modules take part that `lumen.yaml` wants here; one that can't is told of, and the others begin.

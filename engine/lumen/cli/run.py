@@ -11,6 +11,7 @@ from pathlib import Path
 from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
 from lumen.app.exhibition import Exhibition
+from lumen.app.loudspeaker import Loudspeaker
 from lumen.app.narrator import Narrator
 from lumen.app.node import Node
 from lumen.app.parts.visitor import VisitorPart
@@ -37,6 +38,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.loading.packaged import find_project
 from lumen.loading.units import seconds
+from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Clock
 from lumen.runtime.home import home_of as home_of_run
 from lumen.runtime.presence import BRAIN, ROBOT_PART
@@ -116,7 +118,9 @@ def _whole(
     """Run a whole exhibition in this process."""
     video = film_path(options.video, options.robot)
     setup = set_up(options.robot, project, options.speed, story, options.robot_url)
-    silence = _voice(options, setup, language or project.languages[0])
+    track = AudioTrack() if video else None
+    silence = _voice(options, setup, language or project.languages[0], track)
+    quiet = _sounding(options, project, setup, track)
     performance = Performance(setup, lambda: exhibition.project)
     try:
         exhibition = Exhibition(
@@ -128,7 +132,7 @@ def _whole(
         _heed_signals(node)
         try:
             if video:
-                node.add_film(video)
+                node.add_film(video, track)
             node.claim()
             performance.introduce(exhibition, run_directory, options.speed)
             folder = None if story else home_of_run(run_directory.root)
@@ -141,6 +145,7 @@ def _whole(
         run_directory.close(forget=not node.leaving)
         return performance.summary(exhibition, video)
     finally:
+        quiet()
         silence()
 
 
@@ -172,6 +177,7 @@ def _processes(
     node.claimed = lambda: print(f"{project.name}: {what} of {project.robot}, on {place}, ready after {ready():.1f} s.")
     if setup:
         node.closing.append(_voice(options, setup, language or project.languages[0]))
+        node.closing.append(_sounding(options, project, setup))
     _heed_signals(node)
     try:
         lived = node.run(period)
@@ -231,13 +237,26 @@ def _warn(text: str) -> None:
     print(text, file=sys.stderr)
 
 
-def _voice(options: argparse.Namespace, setup: Setup, language: str) -> Callable[[], None]:
+def _sounding(
+    options: argparse.Namespace, project: Project, setup: Setup, track: AudioTrack | None = None
+) -> Callable[[], None]:
+    """Let the simulated robot's sound files be heard here, unless time flies, and in the film; what ends it."""
+    if not hasattr(setup.robot, "sound_with"):
+        return lambda: None
+    loudspeaker = Loudspeaker(Path(project.root), track, audible=options.speed != "max")
+    setup.robot.sound_with(loudspeaker)
+    return loudspeaker.close
+
+
+def _voice(
+    options: argparse.Namespace, setup: Setup, language: str, track: AudioTrack | None = None
+) -> Callable[[], None]:
     """Give the robot the voice that the flags ask for; what ends it. Raises UsageError or ModuleError."""
     if options.voice == "none" and not options.sound:
         return lambda: None
     from lumen.app.voice import voiced  # nobody else needs espeak-ng
 
-    return voiced(setup, options.voice, options.sound, language)
+    return voiced(setup, options.voice, options.sound, language, track)
 
 
 def _story(project: Project, name: str | None) -> Story | None:

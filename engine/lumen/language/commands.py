@@ -89,6 +89,17 @@ class Volume:
 
 
 @dataclass(frozen=True, slots=True)
+class PlaySound:
+    """Play a sound file of the project, named from its folder.
+
+    `length` is how long it takes [s], which whoever performs it reads from the file; no YAML says it.
+    """
+
+    file: str
+    length: float = field(default=0.0, metadata={"yaml": False})
+
+
+@dataclass(frozen=True, slots=True)
 class Track:
     """Let a controller move its joints, or take them from it."""
 
@@ -140,7 +151,7 @@ class Log:
     text: str
 
 
-MotorCommand = Posture | Walk | Move | Look | Leds | Volume | Stop | Rest | Wake
+MotorCommand = Posture | Walk | Move | Look | Leds | Volume | PlaySound | Stop | Rest | Wake
 """What stands in the YAML as the robot performs it. A new one goes here, and into `verbs.py`."""
 
 VerbCommand = MotorCommand | Play | Track | Language | GoTo

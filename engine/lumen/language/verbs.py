@@ -32,6 +32,7 @@ from lumen.language.commands import (
     Look,
     Move,
     Play,
+    PlaySound,
     Posture,
     Rest,
     Stop,
@@ -175,6 +176,13 @@ _VOLUME = Verb(
     lambda c: f"speaks with volume {c.level:g} from now on",
     lambda c: f"speaks with volume {c.level:g} from then on",
 )
+_SOUND = Verb(
+    "sound",
+    PlaySound,
+    (VerbField("file"),),
+    lambda c: f"plays the sound {c.file}",
+    lambda c: f"plays the sound `{c.file}`",
+)
 _TRACK = Verb(
     "track",
     Track,
@@ -197,7 +205,7 @@ _LANGUAGE = Verb(
 )
 
 VERBS: tuple[Verb[Any], ...] = (
-    _PLAY, _POSTURE, _GO_TO, _MOVE, _WALK, _LOOK, _LEDS, _VOLUME, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
+    _PLAY, _POSTURE, _GO_TO, _MOVE, _WALK, _LOOK, _LEDS, _VOLUME, _SOUND, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
 )  # fmt: skip
 """Of those that share a name the last is meant where no field says which."""
 

@@ -13,4 +13,5 @@ and what they share:
 
     module.py   what every module is: routes that it hears, a thread of its own, and trouble that is said once
     sound.py    sound in a message: WAV in base64
+    audio_track.py   what is heard in a run, each sound at its time
 """

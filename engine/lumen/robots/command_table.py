@@ -10,10 +10,11 @@ from math import hypot, inf
 from typing import Any, Generic, TypeVar, get_args
 
 from lumen.errors import BadCommandError
-from lumen.language.commands import Channel, Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake, Walk
+from lumen.language.commands import Channel, Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.lights import light_fault
 from lumen.language.robots import Body
+from lumen.loading.sounds import MAX_SOUND_DURATION
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
 from lumen.robots.command_parameters import CommandParameters, shown
@@ -124,6 +125,19 @@ def _check_volume(command: Volume, body: Body) -> None:
 def _volume(p: CommandParameters) -> Volume:
     command = Volume(p.number("volume"))
     _check_volume(command, p.project.body)
+    return command
+
+
+def _check_sound(command: PlaySound, body: Body) -> None:
+    if not 0 <= command.length <= MAX_SOUND_DURATION:
+        raise BadCommandError(f"a sound takes from 0 to {MAX_SOUND_DURATION:g} s, not {command.length:g} s")
+    if not command.file or command.file[:1] in "/\\" or ".." in command.file.replace("\\", "/").split("/"):
+        raise BadCommandError(f"`{shown(command.file)}` is no file within the project")
+
+
+def _sound(p: CommandParameters) -> PlaySound:
+    command = PlaySound(p.text("file"), p.number("duration"))
+    _check_sound(command, p.project.body)
     return command
 
 
@@ -264,6 +278,21 @@ _VOLUME = CommandRow(
     check=_check_volume,
     moves=False,
 )
+_SOUND = CommandRow(
+    PlaySound,
+    "sound",
+    2,
+    "audioplayer",
+    "playFile",
+    lambda c: {"file": c.file, "duration": c.length},
+    _sound,
+    owns(),
+    lambda c: c.length,
+    channel="play",
+    check=_check_sound,
+    moves=False,
+)
+"""It waits for no part of the body: a bell rings while the robot speaks."""
 _AIM = CommandRow(
     Aim,
     "aim",
@@ -277,7 +306,7 @@ _AIM = CommandRow(
 """Nobody waits for an aim, and it moves what no command owns."""
 
 COMMANDS: tuple[CommandRow[Any], ...] = (
-    _WAKE, _REST, _STOP, _POSTURE, _WALK, _MOVE, _SAY, _PERFORM, _RECORD, _LOOK, _LEDS, _VOLUME, _AIM,
+    _WAKE, _REST, _STOP, _POSTURE, _WALK, _MOVE, _SAY, _PERFORM, _RECORD, _LOOK, _LEDS, _VOLUME, _SOUND, _AIM,
 )  # fmt: skip
 
 _BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMANDS}

@@ -2,20 +2,30 @@
 
 from pathlib import Path
 
-from lumen.language.diagnostics import WARNING, Code
+from lumen.language.commands import PlaySound
+from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.sounds import sound_duration
+from lumen.rules.lookups import first
+from lumen.rules.walk import action_sites
 
 NO_EFFECT = Code("no-effect", "statecharts", WARNING, "something that is read, and has no effect")
-MISSING_SOUND = Code("missing-sound", "motions", WARNING, "a sound file is not there, so that a motion is silent")
+MISSING_SOUND = Code("missing-sound", "motions", WARNING, "a sound file is not there, so that nothing is heard")
+BAD_SOUND = Code("bad-sound", "motions", WARNING, "a sound file can't be played")
 
 
 def check(draft: ProjectDraft) -> None:
     """Report keys that are read and have no effect, and sounds that are not there."""
     for name, machine in draft.behaviors.items():
-        _reload(machine, draft.report("behaviors", name))
+        report = draft.report("behaviors", name)
+        _reload(machine, report)
+        for site in action_sites(machine):
+            if isinstance(site.step.action, PlaySound) and draft.root is not None:
+                path = first(report, (*site.step.where, "sound", "file"), (*site.step.where, "sound"))
+                _sound(site.step.action.file, path, report, draft.root)
     for name, motion in draft.motions.items():
         if draft.root is not None:
             _sounds(motion, draft.report("motions", name), draft.root)
@@ -33,16 +43,18 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _sounds(motion: MotionDefinition, report: DocumentReport, root: Path) -> None:
-    """Sound files that are not in the project's folder."""
     for cue in motion.cues:
-        if cue.kind == "sound" and cue.where[-1:] == ("sound",) and not _there(root, str(cue.value)):
-            message = f"there is no file {cue.value} in the project: the motion is silent here"
-            hint = "put the file there, or name one that is"
-            report(MISSING_SOUND, cue.where, message, hint, cause=f"sound {cue.value}")
+        if cue.kind == "sound" and cue.where[-1:] == ("sound",):
+            _sound(str(cue.value), cue.where, report, root)
 
 
-def _there(root: Path, file: str) -> bool:
+def _sound(file: str, path: NodePath, report: DocumentReport, root: Path) -> None:
+    """A sound file that is not in the project's folder, or can't be played."""
     try:
-        return (root / file).is_file() and (root / file).resolve().is_relative_to(root.resolve())
-    except (OSError, ValueError):
-        return False
+        sound_duration(root, file)
+    except OSError:
+        message = f"there is no file {file} in the project: nothing is heard here"
+        report(MISSING_SOUND, path, message, "put the file there, or name one that is", cause=f"sound {file}")
+    except ValueError as error:
+        hint = "save it as WAV: PCM of 16 bits, one channel or two"
+        report(BAD_SOUND, path, f"{file} can't be played: {error}", hint, cause=f"sound {file}")

@@ -1,12 +1,13 @@
-"""What motions say and sound: words become a `Say` like any other, sounds are for whoever plays them."""
+"""What motions say and sound: words become a `Say` like any other, sounds a `PlaySound`."""
 
 import logging
 from collections.abc import Mapping
 from pathlib import Path
 
-from lumen.language.commands import Cancel, Command, Play, Say, Start
+from lumen.language.commands import Cancel, Command, Play, PlaySound, Say, Start
 from lumen.language.events import CUE, Event
 from lumen.language.projects import Project
+from lumen.loading.sounds import sound_duration
 
 _log = logging.getLogger(__name__)
 
@@ -15,8 +16,7 @@ class MotionCues:
     """Answers the events that a robot raises for the cues of a motion.
 
     Words wait for the voice as every `say` does, under ids `cue1`, `cue2`, …; they end with a motion that is cancelled
-    or fails. A sound is an event that observers of the exhibition hear, so a player of audio is one of them; a file
-    that is not there is logged, once, and stays silent.
+    or fails; so do sounds. One whose file is not there, or can't be played, is logged, once, and stays silent.
     """
 
     def __init__(self) -> None:
@@ -50,13 +50,21 @@ class MotionCues:
             self._saying[id] = motion
             return [Start(id, Say(text, language))]
         if kind == "sound":
-            self._sound(str(value), motion, project)
+            return self._sound(str(value), motion, project)
         return []
 
-    def _sound(self, file: str, motion: str, project: Project) -> None:
-        if file not in self._lacking and not (Path(project.root) / file).is_file():
-            self._lacking.add(file)
-            _log.warning("`%s` sounds `%s`, which is not there: it stays silent", motion, file)
+    def _sound(self, file: str, motion: str, project: Project) -> list[Command]:
+        try:
+            sound_duration(Path(project.root), file)
+        except (OSError, ValueError) as error:
+            if file not in self._lacking:
+                self._lacking.add(file)
+                _log.warning("`%s` sounds `%s`, and stays silent: %s", motion, file, error)
+            return []
+        self._number += 1
+        id = f"cue{self._number}"
+        self._saying[id] = motion
+        return [Start(id, PlaySound(file))]
 
 
 def words(value: object, language: str, default: str) -> str:

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable
+from pathlib import Path
 
 from lumen.language.commands import (
     BodyCommand,
@@ -11,6 +12,7 @@ from lumen.language.commands import (
     Language,
     Log,
     Play,
+    PlaySound,
     Publish,
     Rest,
     Start,
@@ -19,6 +21,7 @@ from lumen.language.commands import (
 )
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.loading.sounds import sound_duration
 from lumen.ports import Bus, Perform, Robot, RobotCommand
 from lumen.runtime.navigator import Navigator
 from lumen.runtime.sending import send
@@ -59,6 +62,8 @@ class Performer:
                 self._begin(id, Perform(project.motions[name]), now)
             case Play(name):
                 self._answer("error", id, now, f"there is no motion `{name}`")
+            case PlaySound(file):
+                self._sound(project, id, file, now)
             case Track():
                 self._track(wanted)
                 self._answer("done", id, now)
@@ -68,6 +73,13 @@ class Performer:
                 self.navigator.start(id, place, now)
             case _:
                 self._begin(id, wanted, now)
+
+    def _sound(self, project: Project, id: str, file: str, now: float) -> None:
+        """A sound takes as long as its file says."""
+        try:
+            self._begin(id, PlaySound(file, sound_duration(Path(project.root), file)), now)
+        except (OSError, ValueError) as error:
+            self._answer("error", id, now, f"the sound {file} can't be played: {error}")
 
     def _begin(self, id: str, command: RobotCommand, now: float) -> None:
         if isinstance(command, Rest) or (isinstance(command, Stop) and command.what in ("all", "walk")):

@@ -70,7 +70,6 @@ class MotionPlayer:
 
     def __init__(self, post: PostCall, body: Body, notice: EventSink, clock: Callable[[], float]) -> None:
         self._post, self._body, self._notice, self._clock = post, body, notice, clock
-        self._silent: set[str] = set()
 
     def begin(self, motion: MotionDefinition, owned: Sequence[str]) -> CallSequence:
         """The motion under way; `owned` are the joints that it may bring to its posture before and after.
@@ -81,17 +80,13 @@ class MotionPlayer:
         start, shared = self._body.postures.get(motion.start, {}), self._body.shared
         home = {joint: start[joint] for joint in owned if joint in start and joint not in shared}
         joints = list(dict.fromkeys(shared.get(joint, joint) for joint in (*motion.tracks, *home)))
-        playing: list[CuePlayer] = []
 
         def abort() -> list[NaoqiCall]:
-            stops = [self._post("ALMotion", "killTasksUsingResources", joints)] if joints else []
-            return [*stops, *(stop for beside in playing for stop in beside.end())]
+            return [self._post("ALMotion", "killTasksUsingResources", joints)] if joints else []
 
-        return CallSequence(self._perform(motion, home, joints, playing), abort, lambda: self._recover(home))
+        return CallSequence(self._perform(motion, home, joints), abort, lambda: self._recover(home))
 
-    def _perform(
-        self, motion: MotionDefinition, home: Mapping[str, float], joints: list[str], playing: list[CuePlayer]
-    ) -> CallSteps:
+    def _perform(self, motion: MotionDefinition, home: Mapping[str, float], joints: list[str]) -> CallSteps:
         yield from self._ready(motion)
         here = yield from self._stand(joints)
         if self._away(home, here):
@@ -99,8 +94,7 @@ class MotionPlayer:
             here = yield from self._stand(joints)
         start = self._inside(motion, here)
         motion = fitted(motion, self._body, start)
-        beside = CuePlayer(self._post, motion, self._notice, self._silent)
-        playing.append(beside)
+        beside = CuePlayer(self._post, motion, self._notice)
         way = curves(self._driven(Trajectory(motion, start).tracks))
         begin = self._clock()
         beside.begin(begin)

@@ -6,7 +6,7 @@ from math import inf, isfinite
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
-from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake, Walk
+from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, Record, RobotCommand
@@ -29,6 +29,8 @@ LOOK_TOLERANCE = 0.03
 LOOK_GRACE = 1.0
 """How much longer than it needs a look may take [s]."""
 WAKE_SPEED = 0.5
+SOUND_FOLDER = "/home/nao/lumen"
+"""Where the exhibition's sounds are on the robot: NAOqi plays files of its own disk."""
 
 _log = logging.getLogger(__name__)
 
@@ -66,6 +68,8 @@ class NaoqiSkills:
                 return self._leds(colours, seconds)
             case Volume(level):
                 return CallSequence(self._volume(level))
+            case PlaySound(file):
+                return CallSequence(self._sound(file), lambda: [self._post("ALAudioPlayer", "stopAll")])
             case Stop() | Aim():
                 raise BadCommandError(f"{type(command).__name__} does not last")
         if self.fallen:
@@ -107,6 +111,9 @@ class NaoqiSkills:
 
     def _volume(self, level: float) -> CallSteps:
         yield self._post("ALTextToSpeech", "setVolume", level)
+
+    def _sound(self, file: str) -> CallSteps:
+        yield self._post("ALAudioPlayer", "playFile", f"{SOUND_FOLDER}/{file}")
 
     def _leds(self, colours: Mapping[str, str], seconds: float) -> CallSequence:
         """A fade can't be called back: where it is cancelled, another one of no time takes its place."""

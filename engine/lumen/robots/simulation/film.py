@@ -29,6 +29,11 @@ class Film:
         self._writer = _writer(path)
         self.frames = 0
 
+    @property
+    def length(self) -> float:
+        """How long it is by now [s]."""
+        return self.frames / FILM_RATE
+
     def frame_due(self, now: float) -> bool:
         """Whether it is time [s] for the next frame."""
         return now + 1e-9 >= self.frames / FILM_RATE

@@ -28,6 +28,7 @@ from lumen.robots.simulation.odometry import Odometry
 from lumen.robots.simulation.sensors import BodySensors
 from lumen.robots.simulation.skills import SimulatedSkills
 from lumen.robots.simulation.sonar import Sonars
+from lumen.robots.simulation.sound_playback import SoundPlayback
 from lumen.robots.simulation.speech_playback import SpeechPlayback
 from lumen.robots.simulation.tactile_sensors import TactileSensors
 from lumen.robots.simulation.visitor_figure import VisitorFigure
@@ -118,6 +119,10 @@ class SimulatedRobot:
     def speak_with(self, voice: SpeechPlayback) -> None:
         """Say texts with this voice from now on, as long as it takes."""
         self._skills.voice = voice
+
+    def sound_with(self, playback: SoundPlayback) -> None:
+        """Play sound files with this from now on."""
+        self._skills.sounds = playback
 
     def advance(self, dt: float) -> None:
         """Live `dt` [s] of physics, in whole control periods: what is left over is lived next time.

@@ -6,7 +6,7 @@ from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotRefusedError
 from lumen.interpreters.postures import RESTFUL, UPRIGHT
-from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake, Walk
+from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.body_parts import part_of
 from lumen.robots.command_table import check_command, parts_of, row_of
@@ -19,6 +19,7 @@ from lumen.robots.simulation.motors import Motors
 from lumen.robots.simulation.playback import MotionPlayback, SpeechActivity
 from lumen.robots.simulation.posture_planner import PosturePlanner, PostureState, lying
 from lumen.robots.simulation.sensors import BodySensors
+from lumen.robots.simulation.sound_playback import SilentSounds, SoundActivity, SoundPlayback
 from lumen.robots.simulation.speech_playback import SilentPlayback, SpeechPlayback
 from lumen.robots.simulation.walking import WalkController
 from lumen.robots.simulation.world import World
@@ -59,6 +60,7 @@ class SimulatedSkills:
         self.playing: MotionPlayback | None = None
         self.awake, self.fallen = True, False
         self.voice: SpeechPlayback = SilentPlayback()
+        self.sounds: SoundPlayback = SilentSounds()
         self.volume = FULL_VOLUME
 
     @property
@@ -100,6 +102,8 @@ class SimulatedSkills:
             case Volume(level):
                 self.volume = level
                 return JointTransition(self._motors, {}, now, 0.01)
+            case PlaySound():
+                return SoundActivity(self.sounds, command, self.volume, now)
             case Rest():
                 return self._rest(now)
             case Wake():

@@ -1,0 +1,92 @@
+"""Where the simulated robot's sounds are heard: on this machine's player, and in the film of the run."""
+
+import shutil
+import subprocess
+import sys
+import wave
+from array import array
+from collections.abc import Callable
+from pathlib import Path
+
+from lumen.language.commands import PlaySound
+from lumen.modules.audio_track import AudioTrack
+from lumen.modules.sound import Sound
+
+PLAYERS = (("aplay", "-q"), ("paplay",), ("afplay",), ("pw-play",))
+"""Programs that play a WAV file, the first that there is."""
+
+
+def player_here() -> tuple[str, ...] | None:
+    """The program that plays sounds on this machine, None where there is none."""
+    return next((player for player in PLAYERS if shutil.which(player[0])), None)
+
+
+class Loudspeaker:
+    """Plays the sound files of the project in `root`; that there is no player here is said once.
+
+    What is heard goes into `track`, too, where there is one. One that is not `audible` is for a film, and for time that
+    runs faster than real. `close` ends what still sounds.
+    """
+
+    def __init__(self, root: Path, track: AudioTrack | None = None, *, audible: bool = True) -> None:
+        self._root, self._track, self._audible = root, track, audible
+        self._player = player_here() if audible else None
+        self._told = False
+        self._playing: list[subprocess.Popen[bytes]] = []
+
+    def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
+        playing, cut = self._heard(self._root / sound.file), None
+        if self._track is not None and (found := _mono(self._root / sound.file)):
+            cut = self._track.add(found.at_volume(volume), now)
+
+        def end(then: float) -> None:
+            if playing:
+                self._hush(playing)
+            if cut:
+                cut(then)
+
+        return end
+
+    def close(self) -> None:
+        for playing in [*self._playing]:
+            self._hush(playing)
+
+    def _hush(self, playing: "subprocess.Popen[bytes]") -> None:
+        playing.terminate()
+        playing.wait()
+        self._playing.remove(playing)
+
+    def _heard(self, file: Path) -> "subprocess.Popen[bytes] | None":
+        if self._player is None:
+            if self._audible and not self._told:
+                self._told = True
+                print("There is no sound player here: sounds take their time, unheard.", file=sys.stderr)
+            return None
+        try:
+            playing = subprocess.Popen([*self._player, str(file)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        except OSError:
+            return None
+        self._playing.append(playing)
+        return playing
+
+
+def _mono(file: Path) -> Sound | None:
+    """The sound in a WAV of 16 bits, two channels as one; None where it is gone."""
+    try:
+        with wave.open(str(file)) as opened:
+            samples, rate, channels = (
+                opened.readframes(opened.getnframes()),
+                opened.getframerate(),
+                opened.getnchannels(),
+            )
+    except (OSError, EOFError, wave.Error):
+        return None
+    if channels == 2:
+        both = array("h", samples[: len(samples) // 4 * 4])
+        if sys.byteorder == "big":
+            both.byteswap()
+        mixed = array("h", ((left + right) // 2 for left, right in zip(both[::2], both[1::2], strict=True)))
+        if sys.byteorder == "big":
+            mixed.byteswap()
+        samples = mixed.tobytes()
+    return Sound(rate, samples)

@@ -1,0 +1,32 @@
+"""Sound files of a project: WAV of 16 bits, one channel or two."""
+
+import wave
+from pathlib import Path
+
+MAX_SOUND_DURATION = 600.0
+"""How long a sound may be [s]."""
+RATES = (8_000, 96_000)
+"""The least and the most samples a second."""
+
+
+def sound_duration(root: Path, file: str) -> float:
+    """How long a sound of the project takes [s].
+
+    Raises OSError where it is not there or outside of the project, ValueError with a reason where it can't be played.
+    """
+    path = root / file
+    if not path.resolve().is_relative_to(root.resolve()) or not path.is_file():
+        raise FileNotFoundError(f"there is no file {file} in the project")
+    try:
+        with path.open("rb") as opened, wave.open(opened) as sound:
+            channels, bits, rate = sound.getnchannels(), 8 * sound.getsampwidth(), sound.getframerate()
+            frames = min(sound.getnframes(), path.stat().st_size // (channels * bits // 8))
+    except (wave.Error, EOFError):
+        raise ValueError("it is no WAV, or none of whole numbers (PCM)") from None
+    if bits != 16 or channels not in (1, 2) or not RATES[0] <= rate <= RATES[1]:
+        raise ValueError(f"it has {channels} channels, {bits} bits, {rate} Hz; one or two of 16 bits are played")
+    if not frames:
+        raise ValueError("it is empty")
+    if frames / rate > MAX_SOUND_DURATION:
+        raise ValueError(f"it takes {frames / rate:.0f} s; {MAX_SOUND_DURATION:g} s is the longest")
+    return float(frames / rate)
