@@ -156,7 +156,7 @@ class _Completion:
                 "context": self.index.names(NameKind.CONTEXT, self.scope),
                 "event": ["name", "data"],
                 "event.data": self.event_fields(path),
-                "state": [],
+                "state": ["path", "language", "place"],
             }
             yield from (Item(name, f"of {found[1]}", len(found[2])) for name in named[found[1]])
         else:

@@ -21,6 +21,7 @@ _NAMES = {
     NameKind.CONTROLLER: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
     NameKind.BEHAVIOR: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
     NameKind.WORDS: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
+    NameKind.PLACE: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
     NameKind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`"),
 }
 """The kinds that can be renamed, and what their names look like."""

@@ -25,7 +25,7 @@ class Abstraction:
     that the behaviour mentions, or below or above them all; of a text whether it is empty or one that is mentioned;
     where the behaviour asks for a `size`, of texts, lists and maps also that, as a number.
     Of a `for` its entry counts, and how many are left. Of a history only what it can still lead back to. Times,
-    ids, what has been drawn and (unless they are asked for) the language and the place do not count.
+    ids, what has been drawn and (unless it is asked for) the language do not count.
     """
 
     def __init__(self, machine: MachineDefinition) -> None:
@@ -40,7 +40,6 @@ class Abstraction:
         self._sized = any(
             isinstance(n, FunctionCall) and n.function == "size" for use in uses for n, _ in walk(use.tree)
         )
-        self._place = any(re.search(r"\bstate\.place\b", t) for t in _guards(machine))
         self._language = any(re.search(r"\b(state\.language|in_language)\b", t) for t in _guards(machine))
         self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 
@@ -53,7 +52,7 @@ class Abstraction:
             tuple((path, _shape(position)) for path, position in sorted(snapshot.doing.items())),
             tuple(self._remembered(snapshot)),
             snapshot.language if self._language else "",
-            self.value(snapshot.place) if self._place else "",
+            snapshot.place,
             tuple(self._child(id, child) for id, child in sorted(snapshot.invoked.items())),
         )
 

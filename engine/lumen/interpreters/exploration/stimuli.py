@@ -14,8 +14,8 @@ from lumen.interpreters.statechart import Snapshot, Timer
 from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
 from lumen.interpreters.statechart.values import awaited
-from lumen.language.commands import BodyCommand
-from lumen.language.events import Event
+from lumen.language.commands import BodyCommand, GoTo
+from lumen.language.events import ARRIVED, Event
 from lumen.language.machines import MachineDefinition, Transition
 
 FAILURE_REASON = "it does not work"
@@ -82,7 +82,9 @@ class StimulusFinder:
         commanded = [id for id in _awaited(snapshot) if not _is_wait(id)]
         pending = tuple(commands[id] for id in commanded if id in commands)
         for id in commanded:
-            yield Stimulus(StimulusKind.DONE, Event(f"done.command.{id}", None, snapshot.at), 0.0, commands.get(id))
+            command = commands.get(id)
+            event = _arrival(command, snapshot) or Event(f"done.command.{id}", None, snapshot.at)
+            yield Stimulus(StimulusKind.DONE, event, 0.0, command)
         for timer in _next(snapshot):
             at = max(timer.due, snapshot.at)
             event = Event(timer.event, timer.data, at, timer.id)
@@ -125,6 +127,13 @@ class StimulusFinder:
 def loop_keys(machine: MachineDefinition) -> frozenset[str]:
     """The keys of the context that hold the entry of a `for`."""
     return frozenset(state.for_each.key for state in machine.states.values() if state.for_each)
+
+
+def _arrival(command: BodyCommand | None, snapshot: Snapshot) -> Event | None:
+    """What comes before the end of a walk to a place, where the robot is not there yet."""
+    if not isinstance(command, GoTo) or command.to == snapshot.place:
+        return None
+    return Event(ARRIVED, {"place": command.to, "doubt": 0.0}, snapshot.at)
 
 
 def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[HeardTransition]:
