@@ -8,9 +8,14 @@ import pytest
 import lumen
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import set_up
+from lumen.buses.memory import MemoryBus
 from lumen.cli.main import main
-from lumen.language.commands import Volume
+from lumen.clocks.virtual import VirtualClock
+from lumen.interpreters.migration import MigrationPlan
+from lumen.interpreters.statechart import Step, step
+from lumen.language.commands import Start, Track, Volume
 from lumen.robots.recording import RecordingRobot
+from lumen.runtime.loop import BehaviorLoop, Observer
 
 FILES = {
     "lumen.yaml": """\
@@ -129,3 +134,84 @@ def test_the_volume_follows_the_visitor(museum: Path) -> None:
     assert volumes[0][0] < 0.5, "told as soon as the sonar has said something"
     assert not any(4.0 < time < 6.0 for time, _ in volumes), "nothing while nobody moves"
     assert min(b - a for (a, _), (b, _) in pairwise(volumes)) > 0.19
+
+
+class Hall:
+    """The museum's behaviour on a bus and a robot of its own, tick by tick."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.robot, self.bus = folder, RecordingRobot(lumen.load(folder).body), MemoryBus()
+        self.loop = BehaviorLoop(lumen.load(folder), self.robot, self.bus, VirtualClock())
+        self.lamps: list[object] = []
+        self.bus.subscribe("museum.lamp.set", lambda message: self.lamps.append(message.body))
+        self.loop.start()
+
+    def people(self, number: object) -> None:
+        """So many people are counted; half a second goes by."""
+        self.bus.publish("museum.crowd", {"people": number})
+        for _ in range(25):
+            self.loop.tick()
+            self.robot.advance(0.02)
+
+    def edit(self, old: str, new: str) -> None:
+        """The file of the light is saved with that edit."""
+        file = self.folder / "fuzzy" / "light.yaml"
+        assert old in file.read_text("utf-8")
+        file.write_text(file.read_text("utf-8").replace(old, new), "utf-8")
+        project = lumen.load(self.folder)
+        plan = self.loop.plan(project)
+        assert isinstance(plan, MigrationPlan), plan
+        self.loop.apply(project, plan)
+
+    @property
+    def calm(self) -> object:
+        return self.loop.runtime.snapshot.context["calm"]
+
+
+def test_messages_that_are_no_good_change_nothing(museum: Path) -> None:
+    hall = Hall(museum)
+    for number in ("many", None, True, [4]):
+        hall.people(number)
+    assert (hall.lamps, hall.calm) == ([], 1)
+    hall.people(4)
+    assert (hall.lamps, hall.calm) == ([{"lamp": "organ", "brightness": 67}], 0.8)
+
+
+def test_a_saved_controller_goes_on_with_what_it_knew(museum: Path) -> None:
+    hall = Hall(museum)
+    hall.people(4)
+    hall.edit("# The more", "# The many more")
+    hall.people(4)
+    assert len(hall.lamps) == 1, "nothing has changed for the lamp"
+    hall.edit("body: {lamp: organ}", "body: {lamp: harp}")
+    hall.people(4)
+    assert hall.lamps[1:] == [{"lamp": "harp", "brightness": 67}], "bound otherwise: told, with the people known before"
+    hall.edit("Calm: {context: calm}", "Calm: {event: crowded, below: 0.1}")
+    hall.people(10)
+    assert (hall.calm, len(hall.lamps)) == (0.8, 3), "what it set stays"
+
+
+def test_a_controller_that_is_switched_off_says_nothing(museum: Path) -> None:
+    hall = Hall(museum)
+    hall.loop.performer.perform(hall.loop.project, Start("c9", Track("light", False)), 0.0)
+    hall.people(20)
+    assert hall.lamps == []
+    hall.loop.performer.perform(hall.loop.project, Start("c10", Track("light")), 0.0)
+    hall.people(20)
+    assert hall.lamps == [{"lamp": "organ", "brightness": 255}]
+
+
+def test_the_same_events_give_the_same_steps_without_a_controller(museum: Path) -> None:
+    hall = Hall(museum)
+    steps: list[Step] = []
+    observer = Observer()
+    observer.stepped = steps.append  # type: ignore[method-assign]
+    hall.loop.observers.append(observer)
+    before = hall.loop.runtime.snapshot
+    for number in (2, 6, 12):
+        hall.people(number)
+    assert hall.calm == 0.4
+    for taken in steps:
+        assert taken.event is not None
+        before = step(hall.loop.project.machine, before, taken.event).snapshot
+    assert before == steps[-1].snapshot

@@ -4,15 +4,14 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.language.controllers import ContextInput, InputBinding, OutputBinding, SignalBinding, Variable
-from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import EMPTY_RANGE
 from lumen.loading.rulebook import UNKNOWN_VARIABLE
-from lumen.loading.signal_bindings import build_signal
+from lumen.loading.signal_bindings import UNBOUND_OUTPUT, build_signal, signal_fault
 from lumen.loading.units import ANGLES
 
 UNBOUND_INPUT = Code("unbound-input", "controllers", ERROR, "an input of a bound controller has nothing to come from")
-UNBOUND_OUTPUT = Code("unbound-output", "controllers", WARNING, "an output of a bound controller does nothing")
 
 
 class Bindings:
@@ -60,7 +59,10 @@ class Bindings:
     def signals(self) -> Iterator[SignalBinding]:
         """Each output that does something else."""
         for name, spec in self.targets.items():
-            if name in self.usable and (signal := build_signal(self.usable[name], spec, ("bind", "outputs", name))):
+            path: NodePath = ("bind", "outputs", name)
+            if fault := signal_fault(spec):
+                self.report(fault.code, path, f"`{name}` {fault.message}", hint=fault.hint, key=True)
+            elif name in self.usable and (signal := build_signal(self.usable[name], spec, path)):
                 yield signal
 
     def output(self, variable: Variable, spec: Mapping[str, Any]) -> Iterator[OutputBinding]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
 from lumen.language.controllers import (
     ContextBinding,
@@ -12,13 +12,47 @@ from lumen.language.controllers import (
     Variable,
     VolumeBinding,
 )
-from lumen.language.diagnostics import NodePath
+from lumen.language.diagnostics import WARNING, Code, NodePath
+from lumen.loading.complaints import WRONG_VALUE
+
+UNBOUND_OUTPUT = Code("unbound-output", "controllers", WARNING, "an output of a bound controller does nothing")
 
 STEP_SHARE = 0.02
 """By which part of its range an output has to change to be told anew, where the file does not say."""
 
 HYSTERESIS_SHARE = 0.05
 """By which part of its range an output has to come back before its threshold counts again, where nothing is said."""
+
+
+DEEDS = ("joint", "volume", "message", "context", "event")
+"""What an output can do; it does one of these."""
+
+
+class BindingFault(NamedTuple):
+    """Why what an output is bound to can't be read: a message that goes on from its name, and what would be right."""
+
+    code: Code
+    message: str
+    hint: str
+
+
+def signal_fault(spec: str | Mapping[str, Any]) -> BindingFault | None:
+    """What is wrong with what an output is bound to, None where nothing is."""
+    if isinstance(spec, str):
+        return None
+    deeds = [deed for deed in DEEDS if deed in spec]
+    ends = [end for end in ("above", "below") if end in spec]
+    if not deeds:
+        return BindingFault(UNBOUND_OUTPUT, "is bound to nothing: it does nothing", f"write one of {', '.join(DEEDS)}")
+    if len(deeds) > 1:
+        said = " and ".join(f"`{deed}`" for deed in deeds)
+        return BindingFault(
+            WRONG_VALUE, f"is bound to {said}: an output does one thing", "give each an output of its own"
+        )
+    if deeds == ["event"] and len(ends) != 1:
+        hint = "write `above: 0.7`, or `below: 0.2`"
+        return BindingFault(WRONG_VALUE, "needs one threshold at which its event is raised", hint)
+    return None
 
 
 def build_signal(variable: Variable, spec: str | Mapping[str, Any], path: NodePath) -> SignalBinding | None:

@@ -1,10 +1,6 @@
 """Controllers: what they are bound to, and what is said of them where nothing else is wrong."""
 
-from collections.abc import Mapping
-from typing import Any
-
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_FIELD
-from lumen.language.controllers import ControllerDefinition, InputBinding, OutputBinding
+from lumen.language.controllers import ControllerDefinition, OutputBinding
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
@@ -12,18 +8,15 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.memoization import memoize
 from lumen.loading.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
 from lumen.rules import aims, rulebooks, shapes, surfaces
-from lumen.rules.references import known_route
 
 LIMIT_TOLERANCE = 2e-3
 """How far a limit may lie outside the joint's own [rad]: people round."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report bindings to routes, fields and joints that are not there, and limits that the joint does not have."""
+    """Report bindings to joints that are not there, and limits that the joint does not have."""
     for name, controller in draft.controllers.items():
         report = draft.report("fuzzy", name)
-        for binding in controller.input_bindings:
-            _input(draft, report, binding)
         if draft.body and draft.settings:
             lost = draft.report("models", draft.settings.model).lost
             _joints(controller, report, draft.body, lost)
@@ -37,23 +30,6 @@ def _sense(controller: ControllerDefinition, report: DocumentReport, draft: Proj
     aims.check(controller, report, draft)
     given = draft.files[f"fuzzy/{name}.yaml"]
     surfaces.check(controller, report, memoize(("surface", name), given, lambda: surfaces.sample_surface(controller)))
-
-
-def _input(draft: ProjectDraft, report: DocumentReport, binding: InputBinding) -> None:
-    path = ("bind", "inputs", binding.variable)
-    if not known_route(draft, report, path, binding.route) or draft.settings is None:
-        return
-    schema: Any = draft.messages.get(draft.settings.routes[binding.route].schema)
-    for i, step in enumerate(binding.path):
-        fields = schema.get("properties") if isinstance(schema, Mapping) else None
-        if not isinstance(fields, Mapping):
-            return
-        if step not in fields:
-            owner = ".".join((binding.route, *binding.path[:i]))
-            hint = did_you_mean(step, fields, f"`{owner}` has")
-            report(UNKNOWN_FIELD, path, f"the messages of `{owner}` have no `{step}`", hint)
-            return
-        schema = fields[step]
 
 
 def _joints(controller: ControllerDefinition, report: DocumentReport, body: Body, lost: set[str]) -> None:

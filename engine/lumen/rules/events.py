@@ -58,7 +58,7 @@ def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
         if route.event:
             schema = draft.messages.get(route.schema)
             found[route.event] = schema if found.get(route.event, schema) == schema else None
-    return {**ROBOT_EVENTS, **_controlled(draft), **found, **machine.events}
+    return {**_controlled(draft), **ROBOT_EVENTS, **found, **machine.events}
 
 
 def _controlled(draft: ProjectDraft) -> dict[str, Any]:
