@@ -96,7 +96,8 @@ class Actions:
             case Quantity.DURATION:
                 return self.duration(value, where)
             case Quantity.TEMPLATE:
-                return value if self.expressions.template(value, where) else None
+                template = self.expressions.template(value, where)
+                return template.text if template else None
             case _:
                 assert_never(quantity)
 
