@@ -39,6 +39,43 @@ steps:
 """
 
 
+GUIDE = """\
+events: {start: null}
+initial: idle
+states:
+  idle: {on: {start: telling}, after: {7min: bored}}
+  telling:
+    do:
+      - say: {en: Ask me., id: Tanya saya.}
+      - wait: 3s
+      - parallel: [{say: {en: Come., id: Mari.}}, {play: goodbye}]
+      - walk: {x: 0.1}
+    onDone: over
+    after: {3min: idle}
+  over: {after: {5s: idle}, on: {touched: telling}}
+  bored: {do: [{say: {en: La la., id: La la.}}, {raise: yawn}], on: {yawn: idle, face: idle}}
+"""
+ROUND = """\
+behavior: guide
+steps:
+  - wait: 100s
+  - event: start
+  - expect: {state: telling, said: Ask me}
+  - expect: {state: over, played: goodbye, within: 2min}
+  - touch: MiddleTactil
+  - release: MiddleTactil
+  - expect: {state: telling}
+  - expect: {state: idle, within: 10min}
+  - wait: 10min
+  - expect: {state: idle, said: La la}
+  - visitor: arrives
+  - wait: 10s
+  - visitor: leaves
+  - wait: 10min
+  - expect: {state: idle}
+"""
+
+
 def test_every_story_of_the_tour_goes_the_same_way(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = ("safety_head", "silent", "battery", "visitor")
     stories = [story for name, story in project.stories.items() if name.startswith(chosen)]
@@ -47,6 +84,17 @@ def test_every_story_of_the_tour_goes_the_same_way(project: Project, monkeypatch
     monkeypatch.setattr(Node, "_leap", lambda _: None)
     slow = [rehearse(project, story, whole=True) for story in stories]
     assert [(run.time, run.trace) for run in fast] == [(run.time, run.trace) for run in slow]
+
+
+def test_what_comes_one_after_the_other_comes_when_it_came(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (copy / "behaviors" / "guide.yaml").write_text(GUIDE, "utf-8")
+    (copy / "behaviors" / "stories" / "round.yaml").write_text(ROUND, "utf-8")
+    project = load(copy)
+    fast = rehearse(project, project.stories["round"], whole=True)
+    assert fast.failed is None
+    monkeypatch.setattr(Node, "_leap", lambda _: None)
+    slow = rehearse(project, project.stories["round"], whole=True)
+    assert (fast.time, fast.trace) == (slow.time, slow.trace)
 
 
 def test_a_week_takes_a_moment(copy: Path) -> None:

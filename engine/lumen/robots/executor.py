@@ -117,6 +117,11 @@ class Executor:
     def busy(self) -> bool:
         return bool(self._tasks)
 
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is under way, and nothing left to tell."""
+        return not (self._tasks or self._answers or self._begun)
+
     def advance(self, now: float) -> list[Event]:
         """Live until `now` [s]; the answers of what ended, in the order it ended."""
         self._run(now)

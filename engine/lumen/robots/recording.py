@@ -116,7 +116,7 @@ class RecordingRobot:
     @property
     def idle(self) -> bool:
         """Whether nothing is under way, and nobody before it."""
-        return not (self._executor.busy or self._noticed or self._visitor)
+        return self._executor.idle and not (self._noticed or self._visitor)
 
     def advance(self, dt: float) -> None:
         """Let `dt` [s] pass."""

@@ -4,6 +4,7 @@ from types import ModuleType
 
 from lumen.rules import (
     alerts,
+    clock_texts,
     controllers,
     dead_ends,
     effects,
@@ -48,6 +49,7 @@ CHECKS: tuple[ModuleType, ...] = (
     units,
     places,
     ways,
+    clock_texts,
     guards,
     statecharts,
     dead_ends,

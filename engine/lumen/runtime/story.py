@@ -203,8 +203,8 @@ class StoryPlayer(Observer):
         match self.story.steps[self.position].action:
             case StoryPause(seconds):
                 return self._since + seconds
-            case Expect(within=seconds):
-                return self._since + seconds
+            case Expect() as expected if self._witness.lacks(expected):
+                return self._since + expected.within
             case AwaitTime() if self._awaited is not None:
                 return now + (self._awaited - self._moment(now)) / MICROSECONDS
         return now
