@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import lumen
+from lumen.app.exploring import explored
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
@@ -215,3 +216,8 @@ def test_the_same_events_give_the_same_steps_without_a_controller(museum: Path) 
         assert taken.event is not None
         before = step(hall.loop.project.machine, before, taken.event).snapshot
     assert before == steps[-1].snapshot
+
+
+def test_exploring_comes_wherever_controllers_lead(museum: Path) -> None:
+    found = explored(lumen.load(museum), "guide", bound=1_000)
+    assert (found.findings, found.unseen) == ((), ())

@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from lumen.interpreters.exploration import Exploration, ExplorationFinding, PathStep, StimulusKind, explore
+from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import Place
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import MachineDefinition
@@ -70,7 +71,7 @@ def explored(
 def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
     """The events that come to a behaviour from outside, each with the JSON Schema of its data, None for any."""
     routes = {r.event: project.messages.get(r.schema) for r in project.routes.values() if r.event}
-    return {**ROBOT_EVENTS, **routes, **machine.events}
+    return {**controller_events(project.controllers.values()), **ROBOT_EVENTS, **routes, **machine.events}
 
 
 def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:

@@ -26,7 +26,7 @@ from lumen.language.controllers import (
 )
 from lumen.language.events import Event
 
-MessageField = tuple[str, ...]
+RouteField = tuple[str, ...]
 """A route and a field of its messages, step by step."""
 
 
@@ -51,7 +51,7 @@ class Regulator:
     be told (`signals`). Fields of messages that are in `whole` are rounded to integers.
     """
 
-    def __init__(self, controller: ControllerDefinition, whole: Collection[MessageField] = ()) -> None:
+    def __init__(self, controller: ControllerDefinition, whole: Collection[RouteField] = ()) -> None:
         self.controller = controller
         self.routes = frozenset(binding.route for binding in controller.input_bindings)
         self._whole = whole

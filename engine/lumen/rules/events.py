@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.language.actions import Raise, Send
-from lumen.language.controllers import CONTROLLER_EVENT, ContextBinding, ThresholdBinding
+from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import MachineDefinition, StateKind, Transition
@@ -25,8 +25,6 @@ BUILT_IN_FAMILIES = (
 """Events that the engine raises by itself, or the beginnings of their names."""
 
 _REASON = {"type": "object", "properties": {"reason": {"type": "string"}}, "required": ["reason"]}
-
-_VALUE = {"type": "object", "properties": {"value": {"type": "number"}}, "required": ["value"]}
 
 
 def check(draft: ProjectDraft) -> None:
@@ -58,21 +56,7 @@ def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
         if route.event:
             schema = draft.messages.get(route.schema)
             found[route.event] = schema if found.get(route.event, schema) == schema else None
-    return {**_controlled(draft), **ROBOT_EVENTS, **found, **machine.events}
-
-
-def _controlled(draft: ProjectDraft) -> dict[str, Any]:
-    """The events of controllers: those they raise, and those by which they set the context."""
-    found: dict[str, Any] = {}
-    for name, controller in draft.controllers.items():
-        keys = [signal.key for signal in controller.signals if isinstance(signal, ContextBinding)]
-        if keys:
-            properties = {key: {"type": "number"} for key in keys}
-            found[f"{CONTROLLER_EVENT}{name}"] = {"type": "object", "properties": properties}
-        for signal in controller.signals:
-            if isinstance(signal, ThresholdBinding):
-                found[signal.event] = _VALUE
-    return found
+    return {**controller_events(draft.controllers.values()), **ROBOT_EVENTS, **found, **machine.events}
 
 
 def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any] | None:

@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.regulation import MessageField, Regulator
+from lumen.interpreters.regulation import Regulator, RouteField
 from lumen.interpreters.statechart import Snapshot
 from lumen.language.commands import Command, Start, Track, Volume
 from lumen.language.controllers import MessageBinding
@@ -92,7 +92,7 @@ class Regulation:
         return lambda message: self._waiting.append((route, message))
 
 
-def whole_fields(project: Project) -> frozenset[MessageField]:
+def whole_fields(project: Project) -> frozenset[RouteField]:
     """The fields to which controllers of the project are bound that hold integers only, by their messages' schemas."""
     bound = {
         (signal.route, *signal.path)
@@ -103,7 +103,7 @@ def whole_fields(project: Project) -> frozenset[MessageField]:
     return frozenset(field for field in bound if _schema(project, field).get("type") == "integer")
 
 
-def _schema(project: Project, field: MessageField) -> Mapping[str, Any]:
+def _schema(project: Project, field: RouteField) -> Mapping[str, Any]:
     """What the schema of its messages says of a field, nothing where it says nothing."""
     route, *path = field
     row = project.routes.get(route)

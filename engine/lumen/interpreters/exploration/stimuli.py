@@ -15,6 +15,7 @@ from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
 from lumen.interpreters.statechart.values import awaited
 from lumen.language.commands import BodyCommand, GoTo
+from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, Event
 from lumen.language.machines import MachineDefinition, Transition
 
@@ -101,6 +102,8 @@ class StimulusFinder:
 
     def _data(self, name: str, snapshot: Snapshot) -> tuple[Any, ...]:
         """Data of an event, one for each sort that the transitions that may hear it tell apart."""
+        if name.startswith(CONTROLLER_EVENT):
+            return tuple(_extremes(self._events[name]))
         heard = tuple(_heard(self._compiled, snapshot, name))
         if not heard:
             return ()
@@ -144,6 +147,12 @@ def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[
     for id, child in snapshot.invoked.items():
         behavior = machine.chart.definition.invoked_behavior(child.state, id)
         yield from _heard(machine.invoked[behavior], child.snapshot, name)
+
+
+def _extremes(schema: Mapping[str, Any]) -> Iterator[Any]:
+    """What a controller makes of the context at the least, and at the most: of what is heard of it or is not."""
+    for end in ("minimum", "maximum"):
+        yield {key: value[end] for key, value in schema["properties"].items() if end in value}
 
 
 def _known_of_events(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[ExpressionNode]:
