@@ -62,7 +62,7 @@ def explored(
     }
     found = explore(machine, outside(project, machine), progress=tell or (lambda *_: None), **options)
     findings = tuple(
-        ExploredFinding(f.kind, _place(project, behavior, f.state), f.message, story(project, behavior, f))
+        ExploredFinding(f.kind, _place(project, behavior, f), f.message, story(project, behavior, f))
         for f in found.findings
     )
     return Explored(behavior, found, findings, tuple(_unseen(project, behavior, found)), time.perf_counter() - began)
@@ -86,7 +86,8 @@ def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:
         f"# On this way `{verb}` works at first; a story can only let it fail from the beginning."
         for verb in sorted(worked)
     ]
-    return "\n".join([*lines, "steps:", *(f"  - {step}" for step in _steps(project, finding.path))]) + "\n"
+    steps = [*_steps(project, finding.path), *([f"wait: {finding.patience:g}s"] if finding.patience else [])]
+    return "\n".join([*lines, "steps:", *(f"  - {step}" for step in steps)]) + "\n"
 
 
 def _steps(project: Project, path: tuple[PathStep, ...]) -> Iterator[str]:
@@ -144,11 +145,13 @@ def _flow(value: Any) -> str:
 def _unseen(project: Project, behavior: str, found: Exploration) -> Iterator[Gap]:
     machine = project.behaviors[behavior]
     for path in found.never_entered:
-        yield Gap(_place(project, behavior, path), f"state `{machine.states[path].name}` is never entered")
+        place = project.place(f"behaviors/{behavior}.yaml", machine.states[path].where)
+        yield Gap(place, f"state `{machine.states[path].name}` is never entered")
     for transition in found.never_taken:
         place = project.place(f"behaviors/{behavior}.yaml", transition.where)
         yield Gap(place, f"{described(machine, transition)} is never taken")
 
 
-def _place(project: Project, behavior: str, path: str) -> Place:
-    return project.place(f"behaviors/{behavior}.yaml", project.behaviors[behavior].states[path].where)
+def _place(project: Project, behavior: str, finding: ExplorationFinding) -> Place:
+    where = finding.where or project.behaviors[behavior].states[finding.state].where
+    return project.place(f"behaviors/{behavior}.yaml", where)

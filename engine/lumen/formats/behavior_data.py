@@ -23,6 +23,7 @@ from lumen.language.actions import (
     Send,
     Wait,
 )
+from lumen.language.machines import MachineDefinition
 from lumen.language.verbs import Quantity, verb_of
 
 ActionData = dict[str, Any]
@@ -47,6 +48,16 @@ def plain_value(value: ComputedValue) -> Any:
         case Mapping():
             return {key: plain_value(item) for key, item in value.items()}
     return value
+
+
+def plain_properties(machine: MachineDefinition) -> dict[str, dict[str, Any]]:
+    """What stands under `properties`."""
+    found = {}
+    for one in machine.properties:
+        conditions = {"always": one.always, "whenever": one.whenever, "eventually": one.eventually}
+        row: dict[str, Any] = {key: condition.shown for key, condition in conditions.items() if condition}
+        found[one.name] = {**row, "within": duration(one.within)} if one.eventually else row
+    return found
 
 
 def plain_action(action: Action) -> ActionData:

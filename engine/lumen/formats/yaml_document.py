@@ -14,7 +14,9 @@ MAX_FLOW_WIDTH = 90
 """Characters up to which a map or a list stands in one line."""
 
 _HARD, _SPECIAL = frozenset('"\\\n\t'), frozenset("'!&*#:,[]{}%@`|>")
-_TABLES = frozenset(("on", "after", "context", "types", "events", "phrases", "answers", "renamed"))
+_TABLES = frozenset(
+    ("on", "after", "context", "types", "events", "phrases", "answers", "lists", "properties", "renamed")
+)
 _TAGS = {type(None): "null", bool: "bool", int: "int", float: "float", str: "str"}
 
 

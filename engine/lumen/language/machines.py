@@ -11,6 +11,7 @@ from typing import Any, Literal
 from lumen.language.actions import ComputedValue, Expression, PlacedAction
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
+from lumen.language.properties import Property
 
 
 class StateKind(StrEnum):
@@ -138,6 +139,7 @@ class MachineDefinition:
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
     answers: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
     lists: Mapping[str, tuple[Mapping[str, Any], ...]] = field(default_factory=dict)
+    properties: tuple[Property, ...] = ()
     words: tuple[str, ...] = ()
     borrowed: Mapping[tuple[str, str], str] = field(default_factory=dict)
     renamed: Mapping[str, str] = field(default_factory=dict)

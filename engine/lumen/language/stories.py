@@ -6,6 +6,7 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
+from lumen.language.properties import Property
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +112,7 @@ class Story:
     """A story, and how the world is while it plays.
 
     `robot` maps a verb to `fails`, `hangs` or its duration [s]; `clock` is the time of day at its start;
-    the states in `never` must never be entered.
+    the states in `never` must never be entered, and its `properties` hold beside those of the behaviour.
     """
 
     name: str
@@ -123,3 +124,4 @@ class Story:
     context: Mapping[str, Any] = field(default_factory=dict)
     robot: Mapping[str, str | float] = field(default_factory=dict)
     never: tuple[str, ...] = ()
+    properties: tuple[Property, ...] = ()

@@ -16,6 +16,7 @@ from lumen.loading.expressions import Expressions
 from lumen.loading.invocations import check_ids, invocations
 from lumen.loading.known_words import WordFiles, known_words
 from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.loading.properties import build_properties
 from lumen.loading.rounds import NOTHING_YET, Rounds, unrolled
 from lumen.loading.shapes import check_shapes
 from lumen.loading.transitions import TransitionReader
@@ -78,6 +79,7 @@ class _Builder:
             "context": {**(data.get("context") or {}), **dict.fromkeys(self.rounds.keys.values(), NOTHING_YET)},
             "types": {k: v for k, v in (data.get("types") or {}).items() if self.expressions.key(k, ("types", k))},
             "events": dict(data.get("events") or {}),
+            "properties": build_properties(data, self.report, self.expressions.expression),
             **self.words.tables,
             "words": self.words.files,
             "borrowed": self.words.borrowed,

@@ -14,7 +14,7 @@ NEVER_DONE = Code("never-done", "statecharts", ERROR, "an `onDone` stands in a s
 _COMMON = {"id", "description", "type"}
 _HISTORY = {*_COMMON, "history", "target"}
 _FINAL = {*_COMMON, "entry", "exit", "output"}
-_MACHINE = {"units", "context", "types", "events", "words", "phrases", "answers", "lists", "renamed"}
+_MACHINE = {"units", "context", "types", "events", "words", "phrases", "answers", "lists", "properties", "renamed"}
 _STATE = {
     *_COMMON, *_MACHINE, "on", "always", "after", "at", "onDone", "onError", "onReload", "resume", "entry",
     "do", "exit", "invoke", "for",

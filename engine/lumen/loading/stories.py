@@ -23,6 +23,7 @@ from lumen.language.stories import (
 )
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import NOT_A_NUMBER
+from lumen.loading.properties import build_properties, unbound_conditions
 from lumen.loading.routes import duration
 from lumen.loading.schedules import BAD_TIME, schedule
 from lumen.loading.units import BAD_DURATION, seconds
@@ -46,6 +47,7 @@ def build_story(data: Any, report: DocumentReport, *, name: str) -> Story | None
         context=data.get("context", {}),
         robot={verb: _performance(how, report, ("robot", verb)) for verb, how in data.get("robot", {}).items()},
         never=tuple(data.get("never", ())),
+        properties=build_properties(data, report, unbound_conditions(report)),
     )
 
 

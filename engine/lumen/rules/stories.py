@@ -4,15 +4,19 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from lumen.interpreters.expressions import check_expression, schema_of
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.interpreters.statechart.nesting import ID_SEPARATOR, resolutions
 from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
+from lumen.language.actions import Expression
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
+from lumen.language.properties import conditions_of
 from lumen.language.stories import Expect, Happen, SendMessage, Story, TouchSensor
 from lumen.loading.complaints import WRONG_TYPE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.expressions import place_within
 from lumen.loading.schema import faults
 from lumen.rules.events import UNKNOWN_EVENT, declared, descriptors, hears, raised
 from lumen.rules.lookups import References, first
@@ -42,6 +46,8 @@ class _Script:
             self.references.look_up(self.report, ("behavior",), "behavior", self.story.behavior)
         for i, state in enumerate(self.story.never):
             self.state(("never", i), state)
+        for condition in conditions_of(self.story.properties):
+            self.condition(condition)
         for key, value in self.story.context.items():
             self.key(("context", key), key, value)
         for step in self.story.steps:
@@ -56,6 +62,19 @@ class _Script:
                     self.message((*step.where, "message"), route, body)
                 case Expect() as expected:
                     self.expect((*step.where, "expect"), expected)
+
+    def condition(self, condition: Expression) -> None:
+        """What a property says, by what its behaviour declares."""
+        machine = self.machine
+        if machine is None or not self.sound:
+            return
+        context = {key: machine.types.get(key, schema_of(value)) for key, value in machine.context.items()}
+        names = {name for state in machine.states.values() for name in (state.path, state.alias) if name}
+        for finding in check_expression(condition.source, context=context, states=names, expected={"type": "boolean"}):
+            place = place_within(
+                self.report.document, condition.where, condition.source, finding.offset, finding.length
+            )
+            self.report.diagnostics.append(finding.code.at(place, finding.message, finding.hint))
 
     def expect(self, where: NodePath, expected: Expect) -> None:
         for i, state in enumerate(expected.states):

@@ -21,6 +21,7 @@ from lumen.language.actions import (
 from lumen.language.commands import GoTo
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, MachineDefinition, State, Transition
+from lumen.language.properties import conditions_of
 
 
 class ActionSite(NamedTuple):
@@ -67,6 +68,7 @@ def expression_sites(machine: MachineDefinition) -> Iterator[ExpressionSite]:
                 yield ExpressionSite(transition.guard, transition, guard=True)
     for site in action_sites(machine):
         yield from _spots(site)
+    yield from (ExpressionSite(condition, None, guard=True) for condition in conditions_of(machine.properties))
 
 
 def _made(where: NodePath) -> bool:

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from math import inf
 from typing import Any, NamedTuple, Protocol, assert_never
 
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
+from lumen.interpreters.statechart.property_monitor import Violation, monitors
 from lumen.interpreters.wall_clock import MICROSECONDS, next_moment
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
@@ -148,6 +150,8 @@ class StoryPlayer(Observer):
         self._missed: UnmetExpectation | None = None
         self._begun = self._since = 0.0
         self._awaited: int | None = None
+        machine = exhibition.project.behaviors[story.behavior or exhibition.project.behavior]
+        self._monitors = monitors(machine, (*machine.properties, *story.properties))
 
     @property
     def failure(self) -> str:
@@ -163,6 +167,8 @@ class StoryPlayer(Observer):
         self._begun = self._since = now
 
     def stepped(self, step: Step) -> None:
+        for monitor in self._monitors:
+            self._violated(monitor.step(step.snapshot))
         self.see(active_names(step.snapshot), entered_names(step), step.snapshot.context, step.snapshot.place)
 
     def see(self, states: frozenset[str], entered: Iterable[str], context: Mapping[str, Any], place: str = "") -> None:
@@ -190,6 +196,8 @@ class StoryPlayer(Observer):
 
     def tick(self, now: float) -> None:
         """Do every step that can be done by `now` [s]; what is done is heard before anything is expected of it."""
+        for monitor in sorted(self._monitors, key=lambda monitor: monitor.deadline):
+            self._violated(monitor.elapse(now))
         heard = True
         while heard and not self.finished and self._do(now):
             heard = isinstance(self.story.steps[self.position].action, StoryPause | AwaitTime | Expect)
@@ -200,6 +208,9 @@ class StoryPlayer(Observer):
         """Until when it does nothing [s], unless something happens that it expects."""
         if self.finished:
             return now
+        return min(self._quiet_until(now), *(monitor.deadline for monitor in self._monitors), inf)
+
+    def _quiet_until(self, now: float) -> float:
         match self.story.steps[self.position].action:
             case StoryPause(seconds):
                 return self._since + seconds
@@ -208,6 +219,10 @@ class StoryPlayer(Observer):
             case AwaitTime() if self._awaited is not None:
                 return now + (self._awaited - self._moment(now)) / MICROSECONDS
         return now
+
+    def _violated(self, violation: Violation | None) -> None:
+        if violation:
+            self.fail(UnmetExpectation(f"the property `{violation.property.name}`", violation.how))
 
     def _do(self, now: float) -> bool:
         action = self.story.steps[self.position].action

@@ -61,6 +61,7 @@ def _explored(explored: Explored) -> dict[str, Any]:
         "steps": found.steps,
         "complete": found.complete,
         "took": round(explored.took, 3),
+        "kept": list(found.kept),
         "findings": [
             {**_place(f.place), "kind": f.kind, "message": f.message, "story": f.story} for f in explored.findings
         ],

@@ -13,6 +13,7 @@ FINDING_KINDS = {
     "dead-end": "a dead end",
     "no-way-back": "no way back",
     "restless": "no rest",
+    "property": "a property that does not hold",
 }
 
 
@@ -90,6 +91,8 @@ def _explored(explored: Explored, coloured: bool) -> Iterator[str]:
     if explored.unseen:
         yield "\nNot come upon, by the data that was tried:"
         yield from (f"  {gap.place}: {gap.what}" for gap in explored.unseen)
+    reach = "wherever it came" if found.complete else f"in the {found.configurations:,} configurations explored"
+    yield from (f"\n`{name}` holds {reach}" for name in found.kept)
     yield f"\nExplored `{explored.behavior}`: {size}, {steps} in {explored.took:.1f} s: {sum_of}" + (
         "" if found.complete else f"; --bound ended it with {found.waiting:,} more in sight"
     )

@@ -4,7 +4,7 @@ import json
 from collections.abc import Container, Iterator, Sequence
 from typing import Any
 
-from lumen.formats.behavior_data import plain_block
+from lumen.formats.behavior_data import plain_block, plain_properties
 from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
 from lumen.formats.durations import duration
 from lumen.formats.ecmascript import ScriptError, Vocabulary
@@ -82,10 +82,11 @@ class _ScxmlWriter:
         types = {self.vocabulary.keys.get(key, key): schema for key, schema in machine.types.items()}
         parts = {
             "types": types, "events": machine.events, "phrases": phrases, "answers": answers,
-            "renamed": machine.renamed,
+            "lists": {name: list(entries) for name, entries in machine.lists.items()},
+            "properties": plain_properties(machine), "renamed": machine.renamed,
         }  # fmt: skip
         if found := {key: part for key, part in parts.items() if part}:
-            for key in sorted(found.keys() & {"phrases", "answers"}):
+            for key in sorted(found.keys() & {"phrases", "answers", "lists", "properties"}):
                 self.report.foreign(f"`{key}`", (key,))
             yield _json("machine", found)
 

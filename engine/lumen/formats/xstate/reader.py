@@ -21,7 +21,7 @@ _MEANT = {
     "id", "key", "type", "initial", "states", "on", "always", "after", "entry", "exit", "onDone", "invoke", "history",
     "parallel", "target", "output", "context", "meta", "description", "$schema", "version",
 }  # fmt: skip
-_MACHINE = ("types", "events", "phrases", "answers", "renamed")
+_MACHINE = ("types", "events", "phrases", "answers", "lists", "properties", "renamed")
 
 
 def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:

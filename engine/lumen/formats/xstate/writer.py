@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from lumen.formats.behavior_data import plain_action, plain_block, plain_value
+from lumen.formats.behavior_data import plain_action, plain_block, plain_properties, plain_value
 from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
 from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD
 from lumen.formats.xstate.descriptors import EventDescriptors
@@ -204,6 +204,10 @@ class _XStateWriter:
             yield "phrases", {name: _phrases(table) for name, table in machine.phrases.items()}
         if machine.answers:
             yield "answers", {name: [_answer(row) for row in rows] for name, rows in machine.answers.items()}
+        if machine.lists:
+            yield "lists", {name: list(entries) for name, entries in machine.lists.items()}
+        if machine.properties:
+            yield "properties", plain_properties(machine)
 
 
 def _phrases(table: Mapping[str, Sequence[str]]) -> Any:

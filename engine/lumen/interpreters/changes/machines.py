@@ -40,6 +40,8 @@ class _Comparison:
         yield from self.phrases()
         yield from self.answers()
         yield from self.named("list", self.old.lists, self.new.lists)
+        old, new = ({one.name: one for one in machine.properties} for machine in (self.old, self.new))
+        yield from self.named("property", old, new)
         yield from self.named("event", self.old.events, self.new.events)
 
     def presence(self) -> Iterator[Change]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.interpreters.exploration.findings import ExplorationFinding, PathStep, findings
+from lumen.interpreters.exploration.properties import property_findings
 from lumen.interpreters.exploration.search import StateSpaceSearch
 from lumen.interpreters.exploration.stimuli import Stimulus, StimulusKind
 from lumen.language import machines
@@ -23,7 +24,7 @@ class Exploration:
     """What came of a search; `waiting` are configurations that its bound left out.
 
     `never_entered` and `never_taken` are states and transitions that it did not come upon: what it does not see, or
-    what can't be.
+    what can't be. `kept` are the properties that hold wherever it came.
     """
 
     findings: tuple[ExplorationFinding, ...]
@@ -32,6 +33,7 @@ class Exploration:
     waiting: int
     never_entered: tuple[str, ...] = ()
     never_taken: tuple[Transition, ...] = ()
+    kept: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -59,12 +61,14 @@ def explore(
     search = StateSpaceSearch(machine, events, language=language, epoch=epoch, timezone=timezone)
     for expanded in search.expand(bound):
         progress(expanded, search.waiting)
+    broken = tuple(property_findings(machine, search))
     states = (s for s in machine.states.values() if s.path and s.kind is not machines.StateKind.HISTORY)
     return Exploration(
-        tuple(findings(machine, search, home)),
+        (*findings(machine, search, home), *broken),
         search.expanded,
         search.steps,
         search.waiting,
         tuple(s.path for s in states if s.name not in search.entered),
         tuple(t for s in machine.states.values() for t in s.transitions if t.where not in search.taken),
+        tuple(p.name for p in machine.properties if p.where not in {finding.where for finding in broken}),
     )

@@ -5,9 +5,10 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_state
+from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_state, property_trees
 from lumen.interpreters.exploration.history_uses import history_uses
 from lumen.interpreters.exploration.liveness import Liveness
+from lumen.interpreters.expressions import names
 from lumen.interpreters.expressions.tree import FunctionCall, Literal, path_of, walk
 from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 from lumen.language.machines import MachineDefinition
@@ -33,7 +34,9 @@ class Abstraction:
         self._liveness, self._histories = Liveness(machine), history_uses(machine)
         self._loops = frozenset(s.for_each.key for s in machine.states.values() if s.for_each)
         every = (use for state in machine.states.values() for use in of_state(state))
-        uses = [use for use in every if not self._goes_on(use)]
+        self._asked = [ExpressionUse(tree) for tree in property_trees(machine.properties)]
+        self._always_live = frozenset(key for use in self._asked for key in names(use.tree).context)
+        uses = [*self._asked, *(use for use in every if not self._goes_on(use))]
         literals = {node.value for use in uses for node, _ in walk(use.tree) if isinstance(node, Literal)}
         self._texts = {value for value in literals if isinstance(value, str)}
         self._numbers = sorted({v for v in literals if isinstance(v, int | float) and not isinstance(v, bool)} | {0})
@@ -44,7 +47,7 @@ class Abstraction:
         self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 
     def key(self, snapshot: Snapshot) -> ConfigurationKey:
-        live = self._liveness.of(snapshot.configuration)
+        live = self._liveness.of(snapshot.configuration) | self._always_live
         return (
             snapshot.configuration,
             tuple((k, self._known(k, snapshot.context.get(k))) for k in sorted(live)),

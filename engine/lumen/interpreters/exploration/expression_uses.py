@@ -1,12 +1,13 @@
 """What a behaviour reads: the expressions on which its way depends, state by state."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.interpreters.expressions import ExpressionError, ExpressionNode, names, parse_expression
 from lumen.language.actions import Assign, ComputedValue, Expression, If, Parallel, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
+from lumen.language.properties import Property, conditions_of
 
 
 class ExpressionUse(NamedTuple):
@@ -23,6 +24,11 @@ def tree_of(source: str) -> ExpressionNode | None:
         return parse_expression(source)
     except ExpressionError:
         return None
+
+
+def property_trees(properties: Iterable[Property]) -> Iterator[ExpressionNode]:
+    """The conditions of properties."""
+    yield from filter(None, (tree_of(condition.source) for condition in conditions_of(properties)))
 
 
 def of_transition(transition: Transition) -> Iterator[ExpressionUse]:

@@ -7,9 +7,10 @@ from typing import Literal
 from lumen.interpreters.exploration.search import SearchNode, StateSpaceSearch, leaves, reaching
 from lumen.interpreters.exploration.stimuli import Stimulus
 from lumen.interpreters.statechart.nesting import ID_SEPARATOR, innermost_names
+from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition, StateKind
 
-FindingKind = Literal["dead-end", "no-way-back", "restless"]
+FindingKind = Literal["dead-end", "no-way-back", "restless", "property"]
 
 
 @dataclass(frozen=True)
@@ -25,15 +26,19 @@ class PathStep:
 
 @dataclass(frozen=True)
 class ExplorationFinding:
-    """Something that should not be: a dead end, no way back to `home`, or a machine that never comes to rest.
+    """Something that should not be: a dead end, no way back to `home`, a machine that never comes to rest, or a
+    property that does not hold.
 
-    `state` is the path of the state it is about, `path` the shortest one there.
+    `state` is the path of the state it is about, `path` the shortest one there. A property's place is `where`; to see
+    it broken one waits there for `patience` [s].
     """
 
     kind: FindingKind
     state: str
     message: str
     path: tuple[PathStep, ...]
+    where: NodePath = ()
+    patience: float = 0.0
 
 
 def findings(machine: MachineDefinition, search: StateSpaceSearch, home: str = "") -> list[ExplorationFinding]:

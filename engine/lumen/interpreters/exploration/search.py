@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from heapq import heappop, heappush
-from typing import Any
+from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
 from lumen.interpreters.exploration.abstraction import Abstraction, ConfigurationKey
@@ -10,6 +10,7 @@ from lumen.interpreters.exploration.stimuli import Stimulus, StimulusFinder
 from lumen.interpreters.statechart import Snapshot, Step, initial, step
 from lumen.interpreters.statechart.command_ids import answer_of
 from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.property_monitor import holds
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
@@ -53,6 +54,15 @@ class SearchNode:
         return found[::-1]
 
 
+class BrokenProperty(NamedTuple):
+    """The cheapest step found after which a property does not hold."""
+
+    cost: int
+    parent: SearchNode | None
+    stimulus: Stimulus | None
+    snapshot: Snapshot
+
+
 class StateSpaceSearch:
     """Explores a machine up to so many configurations; `nodes` are those found, in that order.
 
@@ -69,14 +79,15 @@ class StateSpaceSearch:
         timezone: str = "",
     ) -> None:
         self._machine = machine
-        self._stimuli = StimulusFinder(machine, events)
-        self._abstraction = Abstraction(machine)
+        self.stimuli = StimulusFinder(machine, events)
+        self.abstraction = Abstraction(machine)
         self._planner = compiled(machine).planner
         self.nodes: dict[ConfigurationKey, SearchNode] = {}
         self.steps = 0
         self.expanded = 0
         self.taken: set[NodePath] = set()
         self.entered: set[str] = set()
+        self.violations: dict[str, BrokenProperty] = {}
         self._waiting: list[tuple[int, int, SearchNode]] = []
         first = initial(machine, language=language, epoch=epoch, timezone=timezone)
         self.first = self._reach(first, None, None)
@@ -104,7 +115,7 @@ class StateSpaceSearch:
         """Find out where everything that can happen here leads."""
         if self.finished(node):
             return
-        for stimulus in self._stimuli.of(node.snapshot, node.commands):
+        for stimulus in self.stimuli.of(node.snapshot, node.commands):
             self.steps += 1
             try:
                 taken = step(self._machine, node.snapshot, stimulus.event)
@@ -115,14 +126,26 @@ class StateSpaceSearch:
             if taken.snapshot is not node.snapshot:
                 node.successors.append(self._reach(taken, node, stimulus))
 
+    def _watch(self, snapshot: Snapshot, cost: int, parent: SearchNode | None, stimulus: Stimulus | None) -> None:
+        """Remember the cheapest way to break each property that has to hold always."""
+        for property in self._machine.properties:
+            known = self.violations.get(property.name)
+            if (
+                property.always
+                and (known is None or cost < known.cost)
+                and not holds(self._machine, property.always, snapshot)
+            ):
+                self.violations[property.name] = BrokenProperty(cost, parent, stimulus, snapshot)
+
     def _reach(self, taken: Step, parent: SearchNode | None, stimulus: Stimulus | None) -> SearchNode:
         self.taken.update(t.where for t in taken.transitions)
         self.entered.update(taken.entered)
         cost = (parent.cost if parent else 0) + (stimulus.cost if stimulus else 0)
-        key = self._abstraction.key(taken.snapshot)
+        self._watch(taken.snapshot, cost, parent, stimulus)
+        key = self.abstraction.key(taken.snapshot)
         node = self.nodes.get(key)
         if node is None or (cost < node.cost and not node.expanded):
-            commands = _still(parent.commands if parent else {}, taken.commands, stimulus)
+            commands = still(parent.commands if parent else {}, taken.commands, stimulus)
             if node is None:
                 node = self.nodes[key] = SearchNode(taken.snapshot, commands, cost, parent, stimulus)
             else:
@@ -132,7 +155,7 @@ class StateSpaceSearch:
         return node
 
 
-def _still(
+def still(
     commands: Mapping[str, BodyCommand], started: tuple[Command, ...], stimulus: Stimulus | None
 ) -> dict[str, BodyCommand]:
     """The awaited commands by id, without the one just answered."""

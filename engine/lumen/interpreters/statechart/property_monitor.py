@@ -1,0 +1,102 @@
+"""Watches a run for what has to be so: a safety property at every step, a bounded response by its deadline."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from math import inf
+from typing import NamedTuple
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions import Scope, compile_guard
+from lumen.interpreters.statechart.values import Snapshot
+from lumen.language.actions import Expression
+from lumen.language.machines import MachineDefinition
+from lumen.language.nanoseconds import nanoseconds
+from lumen.language.properties import Property
+
+Holds = Callable[[Snapshot], bool]
+
+
+class Violation(NamedTuple):
+    """A property that did not hold, and how, in words."""
+
+    property: Property
+    how: str
+
+
+@dataclass
+class PropertyMonitor:
+    """One property in one run; `since` [s] is when it began to wait for its `eventually`, None where it does not."""
+
+    definition: Property
+    machine: MachineDefinition
+    since: float | None = None
+    begun: bool = False
+    held: bool = False
+
+    def step(self, snapshot: Snapshot) -> Violation | None:
+        """What the end of a macrostep violates."""
+        property = self.definition
+        if property.always:
+            return None if holds(self.machine, property.always, snapshot) else _broken(property, snapshot.at)
+        if late := self.elapse(snapshot.at):
+            return late
+        asked = not self.begun if property.whenever is None else holds(self.machine, property.whenever, snapshot)
+        if asked and not self.held and self.since is None:
+            self.since = snapshot.at
+        self.held, self.begun = asked, True
+        if property.eventually and holds(self.machine, property.eventually, snapshot):
+            self.since = None
+        return None
+
+    @property
+    def deadline(self) -> float:
+        """When `eventually` has to hold [s], for ever where nothing waits for it."""
+        return inf if self.since is None else self.since + self.definition.within
+
+    def elapse(self, now: float) -> Violation | None:
+        """What is violated because it is later than that [s] and nothing has happened."""
+        if self.since is None or nanoseconds(now) <= nanoseconds(self.since) + nanoseconds(self.definition.within):
+            return None
+        since, self.since = self.since, None
+        return Violation(self.definition, late(self.definition, since))
+
+
+def monitors(machine: MachineDefinition, properties: Iterable[Property]) -> list[PropertyMonitor]:
+    """One for each property, at the beginning of a run."""
+    return [PropertyMonitor(property, machine) for property in properties]
+
+
+def holds(machine: MachineDefinition, condition: Expression, snapshot: Snapshot) -> bool:
+    """Whether a condition is true where a behaviour stands; what has no value does not hold."""
+    names = snapshot.configuration | {machine.states[path].path for path in _paths(machine, snapshot)}
+    scope = Scope(
+        context=snapshot.context,
+        state={"path": "", "language": snapshot.language, "place": snapshot.place},
+        configuration=names.__contains__,
+        at=snapshot.at,
+        language=snapshot.language,
+        phrases=machine.phrases,
+        answers=machine.answers,
+        epoch=snapshot.epoch,
+        lists=machine.lists,
+    )
+    try:
+        return compile_guard(condition.source)(scope)
+    except ExpressionError:
+        return False
+
+
+def late(property: Property, since: float) -> str:
+    """How a deadline was missed."""
+    condition = property.eventually.shown if property.eventually else ""
+    return f"`{condition}` did not come to hold within {property.within:g} s of {since:g} s"
+
+
+def _broken(property: Property, at: float) -> Violation:
+    condition = property.always.shown if property.always else ""
+    return Violation(property, f"`{condition}` did not hold at {at:g} s")
+
+
+def _paths(machine: MachineDefinition, snapshot: Snapshot) -> Iterable[str]:
+    by_name = {state.name: path for path, state in machine.states.items() if state.alias}
+    return (by_name[name] for name in snapshot.configuration if name in by_name)

@@ -1,0 +1,39 @@
+"""`properties` of a behaviour or a story, from their plain data."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from lumen.interpreters.expressions import check_expression
+from lumen.language.actions import Expression
+from lumen.language.diagnostics import NodePath
+from lumen.language.properties import Property
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.expressions import place_within
+from lumen.loading.routes import duration
+
+ReadCondition = Callable[[str, NodePath], Expression | None]
+
+
+def build_properties(data: Mapping[str, Any], report: DocumentReport, read: ReadCondition) -> tuple[Property, ...]:
+    """The properties that can be read, in the order of the file."""
+    found = []
+    for name, row in (data.get("properties") or {}).items():
+        where = ("properties", name)
+        conditions = {key: read(row[key], (*where, key)) for key in ("always", "eventually", "whenever") if key in row}
+        within = duration(row, "within", report, where) if "within" in row else 0.0
+        if None not in conditions.values() and within is not None:
+            found.append(Property(name, **conditions, within=within, where=where))
+    return tuple(found)
+
+
+def unbound_conditions(report: DocumentReport) -> ReadCondition:
+    """Reads the conditions of a file that does not declare what they speak of."""
+
+    def read(source: str, where: NodePath) -> Expression | None:
+        findings = check_expression(source, context=None)
+        for finding in findings:
+            place = place_within(report.document, where, source, finding.offset, finding.length)
+            report.diagnostics.append(finding.code.at(place, finding.message, finding.hint))
+        return None if findings else Expression(source, where)
+
+    return read
