@@ -77,7 +77,7 @@ def test_a_film_has_the_sounds_of_the_run_at_their_times(project: Path, tmp_path
     command = ["run", str(project), "--speed", "max", "--for", "4s", "--video", str(film)]
     done = run_guarded([sys.executable, "-m", "lumen", *command], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "plays the sound sounds/bell.wav" in done.stdout
+    assert done.stdout.count("sounds sounds/bell.wav") == 2
     exe = imageio_ffmpeg.get_ffmpeg_exe()
     decode = [exe, "-v", "error", "-i", str(film), "-map", "0:a", "-f", "s16le", "-ac", "1", "-ar", str(RATE), "-"]
     heard = np.frombuffer(run_guarded(decode, capture_output=True, check=True).stdout, "<i2").astype(float)
@@ -120,6 +120,7 @@ def test_it_is_played_by_the_player_of_this_machine(
     assert played.read_text().split() == [*PLAYERS[0][1:], str(project / "sounds/bell.wav")]
     end(0.5)
     speaker.play(PlaySound("sounds/bell.wav", LENGTH), 1.0, 1.0)
+    speaker.play(PlaySound("no\0file", LENGTH), 1.0, 1.0)
     speaker.close()
 
 

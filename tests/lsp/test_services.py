@@ -220,3 +220,12 @@ def test_nothing_raises_whatever_the_files_hold() -> None:
         if word := renamable(analysis, mutant.file, line, column):
             with suppress(UsageError):
                 rename(analysis, word, "other")
+
+
+def test_a_route_that_goes_to_a_device_is_one_of_the_route_table() -> None:
+    devices = "modules:\n  show: {mqtt: {host: h, routes: {st|ate: lamp/state}}}"
+    analysis, where = written("lumen.yaml", "modules:", devices)
+    (known,) = definitions(analysis, *where)
+    assert analysis.text("lumen.yaml").splitlines()[known.line - 1].startswith("  state: {key: lumen.state")
+    renamed, (_, line, column) = written("lumen.yaml", "modules:", devices.replace("st|ate", "|"))
+    assert "state" in {item.text.removesuffix(": ") for item in complete(renamed, "lumen.yaml", line, column)}

@@ -50,8 +50,21 @@ def edited(*edits: tuple[str, str, str]) -> Project:
 
 PLAIN = edited()
 
+SHOW_CHANGED = "what goes to lamps, screens and sound desks (`modules.show`) changed"
 CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
     ("comments", [(TOUR, "# What the robot remembers.", "# Things.")], [], Risk.COSMETIC),
+    (
+        "a lamp",
+        [
+            (
+                "lumen.yaml",
+                "  memory: {here: false",
+                "  show: {mqtt: {host: h, routes: {state: lamp/state}}}\n  memory: {here: false",
+            )
+        ],
+        ["what is said of the modules changed: active from the next start on", SHOW_CHANGED],
+        Risk.RESTART,
+    ),
     (
         "a text",
         [(TOUR, "en: Never mind.", "en: No problem.")],

@@ -36,7 +36,7 @@ class Loudspeaker:
 
     def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
         playing, cut = self._heard(self._root / sound.file), None
-        if self._track is not None and (found := _mono(self._root / sound.file)):
+        if self._track is not None and (found := _mono(self._root / sound.file, sound.length)):
             cut = self._track.add(found.at_volume(volume), now)
 
         def end(then: float) -> None:
@@ -64,22 +64,21 @@ class Loudspeaker:
             return None
         try:
             playing = subprocess.Popen([*self._player, str(file)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        except OSError:
+        except (OSError, ValueError):
             return None
         self._playing.append(playing)
         return playing
 
 
-def _mono(file: Path) -> Sound | None:
-    """The sound in a WAV of 16 bits, two channels as one; None where it is gone."""
+def _mono(file: Path, length: float) -> Sound | None:
+    """So much [s] of a WAV of 16 bits, two channels as one; None where it is gone."""
     try:
         with wave.open(str(file)) as opened:
-            samples, rate, channels = (
-                opened.readframes(opened.getnframes()),
-                opened.getframerate(),
-                opened.getnchannels(),
-            )
-    except (OSError, EOFError, wave.Error):
+            rate, channels = opened.getframerate(), opened.getnchannels()
+            if opened.getsampwidth() != 2 or channels not in (1, 2):
+                return None
+            samples = opened.readframes(min(opened.getnframes(), round(length * rate)))
+    except (OSError, EOFError, ValueError, wave.Error):
         return None
     if channels == 2:
         both = array("h", samples[: len(samples) // 4 * 4])

@@ -77,8 +77,7 @@ class Narrator(Observer):
         elif kind == "cancelled" and running:
             self.line("robot", f"ends early: {running}")
         elif event.name == CUE:
-            if isinstance(event.data, dict) and event.data.get("kind") == "sound":
-                self.line("robot", f"sounds {event.data.get('value')}")
+            return  # what comes of it is performed
         elif event.name == RECORDED:
             self.line("robot", "has recorded what it heard")
         elif not id:

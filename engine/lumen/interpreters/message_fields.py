@@ -15,7 +15,7 @@ class FieldKind(StrEnum):
     MIXED = ""
 
 
-class MessageField(NamedTuple):
+class SchemaField(NamedTuple):
     """A property of a message's schema, and the range of its numbers where it says one."""
 
     name: str
@@ -24,20 +24,20 @@ class MessageField(NamedTuple):
     high: float | None = None
 
 
-def message_fields(schema: Mapping[str, Any] | None) -> Mapping[str, MessageField]:
+def message_fields(schema: Mapping[str, Any] | None) -> Mapping[str, SchemaField]:
     """The fields under their names, in the order of the schema; none where there is no schema."""
     rows = (schema or {}).get("properties")
     return {name: _field(name, row) for name, row in rows.items()} if isinstance(rows, Mapping) else {}
 
 
-def _field(name: str, row: Any) -> MessageField:
+def _field(name: str, row: Any) -> SchemaField:
     if not isinstance(row, Mapping):
-        return MessageField(name, FieldKind.MIXED)
+        return SchemaField(name, FieldKind.MIXED)
     kind, options = row.get("type"), row.get("enum")
     if kind is None and isinstance(options, list) and options and all(isinstance(o, str) for o in options):
         kind = "string"
     known = FieldKind(kind) if isinstance(kind, str) and kind in {*FieldKind} else FieldKind.MIXED
-    return MessageField(name, known, _number(row.get("minimum")), _number(row.get("maximum")))
+    return SchemaField(name, known, _number(row.get("minimum")), _number(row.get("maximum")))
 
 
 def _number(value: Any) -> float | None:

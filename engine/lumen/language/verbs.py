@@ -180,7 +180,7 @@ _SOUND = Verb(
     "sound",
     PlaySound,
     (VerbField("file"),),
-    lambda c: f"plays the sound {c.file}",
+    lambda c: f"sounds {c.file}",
     lambda c: f"plays the sound `{c.file}`",
 )
 _TRACK = Verb(

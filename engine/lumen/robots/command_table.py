@@ -131,7 +131,12 @@ def _volume(p: CommandParameters) -> Volume:
 def _check_sound(command: PlaySound, body: Body) -> None:
     if not 0 <= command.length <= MAX_SOUND_DURATION:
         raise BadCommandError(f"a sound takes from 0 to {MAX_SOUND_DURATION:g} s, not {command.length:g} s")
-    if not command.file or command.file[:1] in "/\\" or ".." in command.file.replace("\\", "/").split("/"):
+    if (
+        not command.file
+        or not command.file.isprintable()
+        or command.file[:1] in "/\\"
+        or ".." in command.file.replace("\\", "/").split("/")
+    ):
         raise BadCommandError(f"`{shown(command.file)}` is no file within the project")
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from lumen.interpreters.message_fields import FieldKind, MessageField, message_fields
+from lumen.interpreters.message_fields import FieldKind, SchemaField, message_fields
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.routes import Direction, Route
 from lumen.language.show import SHOW_PATH, DmxLink, MqttLink, OscLink, may_come_from_devices
@@ -136,7 +136,7 @@ class _Ways:
         can: str,
         *,
         key: bool = False,
-    ) -> MessageField | None:
+    ) -> SchemaField | None:
         """The field, where a body has it and it is of one of those kinds; else that is reported."""
         known = self.fields(route)
         if name not in known:
@@ -150,7 +150,7 @@ class _Ways:
             return None
         return known[name]
 
-    def fields(self, route: Route) -> Mapping[str, MessageField]:
+    def fields(self, route: Route) -> Mapping[str, SchemaField]:
         return message_fields(self.draft.messages.get(route.schema))
 
     def has_schema(self, route: Route) -> bool:
@@ -164,7 +164,7 @@ def _value(report: DocumentReport, path: NodePath, name: str) -> NodePath:
     return long if long in report.document.spans else path
 
 
-def _ranged(field: MessageField) -> bool:
+def _ranged(field: SchemaField) -> bool:
     return field.low is not None and field.high is not None and field.low < field.high
 
 

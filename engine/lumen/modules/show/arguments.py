@@ -8,10 +8,10 @@ from pythonosc.osc_message_builder import BuildError, OscMessageBuilder
 from pythonosc.osc_packet import OscPacket, ParseError
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import FieldKind, MessageField
+from lumen.interpreters.message_fields import FieldKind, SchemaField
 
 
-def message_of(address: str, body: Any, fields: Sequence[MessageField]) -> bytes:
+def message_of(address: str, body: Any, fields: Sequence[SchemaField]) -> bytes:
     """The body's fields as a message to that address. Raises ModuleError for what can't be carried so."""
     builder = OscMessageBuilder(address)
     for field in fields:
@@ -33,7 +33,7 @@ def messages_of(data: bytes) -> list[tuple[str, list[Any]]]:
         raise ModuleError(f"it is no OSC: {error}") from None
 
 
-def body_of_arguments(arguments: Sequence[Any], fields: Sequence[MessageField]) -> dict[str, Any]:
+def body_of_arguments(arguments: Sequence[Any], fields: Sequence[SchemaField]) -> dict[str, Any]:
     """The arguments under the names of the fields; raises ModuleError where number or types differ."""
     if len(arguments) != len(fields):
         names = ", ".join(field.name for field in fields) or "none"
@@ -41,7 +41,7 @@ def body_of_arguments(arguments: Sequence[Any], fields: Sequence[MessageField]) 
     return {field.name: _value(field, value) for field, value in zip(fields, arguments, strict=True)}
 
 
-def _argument(field: MessageField, value: Any) -> tuple[str, Any]:
+def _argument(field: SchemaField, value: Any) -> tuple[str, Any]:
     number = isinstance(value, int | float) and not isinstance(value, bool)
     match field.kind:
         case FieldKind.NUMBER if number:
@@ -58,7 +58,7 @@ def _argument(field: MessageField, value: Any) -> tuple[str, Any]:
     )
 
 
-def _value(field: MessageField, value: Any) -> Any:
+def _value(field: SchemaField, value: Any) -> Any:
     """An argument as the field has it: desks send whole numbers as floats, and 1 and 0 for yes and no."""
     number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
     match field.kind:

@@ -4,7 +4,7 @@ import struct
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import MessageField
+from lumen.interpreters.message_fields import SchemaField
 
 CHANNELS = 512
 PORT = 5568
@@ -16,7 +16,7 @@ _LAYOUT = struct.Struct(">HH12sHI16sHI64sBHBBHHBBHHH")
 _TERMINATED = 0x40
 
 
-def channel_level(value: Any, field: MessageField) -> int:
+def channel_level(value: Any, field: SchemaField) -> int:
     """From 0 to 255: where in the field's range the value is; yes is 255. Raises ModuleError for what is no number."""
     if isinstance(value, bool):
         return FULL * value

@@ -9,7 +9,7 @@ from contextlib import suppress
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import MessageField
+from lumen.interpreters.message_fields import SchemaField
 from lumen.language.show import DmxLink
 from lumen.modules.show.channels import CHANNELS, PORT, channel_level, data_packet, multicast_group
 from lumen.modules.show.health import LinkHealth
@@ -31,7 +31,7 @@ class DmxUniverse:
     def __init__(
         self,
         link: DmxLink,
-        fields: Mapping[str, Mapping[str, MessageField]],
+        fields: Mapping[str, Mapping[str, SchemaField]],
         source: str,
         health: LinkHealth,
         clock: Callable[[], float] = time.monotonic,

@@ -11,7 +11,7 @@ from paho.mqtt.client import Client, MQTTMessage
 from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode, MQTTProtocolVersion
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import MessageField
+from lumen.interpreters.message_fields import SchemaField
 from lumen.language.routes import Carried, Route
 from lumen.language.show import MqttLink
 from lumen.modules.show.device_link import TakeFromDevice
@@ -44,7 +44,7 @@ class MqttBroker:
         self,
         link: MqttLink,
         routes: Mapping[str, Route],
-        fields: Mapping[str, MessageField | None],
+        fields: Mapping[str, SchemaField | None],
         incoming: Sequence[str],
         deliver: TakeFromDevice,
         refusals: Refusals,

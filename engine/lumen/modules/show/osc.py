@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import MessageField
+from lumen.interpreters.message_fields import SchemaField
 from lumen.language.show import OscLink
 from lumen.modules.show.arguments import body_of_arguments, message_of, messages_of
 from lumen.modules.show.device_link import TakeFromDevice
@@ -33,7 +33,7 @@ class OscDevice:
     def __init__(
         self,
         link: OscLink,
-        fields: Mapping[str, Sequence[MessageField]],
+        fields: Mapping[str, Sequence[SchemaField]],
         incoming: Sequence[str],
         deliver: TakeFromDevice,
         refusals: Refusals,

@@ -5,10 +5,10 @@ from typing import Any
 import orjson
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import FieldKind, MessageField
+from lumen.interpreters.message_fields import FieldKind, SchemaField
 
 
-def payload_of(body: Any, field: MessageField | None) -> bytes:
+def payload_of(body: Any, field: SchemaField | None) -> bytes:
     """The body as JSON, or its field as bare text. Raises ModuleError for what can't be carried so."""
     if field is None:
         return _json(body)
@@ -21,7 +21,7 @@ def payload_of(body: Any, field: MessageField | None) -> bytes:
         raise ModuleError(f"`{field.name}` holds half a character") from None
 
 
-def body_of_payload(payload: bytes, field: MessageField | None) -> Any:
+def body_of_payload(payload: bytes, field: SchemaField | None) -> Any:
     """What a payload says; raises ModuleError for what is no JSON, or no text."""
     if field and field.kind is FieldKind.STRING:
         try:

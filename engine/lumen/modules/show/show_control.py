@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from lumen.errors import BusError, ModuleError
-from lumen.interpreters.message_fields import MessageField, message_fields
+from lumen.interpreters.message_fields import SchemaField, message_fields
 from lumen.language.modules import SHOW
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
@@ -164,7 +164,7 @@ class ShowControl(Module):
         known = self.project.routes
         return [name for name in routes if name in known and known[name].direction is Direction.IN]
 
-    def _fields(self, route: str) -> Mapping[str, MessageField]:
+    def _fields(self, route: str) -> Mapping[str, SchemaField]:
         """The fields of a route's bodies."""
         row = self.project.routes.get(route)
         return message_fields(self.project.messages.get(row.schema) if row else None)
