@@ -8,6 +8,7 @@ import pytest
 
 from lumen.buses.memory import MemoryBus
 from lumen.clocks.virtual import VirtualClock
+from lumen.interpreters.migration import MigrationPlan
 from lumen.interpreters.statechart import Step, deserialize, serialize
 from lumen.language.commands import Walk
 from lumen.language.events import Event
@@ -181,3 +182,25 @@ def test_where_the_robot_is_outlives_a_restart_of_the_engine() -> None:
     assert deserialize(guide.machine, data).place == "door"
     del data["place"]
     assert deserialize(guide.machine, data).place == ""
+
+
+def test_a_reload_in_mid_walk_is_walked_on_with_and_where_the_robot_is_is_kept() -> None:
+    guide = Guide({"a": {"do": {"walk": {"to": "organ"}}, "onDone": "b"}, "b": {}})
+    guide.live(3.0)
+    for places in ({"organ": HallPlace(0.0, 1.0)}, {"organ": HallPlace(0.0, 1.0), "clock": HallPlace(2.0, 2.0)}):
+        later = replace(guide.project, places=places)
+        planned = guide.loop.plan(later)
+        assert isinstance(planned, MigrationPlan)
+        guide.loop.apply(later, planned)
+        guide.live(40.0)
+        assert (guide.states, guide.place) == ({"b"}, "organ")
+    assert guide.events == ["arrived organ", "done.command.d1"]
+
+
+def test_a_robot_that_is_lost_on_the_way_ends_it() -> None:
+    guide = Guide({"a": {"do": {"walk": {"to": "organ"}}, "onError": "b"}, "b": {}})
+    guide.live(2.0)
+    guide.robot._executor.fail("the robot fell")
+    guide.live(1.0)
+    assert guide.states == {"b"}
+    assert guide.events == ["arrived door", "error.command.d1"]
