@@ -14,6 +14,7 @@ from lumen.interpreters.statechart import (
     deserialize,
     due,
     elapse,
+    finished,
     initial,
     retimed,
     serialize,
@@ -147,6 +148,16 @@ class Interpreter:
         """When the next timer ends [s]."""
         event = due(self._snapshot) if self._snapshot else None
         return event.at if event else None
+
+    @property
+    def done(self) -> bool:
+        """Whether the machine has come to its end: it hears nothing any more."""
+        return finished(self.machine, self._now)
+
+    @property
+    def output(self) -> Any:
+        """The output of the final state in which the machine has come to its end; None before, or without one."""
+        return plain(self._now.output, "output")
 
     @property
     def configuration(self) -> frozenset[str]:

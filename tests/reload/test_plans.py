@@ -289,3 +289,45 @@ def test_history_follows() -> None:
     machine = Machine.from_dict(renamed)
     back = step(machine, planned(where, renamed).snapshot, Event("back", None, 9.0))
     assert back.snapshot.configuration == {"in", "in.c"}
+
+
+ENDING: dict[str, Any] = {
+    "states": {
+        "talk": {"on": {"leave": "bye"}},
+        "bye": {"type": "final", "entry": {"log": "so long"}, "exit": {"log": "gone"}, "output": 7},
+    },
+}
+ENDED = at(ENDING, ("leave", 1.0))
+
+
+def ending(talk: dict[str, Any], bye: dict[str, Any], **more: Any) -> dict[str, Any]:
+    return {"states": {"talk": talk, "bye": bye, **more}}
+
+
+def test_what_has_ended_stays_so_and_nothing_new_begins() -> None:
+    bye = {**ENDING["states"]["bye"], "output": 8}
+    plan = planned(ENDED, {**ending({}, bye), "after": {"1s": ".talk"}, "do": {"say": "Hello"}, "exit": {"log": "x"}})
+    assert (plan.commands, plan.exited, plan.entered) == ((), (), ())
+    assert (plan.snapshot.configuration, plan.snapshot.output, plan.snapshot.timers) == ({"bye"}, 7, ())
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        ending(ENDING["states"]["talk"], {"on": {"back": "talk"}}),
+        {"states": {"talk": {}}, "onReload": ".talk"},
+        {"states": {"talk": {}}},
+        ending({}, {"states": {"a": {}, "b": {"type": "final"}}}),
+    ],
+)
+def test_a_reload_brings_nothing_to_life_that_has_ended(data: dict[str, Any]) -> None:
+    verdict = reload(ENDED, data)
+    assert isinstance(verdict, Refusal)
+    assert "has ended in `bye`" in verdict.reason
+
+
+def test_a_state_that_becomes_final_ends_the_behaviour() -> None:
+    before = at(ending({"on": {"leave": "bye"}}, {"do": {"say": "so long"}}), ("leave", 1.0))
+    plan = planned(before, {**ENDING, "on": {"*": ".talk"}}, now=True)
+    assert [c for c in plan.commands if isinstance(c, Log)] == [Log("so long"), Log("gone")]
+    assert (plan.snapshot.configuration, plan.snapshot.output) == ({"bye"}, 7)

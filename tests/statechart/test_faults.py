@@ -48,7 +48,6 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
     "target of an ordinary state": ("states: {a: {target: a}}", "misplaced-key", "target", "`on`"),
     "initial of a parallel": ("type: parallel\ninitial: a\nstates: {a: }", "misplaced-key", "initial", ""),
     "empty compound": ("states: {a: {type: parallel}}", "no-states", "a:", "`states`"),
-    "final region": ("type: parallel\nstates: {a: {type: final}}", "final-in-parallel", "a:", ""),
     "onDone without do": ("states: {a: {onDone: a}}", "never-done", "onDone", "`do`"),
     "endless always": ("states: {a: {always: {actions: {log: x}}}}", "endless-always", "{actions", "`guard`"),
     "syntax": ("states: {a: {on: {go: {guard: 1 + , target: a}}}}", "expression-syntax", "", ""),

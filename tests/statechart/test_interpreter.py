@@ -224,3 +224,49 @@ def test_no_time_is_no_later_than_any() -> None:
 def test_an_input_that_is_no_map_is_told() -> None:
     with pytest.raises(UsageError, match="has to be a map"):
         initial(Machine.from_dict(TOUR), input=["visits"])  # type: ignore[arg-type]
+
+
+ENDING = {
+    "id": "visit",
+    "context": {"seen": 2},
+    "on": {"*": ".talk"},
+    "after": {"1min": ".talk"},
+    "states": {
+        "talk": {"do": {"say": "Hello"}, "on": {"leave": "bye"}},
+        "bye": {"type": "final", "output": {"seen": "context.seen + 1"}},
+    },
+}
+
+
+def test_a_machine_that_has_ended_hears_nothing_and_says_what_it_gives() -> None:
+    it = Interpreter(Machine.from_dict(ENDING))
+    it.start()
+    assert (it.done, it.output) == (False, None)
+    taken = it.send("leave")
+    assert (it.done, it.output, it.configuration) == (True, {"seen": 3}, {"bye"})
+    assert [str(command) for command in taken.commands] == ["Cancel(id='d1')"]
+    it.clock.wait(100.0)
+    assert it.send("back").transitions == ()
+    assert it.send("done.command.d1").transitions == ()
+    assert (it.done, it.configuration, it.next_due()) == (True, {"bye"}, None)
+
+
+def test_an_end_outlives_the_disk() -> None:
+    it = Interpreter(Machine.from_dict(ENDING))
+    it.start()
+    it.send("leave")
+    again = Interpreter.restore(it.machine, json.loads(json.dumps(it.snapshot())))
+    assert (again.done, again.output) == (True, {"seen": 3})
+    assert again.send("back").transitions == ()
+
+
+def test_an_end_that_an_older_lumen_did_not_keep_is_one() -> None:
+    it = Interpreter(Machine.from_dict(ENDING))
+    it.start()
+    before = it.snapshot()
+    it.send("leave")
+    older = {**it.snapshot(), "timers": before["timers"]}
+    del older["output"]
+    again = Interpreter.restore(it.machine, older)
+    again.clock.wait(100.0)
+    assert (again.done, again.output, again.configuration) == (True, None, {"bye"})

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from lumen.app.causes import innermost, reason_of, why
-from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart import Step, finished
 from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start
 from lumen.language.events import CUE, RECORDED, Event
@@ -45,6 +45,9 @@ class Narrator(Observer):
             if entered:
                 self.states.update(entered)
                 self.line("state", f"{', '.join(entered)}  ({why(part)})")
+        if step.entered and finished(self._machine(), step.snapshot):
+            output = step.snapshot.output
+            self.line("state", "the behaviour is over" + ("" if output is None else f", and gives {output}"))
 
     def performing(self, command: Command, now: float) -> None:
         match command:

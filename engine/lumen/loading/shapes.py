@@ -5,7 +5,6 @@ from lumen.language.machines import StateKind
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 
-FINAL_IN_PARALLEL = Code("final-in-parallel", "statecharts", ERROR, "a final state is a region of a parallel state")
 MISPLACED_KEY = Code("misplaced-key", "statecharts", ERROR, "a key stands in a kind of state that does not have it")
 NO_STATES = Code("no-states", "statecharts", ERROR, "a compound or parallel state has no states")
 NEVER_DONE = Code("never-done", "statecharts", ERROR, "an `onDone` stands in a state that has no `do`")
@@ -34,7 +33,6 @@ def check_shapes(outline: BehaviorOutline, report: DocumentReport) -> None:
     for entry in outline.entries.values():
         _check_keys(entry, report)
         _check_children(entry, report)
-        _check_parent(entry, report)
         _check_done(entry, report)
 
 
@@ -57,13 +55,6 @@ def _check_children(entry: OutlinedState, report: DocumentReport) -> None:
     if all(child.kind is StateKind.HISTORY for child in entry.children.values()):
         hint = "give it `states`, or leave out its `type`"
         report(NO_STATES, entry.where, f"{entry.title} has no states to be in", hint=hint, key=True)
-
-
-def _check_parent(entry: OutlinedState, report: DocumentReport) -> None:
-    parent = entry.parent
-    if entry.kind is StateKind.FINAL and parent and parent.kind is StateKind.PARALLEL:
-        hint = "a parallel state is done when each of its regions has reached a final state of its own"
-        report(FINAL_IN_PARALLEL, entry.where, f"`{entry.path}` is final in a parallel state", hint=hint, key=True)
 
 
 def _check_done(entry: OutlinedState, report: DocumentReport) -> None:

@@ -3,6 +3,7 @@
 from types import ModuleType
 
 from lumen.rules import (
+    after_end,
     alerts,
     clock_texts,
     controllers,
@@ -52,6 +53,7 @@ CHECKS: tuple[ModuleType, ...] = (
     clock_texts,
     guards,
     statecharts,
+    after_end,
     dead_ends,
     timing,
     stories,

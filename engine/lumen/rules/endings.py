@@ -48,4 +48,4 @@ def _ends(machine: MachineDefinition, state: State) -> bool:
     children = [machine.states[path] for path in state.children]
     if state.kind is StateKind.PARALLEL:
         return all(_ends(machine, child) for child in children if child.kind is not StateKind.HISTORY)
-    return any(child.kind is StateKind.FINAL for child in children)
+    return state.kind is StateKind.FINAL or any(child.kind is StateKind.FINAL for child in children)

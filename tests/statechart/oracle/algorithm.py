@@ -1,7 +1,9 @@
 """W3C SCXML 1.0, Appendix D ("Algorithm for SCXML Interpretation"), procedure by procedure, with its names.
 
 No set is kept from one question to the next. Ours is that states have `after`, whose timers begin with the entry and
-end with the exit, and that the root is a state within `<scxml>`, so that no machine ever stops running.
+end with the exit; that the root is a state, with whose end the machine stops running; that what is done completes the
+parallel states around it all the way up, where the pseudo-code goes up once; that a region of a parallel state may be
+final; and that after `exitInterpreter` the configuration still says where the machine ended.
 """
 
 from collections.abc import Callable
@@ -12,7 +14,7 @@ from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from tests.statechart.oracle.content import LIMIT, RestlessError, Waiting, World
 from tests.statechart.oracle.sets import Sets
-from tests.statechart.oracle.tree import is_atomic
+from tests.statechart.oracle.tree import SCXML, is_atomic
 
 Wanted = Callable[[Transition], bool]
 
@@ -23,6 +25,7 @@ class Oracle(Sets):
     def __init__(self, machine: MachineDefinition) -> None:
         super().__init__(World(machine, dict(machine.context)))
         self.begin_macrostep()
+        self.running, self.output = True, None
         first = self.in_document_order(self.add_descendants(machine.root, []))
         self.turns += 1
         self.enter(first)
@@ -51,13 +54,16 @@ class Oracle(Sets):
 
     def external(self, event: Event, wanted: Wanted) -> None:
         self.begin_macrostep()
-        self.world.event, self.world.at = event, max(self.world.at, event.at)
+        self.world.at = max(self.world.at, event.at)
+        if not self.running:
+            return
+        self.world.event = event
         self.microstep(self.select(wanted))
         self.settle()
 
     def settle(self) -> None:
         """`mainEventLoop`, from the first eventless transitions to the end of the macrostep."""
-        while True:
+        while self.running:
             enabled = self.select(lambda t: not t.event)
             if not enabled:
                 if not self.world.internal:
@@ -66,6 +72,14 @@ class Oracle(Sets):
                 self.count()
                 enabled = self.select(lambda t, name=event.name: t.delay is None and matches(t, name))  # type: ignore[misc]
             self.microstep(enabled)
+        self.exit_interpreter()
+
+    def exit_interpreter(self) -> None:
+        world, ended = self.world, list(self.world.configuration)
+        for state in self.in_document_order(ended)[::-1]:
+            world.execute(state.exit, state)
+            world.configuration = [s for s in world.configuration if s is not state]
+        world.configuration, world.timers, world.internal = ended, [], []
 
     def count(self) -> None:
         self.turns += 1
@@ -127,10 +141,20 @@ class Oracle(Sets):
     def done(self, state: State) -> None:
         parent = self.parent(state)
         assert parent is not None  # no machine is a final state
-        outer = self.parent(parent)
-        self.world.enqueue(Event(f"done.state.{parent.name}", self.done_data(state), self.world.at))
-        if outer is not None and outer.kind is StateKind.PARALLEL and all(map(self.is_in_final, self.children(outer))):
-            self.world.enqueue(Event(f"done.state.{outer.name}", None, self.world.at))
+        around = self.proper_ancestors(state, SCXML)
+        if parent.kind is StateKind.COMPOUND:
+            self.complete(parent, self.done_data(state))
+            around = around[1:]
+        for outer in around:
+            if outer.kind is not StateKind.PARALLEL or not self.is_in_final(outer):
+                break
+            self.complete(outer, None)
+
+    def complete(self, state: State, data: Any) -> None:
+        if state is self.machine.root:
+            self.running, self.output = False, data
+        else:
+            self.world.enqueue(Event(f"done.state.{state.name}", data, self.world.at))
 
     def done_data(self, state: State) -> Any:
         try:
@@ -143,7 +167,9 @@ class Oracle(Sets):
         children = self.children(state)
         if state.kind is StateKind.COMPOUND:
             return any(s.kind is StateKind.FINAL and s in self.world.configuration for s in children)
-        return state.kind is StateKind.PARALLEL and all(map(self.is_in_final, children))
+        if state.kind is StateKind.PARALLEL:
+            return all(map(self.is_in_final, children))
+        return state.kind is StateKind.FINAL and state in self.world.configuration
 
 
 def matches(transition: Transition, name: str) -> bool:

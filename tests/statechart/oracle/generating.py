@@ -95,8 +95,7 @@ class Making:
                 self.left -= 1
                 below = f"{path}.c{index}".lstrip(".")
                 data["states"][f"c{index}"] = self.state(below, depth + 1)
-            if not parallel:
-                self.end(data["states"])
+            self.end(data["states"], 50 if not parallel else 25)
             for kind in ("shallow", "deep"):
                 if self.chance(25):
                     data["states"][kind] = self.states[f"{path}.{kind}".lstrip(".")] = {
@@ -105,10 +104,10 @@ class Making:
                     }
         return data
 
-    def end(self, children: dict[str, Data]) -> None:
+    def end(self, children: dict[str, Data], percent: int) -> None:
         """Perhaps make the last child final."""
         last = list(children.values())[-1]
-        if "states" not in last and self.chance(50):
+        if "states" not in last and self.chance(percent):
             last["type"] = "final"
 
     def fill(self, path: str, data: Data) -> None:

@@ -35,6 +35,8 @@ def compare(machine: MachineDefinition, events: list[Happening | None], tally: C
         tally["macrosteps"] += 1
         tally["transitions"] += len(ours.transitions)
         tally["commands"] += len(ours.commands)
+        if not oracle.running:
+            tally["machines that ended"] += 1
 
 
 def happened(snapshot: Snapshot | None, happening: Happening | None) -> Event:
@@ -85,6 +87,7 @@ def of_lumen(taken: Step) -> dict[str, Any]:
         "at": snapshot.at,
         "history": {path: set(kept) for path, kept in snapshot.history.items()},
         "timers": [(t.event, t.due, t.data, t.state) for t in snapshot.timers],
+        "output": snapshot.output,
     }
 
 
@@ -102,6 +105,7 @@ def of_the_book(oracle: Oracle) -> dict[str, Any]:
         "at": world.at,
         "history": {path: {s.path for s in kept} for path, kept in world.history.items()},
         "timers": [(t.event, t.due, t.data, t.state or "") for t in world.timers],
+        "output": oracle.output,
     }
 
 

@@ -34,9 +34,11 @@ class ScxmlStateTree:
 
     def _top(self) -> XmlElement:
         """The document itself, or the one state that Lumen wrapped its root in."""
-        states = list(self.scxml.of(*STATES))
-        wrapped = len(states) == 1 and states[0].get(f"{{{LUMEN_NAMESPACE}}}root") == "true"
-        return states[0] if wrapped else self.scxml
+        states = [state for state in self.scxml.of(*STATES) if not _ends_document(state)]
+        if len(states) != 1 or states[0].get(f"{{{LUMEN_NAMESPACE}}}root") != "true":
+            return self.scxml
+        states[0].children[:] = [child for child in states[0].children if not _ends_document(child)]
+        return states[0]
 
     def _fill(self, parent: ForeignState, level: int) -> None:
         for element in parent.source.children:
@@ -66,3 +68,8 @@ class ScxmlStateTree:
         stem = element.get(f"{{{LUMEN_NAMESPACE}}}key") or (id.removeprefix(f"{parent.path}.") if parent.path else id)
         key = free_key(parent, stem or element.tag, id, self.ids)
         return ForeignState(element, parent, key, id, parent.below(key))
+
+
+def _ends_document(element: XmlElement) -> bool:
+    """Whether Lumen wrote it so that the document ends with the root that it wrapped."""
+    return element.get(f"{{{LUMEN_NAMESPACE}}}end") == "true"

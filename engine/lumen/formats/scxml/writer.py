@@ -54,7 +54,7 @@ class _ScxmlWriter:
         children = [*self._own(), *([XmlTag("datamodel", {}, data)] if data else [])]
         initial = ""
         if self.wrapped:
-            children.append(self._state(root))
+            children += self._wrapped(self._state(root))
         else:
             initial = self._ids(root.initial)
             children += [self._state(self.machine.states[path]) for path in self._below(root)]
@@ -112,6 +112,12 @@ class _ScxmlWriter:
         children = [*self._blocks(state), *self._transitions(state), *self._invokes(state)]
         if state.output is not None:
             children += self._output(state)
+        if state.kind is StateKind.FINAL and self._is_region(state):
+            message = f"`{state.name}` is final in a parallel state, and becomes a state with a final one in it"
+            self.report.changed(message, state.where)
+            return XmlTag(
+                "state", attributes, [*self._blocks(state), XmlTag("final", {"id": f"{attributes['id']}._end"})]
+            )
         children += [self._state(self.machine.states[path]) for path in self._below(state)]
         return XmlTag(_TAGS.get(state.kind, "state"), attributes, children)
 
@@ -178,6 +184,20 @@ class _ScxmlWriter:
             if self._inside(state, transition) and not transition.reenter:
                 attributes["type"] = "internal"
             yield XmlTag("transition", attributes, self.orders.block(transition.actions))
+
+    def _wrapped(self, state: XmlTag) -> Iterator[XmlTag]:
+        """The root as a state in the document; with its end the document ends."""
+        root, id, mark = self.machine.root, self.ids[""], {"lumen:end": "true"}
+        yield state
+        if root.kind is StateKind.PARALLEL or any(
+            self.machine.states[p].kind is StateKind.FINAL for p in root.children
+        ):
+            leaving = {"event": f"done.state.{id}", "target": f"{id}._end", **mark}
+            state.children.insert(0, XmlTag("transition", leaving))
+            yield XmlTag("final", {"id": f"{id}._end", **mark})
+
+    def _is_region(self, state: State) -> bool:
+        return state.parent is not None and self.machine.states[state.parent].kind is StateKind.PARALLEL
 
     def _inside(self, state: State, transition: Transition) -> bool:
         below = f"{state.path}." if state.path else ""

@@ -10,7 +10,7 @@ from lumen.interpreters.migration.verdicts import MigrationPlan, MigrationVerdic
 from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.command_ids import outer_command
 from lumen.interpreters.statechart.execution_context import Beginning, ExecutionContext
-from lumen.interpreters.statechart.invocations import Invocations, output_of
+from lumen.interpreters.statechart.invocations import Invocations
 from lumen.interpreters.statechart.macrostep import complete
 from lumen.interpreters.statechart.microstep import microstep
 from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
@@ -31,6 +31,8 @@ def migrated(
     except KeyError as error:
         raise SnapshotError(f"`{old.id}` has no state {error}, which is active in the snapshot") from None
     placement = situation.placement
+    if situation.start.finished and not situation.still_finished():
+        return situation.ended_elsewhere(behavior)
     if isinstance(placement, Unplaced):
         busy = None if options.now else situation.busy()
         return busy or situation.refusal(placement, behavior)
@@ -71,10 +73,11 @@ class _Migration:
         if not is_legal(self.new.chart, after.configuration.nodes):
             names = ", ".join(f"`{name}`" for name in sorted(after.configuration.names))
             return Refusal(f"{names} can't be active together in the new file", "restart the exhibition", "", behavior)
+        if after.configuration.finished:  # it was before, or is now: nothing begins any more
+            after.timers, after.beginnings = (), ()
         step = complete(after)
         notes = (*self._destinations(step), *self.notes)
-        exited, output = before.exited + step.exited, output_of(step, self.new)
-        return MigrationPlan(step.snapshot, leaving, step.commands, exited, step.entered, notes, output)
+        return MigrationPlan(step.snapshot, leaving, step.commands, before.exited + step.exited, step.entered, notes)
 
     def _left(self) -> ExecutionContext:
         """Leave what does not stay, and end what can't go on, by the old machine."""
@@ -112,6 +115,7 @@ class _Migration:
             epoch=before.epoch,
             place=before.place,
             timezone=before.timezone,
+            output=before.output,
         )
         after = ExecutionContext.of(self.new, snapshot, None, before.at, self.invocations)
         after.internal_queue = before.internal_queue
@@ -141,7 +145,7 @@ class _Migration:
         verdict = migrated(old, new, lent, self.situation.options._replace(at=after.at, languages=()), behavior)
         if isinstance(verdict, MigrationPlan):
             after.commands += tuple(outer_command(command, id) for command in verdict.entering)
-            self.invocations.adopt(after, id, Invoked(owner.path, verdict.snapshot, child.commands), verdict.output)
+            self.invocations.adopt(after, id, Invoked(owner.path, verdict.snapshot, child.commands))
         return verdict
 
     def _destinations(self, step: Step) -> Iterator[str]:

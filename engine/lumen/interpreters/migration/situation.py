@@ -11,7 +11,7 @@ from lumen.interpreters.migration.verdicts import MigrationDelay, Refusal
 from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.values import Snapshot
-from lumen.language.machines import MachineDefinition
+from lumen.language.machines import MachineDefinition, StateKind
 
 
 class MigrationOptions(NamedTuple):
@@ -51,6 +51,19 @@ class Situation:
             reason = f"`{gone.name}` is active and gone, and no `onReload` says where to go instead"
             hint = f"give {title} an `onReload`, or say under `renamed` what `{gone.path}` is called now"
         return Refusal(reason, hint, gone.name, behavior, state.state.where if state.state else ())
+
+    def still_finished(self) -> bool:
+        """Whether the new machine is at its end, too, where the old one had come to its own."""
+        if isinstance(self.placement, Unplaced) or self.placement.left or self.placement.entered:
+            return False
+        names = frozenset(node.name for node in self.placement.kept.values() if node.path)
+        return self.new.planner.configuration(names).finished
+
+    def ended_elsewhere(self, behavior: str) -> Refusal:
+        """Why a behaviour that is over does not go on: a reload brings nothing to life."""
+        ends = ", ".join(f"`{node.name}`" for node in self.start.ordered if node.kind is StateKind.FINAL)
+        reason = f"the behaviour has ended in {ends}, where it would not be at its end any more"
+        return Refusal(reason, "restart the exhibition: what has ended begins anew only so", ends.strip("`"), behavior)
 
     def busy(self) -> MigrationDelay | None:
         """The first state that is gone and still does something: it may lead elsewhere by itself."""

@@ -1,6 +1,6 @@
 """What comes of asking whether a running behaviour can go on under other files."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from lumen.interpreters.statechart import Snapshot
 from lumen.language.commands import Command
@@ -13,7 +13,7 @@ class MigrationPlan(NamedTuple):
     Perform `leaving` under the old bundle (exit actions and cancels, in the order of exit), then `entering` under the
     new one. `exited` are names of old states, `entered` of new ones, as in a Step; both are empty where every active
     state goes on. `notes` are sentences about what somebody could miss: where the behaviour went, what it
-    has forgotten. `output` is that of a machine that has come to its end by it.
+    has forgotten.
     """
 
     snapshot: Snapshot
@@ -22,7 +22,6 @@ class MigrationPlan(NamedTuple):
     exited: tuple[str, ...] = ()
     entered: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    output: Any = None
 
     @property
     def commands(self) -> tuple[Command, ...]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lumen.interpreters.statechart.deserialization import deserialize
     from lumen.interpreters.statechart.serialization import TimerPolicy, paused, retimed, serialize
-    from lumen.interpreters.statechart.stepping import due, elapse, initial, step
+    from lumen.interpreters.statechart.stepping import due, elapse, finished, initial, step
     from lumen.interpreters.statechart.values import (
         Awaiting,
         Counters,
@@ -38,6 +38,7 @@ __all__ = [
     "deserialize",
     "due",
     "elapse",
+    "finished",
     "initial",
     "paused",
     "retimed",
@@ -47,7 +48,7 @@ __all__ = [
 
 _MODULES = {
     "serialization": ("TimerPolicy", "paused", "retimed", "serialize"),
-    "stepping": ("due", "elapse", "initial", "step"),
+    "stepping": ("due", "elapse", "finished", "initial", "step"),
     "deserialization": ("deserialize",),
     "values": ("Awaiting", "Counters", "Fork", "Halted", "Invoked", "Position", "Snapshot", "Step", "Timer", "Within"),
 }

@@ -47,7 +47,10 @@ def _snapshot(machine: MachineDefinition, data: JsonCursor) -> Snapshot:
         )
     if difference := _difference(machine, data["machine"]):
         raise SnapshotError(f"the snapshot is not of `{machine.id}` as it is now: {difference}")
-    return _SnapshotReader(machine, data["configuration"]).read(data)
+    found = _SnapshotReader(machine, data["configuration"]).read(data)
+    if compiled(machine).planner.configuration(found.configuration).finished:  # what is over waits for nothing
+        return found._replace(timers=(), doing={}, halted={}, invoked={})
+    return found
 
 
 class _SnapshotReader:
@@ -76,6 +79,7 @@ class _SnapshotReader:
             generator=data["generator"].count() % 2**32,
             epoch=data["epoch"].number(),
             place=data["place"].text() if "place" in dict(data.items()) else "",
+            output=data["output"].plain() if any(key == "output" for key, _ in data.items()) else None,
             invoked={id: self.invoked(id, part) for id, part in data["invoked"].items()},
             timezone=self.timezone(data),
         )

@@ -96,6 +96,7 @@ class ExecutionContext:
     beginnings: tuple[Beginning, ...] = ()
     microsteps: int = 0
     failed: frozenset[NodePath] = frozenset()
+    output: Any = None
     commands: tuple[Command, ...] = ()
     exited: tuple[str, ...] = ()
     entered: tuple[str, ...] = ()
@@ -112,11 +113,14 @@ class ExecutionContext:
         invocations: InvocationHandler,
     ) -> Self:
         """The context of a macrostep from that snapshot at `at` [s]; raises KeyError with a state that is unknown."""
-        names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted, place, zone = snapshot
+        (
+            names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted, place, zone, output,
+        ) = snapshot  # fmt: skip
         start = machine.planner.configuration(names)
         return cls(
             machine, event, event, at, start, start.known, machine.chart.root, data, language, timers, history,
             counters, generator, epoch, zone, Activities(doing, halted), invocations, place_after(place, event),
+            output=output,
         )  # fmt: skip
 
     def step(self) -> Step:
@@ -125,7 +129,7 @@ class ExecutionContext:
         after = (
             self.configuration.names, self.data, self.at, self.language, self.timers, self.activities.positions,
             self.history, self.counters, self.generator, self.epoch, self.invocations.children, self.activities.halted,
-            self.place, self.timezone,
+            self.place, self.timezone, self.output,
         )  # fmt: skip
         made = (
             self.trigger, self.exited, self.entered, self.commands, _new(Snapshot, after), self.transitions,

@@ -96,7 +96,7 @@ class FastPaths:
         """The step of this event, None where it is not plain."""
         (
             names, context, before, language, timers, doing, history, counters, generator, epoch, invoked, halted,
-            place, zone,
+            place, zone, output,
         ) = snapshot  # fmt: skip
         name, data, at, sendid = event
         if sendid or invoked:
@@ -137,7 +137,7 @@ class FastPaths:
             timers = after_timers.at(at, timers)
         after = (
             target, context, at, language, timers, doing, history, counters, generator, epoch, invoked, halted, place,
-            zone,
+            zone, output,
         )  # fmt: skip
         return _new(Step, (event, exited, entered, (), _new(Snapshot, after), transitions, (), ()))
 

@@ -63,17 +63,18 @@ class Invocations:
 
     def end(self, context: ExecutionContext, id: str) -> None:
         """End one of them: it leaves all its states."""
-        if self.children[id].snapshot.configuration:
-            self._follow(context, id, exit_machine(self._open(context, id, None)))
+        child = self._open(context, id, None)
+        if child.configuration.names and not child.configuration.finished:
+            self._follow(context, id, exit_machine(child))
         self.children = {other: child for other, child in self.children.items() if other != id}
 
-    def adopt(self, context: ExecutionContext, id: str, child: Invoked, output: Any) -> None:
-        """Go on with a behaviour where it stands now; `output` is its own, where it has come to its end."""
+    def adopt(self, context: ExecutionContext, id: str, child: Invoked) -> None:
+        """Go on with a behaviour where it stands now."""
         self.children = {**self.children, id: child}
         _take_back(context, child.snapshot)
         machine = invoked_machine(context.machine, child.state, id)
         if machine.planner.configuration(child.snapshot.configuration).finished:
-            self._finish(context, id, output)
+            self._finish(context, id, child.snapshot.output)
 
     def deliver(self, context: ExecutionContext, id: str, event: Event | None) -> None:
         """Let one of them hear an event, or begin (None), and take over what comes of it."""
@@ -92,7 +93,7 @@ class Invocations:
         self.children = {**self.children, id: Invoked(state, step.snapshot, commands)}
         self._follow(context, id, step)
         if child.configuration.finished:
-            self._finish(context, id, output_of(step, child.machine))
+            self._finish(context, id, step.snapshot.output)
 
     def _finish(self, context: ExecutionContext, id: str, output: Any) -> None:
         """End one that has come to its end, and say so (SCXML 6.4.1: `done.invoke.id`)."""
@@ -118,12 +119,6 @@ class Invocations:
 def invoked_machine(machine: CompiledMachine, state: str, id: str) -> CompiledMachine:
     """The machine that a state, by its path, invokes under that id."""
     return machine.invoked[machine.chart.definition.invoked_behavior(state, id)]
-
-
-def output_of(step: Step, machine: CompiledMachine) -> Any:
-    """The output of the final state in which a machine came to its end; None where it did not."""
-    end = f"done.state.{machine.chart.root.name}"
-    return next((event.data for event in reversed(step.raised) if event.name == end), None)
 
 
 def _take_back(context: ExecutionContext, after: Snapshot) -> None:

@@ -46,8 +46,9 @@ def select_transitions(context: ExecutionContext, candidates: Candidates) -> tup
 
 
 def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
-    """Leave, act, enter (`microstep`). Raises LumenError where the macrostep has no end."""
+    """Leave, act, enter (`microstep`); what that brings to its end ends. Raises LumenError where there is no rest."""
     count_microstep(context)
+    before = context.configuration
     taken, transitions, exits, between, entries, exited, entered, context.history, target = plan
     context.transitions += transitions
     context.exited += exited
@@ -63,6 +64,20 @@ def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
         _enter(context, node, done, restored)
     context.configuration = target
     context.active = target.known
+    if target.finished and not before.finished:
+        _end(context)
+
+
+def _end(context: ExecutionContext) -> None:
+    """The machine is over (`exitInterpreter`): what leaving every state does is done, and nothing is heard any more.
+
+    It stays in its final configuration, so that one sees where it ended.
+    """
+    for change in context.machine.planner.end(context.configuration).exits:
+        context.active = change.active
+        _exit(context, change.node)
+    context.active = context.configuration.known
+    context.timers, context.internal_queue = (), ()
 
 
 def count_microstep(context: ExecutionContext) -> None:
@@ -123,8 +138,12 @@ def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ..
         halted = context.activities.forget(node.path)
         halted = halted if node.path in restored else None
         context.beginnings += (Beginning(node, node.invokes, bool(node.do), halted),)
-    for ended, parent in enumerate(done):
-        context.raise_event(Event(f"done.state.{parent.name}", None if ended else _output(context, node), context.at))
+    for parent in done:
+        data = _output(context, node) if parent is node.parent and parent.kind is StateKind.COMPOUND else None
+        if parent.path:
+            context.raise_event(Event(f"done.state.{parent.name}", data, context.at))
+        else:
+            context.output = data
 
 
 def _execute(context: ExecutionContext, block: CompiledBlock, node: StateNode) -> None:

@@ -44,23 +44,20 @@ class MicrostepPlan(NamedTuple):
 class Configuration:
     """A set of active states (SCXML 3.11), with the candidates of each event and the plans made from it so far.
 
-    `names` are those that a Snapshot holds, `known` those that `In` says true to.
+    `names` are those that a Snapshot holds, `known` those that `In` says true to. A machine that is `finished` has come
+    to its end: it hears nothing any more.
     """
 
     def __init__(self, nodes: frozenset[StateNode]) -> None:
         self.nodes = nodes
         self.ordered = entry_order(nodes)
+        self.finished = bool(nodes) and in_final(self.ordered[0], nodes)
         self.names = frozenset(node.name for node in nodes if node.path)
         self.known = names_of(nodes)
         self.plans: dict[tuple[object, ...], MicrostepPlan] = {}
         self._leaves = [node for node in self.ordered if not any(child in nodes for child in node.children)]
         self._by_event: dict[str, Candidates] = {}
         self.eventless = self._select(lambda transition: not transition.definition.event)
-
-    @property
-    def finished(self) -> bool:
-        """Whether the whole machine has come to its end."""
-        return in_final(self.ordered[0], self.nodes)
 
     def candidates(self, name: str) -> Candidates:
         """The transitions that an event of that name selects."""
@@ -75,6 +72,8 @@ class Configuration:
         return self._select(lambda t: t.definition.timed and t.definition.event == event)
 
     def _select(self, wanted: Callable[[CompiledTransition], bool]) -> Candidates:
+        if self.finished:
+            return ()
         groups = (
             tuple(t for node in (leaf, *leaf.ancestors) for t in node.transitions if wanted(t)) for leaf in self._leaves
         )

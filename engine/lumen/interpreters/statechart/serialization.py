@@ -46,6 +46,7 @@ def _data(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
         "epoch": snapshot.epoch,
         "place": snapshot.place,
         "timezone": snapshot.timezone,
+        "output": plain(snapshot.output, "output"),
         "invoked": {
             id: {
                 "state": child.state,

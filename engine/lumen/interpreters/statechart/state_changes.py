@@ -80,11 +80,15 @@ def _order(way: Sequence[StateNode]) -> dict[str, int]:
 
 
 def _done(node: StateNode, active: AbstractSet[StateNode]) -> tuple[StateNode, ...]:
-    """The states whose end it is that `node` was entered: its parent, and a parallel state around that."""
-    parent = node.parent
-    if node.kind is not StateKind.FINAL or parent is None:
+    """The states whose end it is that `node` was entered: a compound parent, and parallel states around, up and up."""
+    above = node.parent
+    if node.kind is not StateKind.FINAL or above is None:
         return ()
-    outer = parent.parent
-    if outer and outer.kind is StateKind.PARALLEL and in_final(outer, active):
-        return parent, outer
-    return (parent,)
+    found = []
+    if above.kind is StateKind.COMPOUND:
+        found.append(above)
+        above = above.parent
+    while above and above.kind is StateKind.PARALLEL and in_final(above, active):
+        found.append(above)
+        above = above.parent
+    return tuple(found)

@@ -147,7 +147,9 @@ def in_final(node: StateNode, active: AbstractSet[StateNode]) -> bool:
     """Whether a state has come to its end (`isInFinalState`)."""
     if node.kind is StateKind.COMPOUND:
         return any(child.kind is StateKind.FINAL and child in active for child in node.children)
-    return node.kind is StateKind.PARALLEL and all(in_final(child, active) for child in node.children)
+    if node.kind is StateKind.PARALLEL:
+        return all(in_final(child, active) for child in node.children)
+    return node.kind is StateKind.FINAL and node in active
 
 
 def _active_below(node: StateNode, active: AbstractSet[StateNode]) -> Iterator[StateNode]:

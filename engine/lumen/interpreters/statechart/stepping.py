@@ -62,6 +62,11 @@ def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
     return process(context, event)
 
 
+def finished(machine: MachineDefinition, snapshot: Snapshot) -> bool:
+    """Whether the machine has come to its end (SCXML 3.7.1): no step changes anything any more but the time."""
+    return compiled(machine).planner.configuration(snapshot.configuration).finished
+
+
 def due(snapshot: Snapshot) -> Event | None:
     """The timer that ends next, as the event to step with, at its time; None where there is none.
 

@@ -104,6 +104,7 @@ class Snapshot(NamedTuple):
     alternatives of `say` are drawn. `invoked` are the behaviours that run within it, by their ids; its time, language,
     counters and generator are theirs too. `halted` is where a `do` stood that says how it is resumed, when its state
     was last left, by path. `place` is where the robot is, by the last `arrived` and `left`, empty where it is at none.
+    `output` is that of the final state in which the machine has come to its end.
     Mappings in it are never changed, only replaced.
     """
 
@@ -121,6 +122,7 @@ class Snapshot(NamedTuple):
     halted: Mapping[str, Halted] = {}
     place: str = ""
     timezone: str = ""
+    output: Any = None
 
 
 class Step(NamedTuple):

@@ -1,0 +1,21 @@
+"""Transitions that wait for the end of the whole behaviour: nothing is heard any more when it has come."""
+
+from lumen.language.diagnostics import WARNING, Code
+from lumen.loading.draft import ProjectDraft
+
+AFTER_THE_END = Code("after-the-end", "statecharts", WARNING, "a transition waits for the end of the whole behaviour")
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report what waits for `done.state` of the outermost state."""
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        end = f"done.state.{machine.root.name}"
+        for state in machine.states.values():
+            for transition in state.transitions:
+                if transition.event.removesuffix(".*") != end:
+                    continue
+                key = "onDone" if transition.exact else transition.event
+                where = transition.where[: len(transition.where) - transition.where[::-1].index(key)]
+                hint = "act in the `entry` of the final state, or lead to a state that is not final"
+                report(AFTER_THE_END, where, f"the behaviour is over then: `{key}` is never taken", hint, key=True)
