@@ -3,6 +3,7 @@
 from lumen.buses.memory import MemoryBus
 from lumen.buses.validated import OnRefused, validated
 from lumen.errors import BusAddressError, BusError, Refused
+from lumen.interpreters.arguments import need, need_text
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
 
@@ -17,6 +18,9 @@ def connect(url: str, project: Project | None = None, *, on_refused: OnRefused |
     against the schema of its route: publishing a wrong one raises BusError, one that comes in goes to `on_refused`
     (key, reason) instead of the subscriber. Raises BusError, saying what to do, where there is no such bus.
     """
+    need_text(url, "the address of a bus")
+    if project is not None:
+        need(project, Project, "the project of a bus", "a Project, as `lumen.load` gives it")
     bus = _open(url)
     return bus if project is None else validated(bus, project, on_refused)
 

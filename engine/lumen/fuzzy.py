@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from lumen.errors import ProjectError, UsageError
+from lumen.interpreters.arguments import need, need_map, need_numbers, need_path, need_text
 from lumen.interpreters.inference import Evaluator, Explanation, explain
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import has_errors
@@ -31,18 +32,21 @@ class Controller(ControllerDefinition):
     @classmethod
     def load(cls, path: str | Path) -> Self:
         """The controller in a file; raises UsageError where it can't be read, ProjectError for what it says."""
+        path = need_path(path)
         try:
-            content = read_regular(Path(path), MAX_FILE_BYTES)
+            content = read_regular(path, MAX_FILE_BYTES)
         except OSError as error:
             raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
         document, diagnostics = parse(str(path), content)
         if document is None or has_errors(diagnostics):
             raise ProjectError(diagnostics)
-        return cls._build(document, Path(path).stem)
+        return cls._build(document, path.stem)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "controller") -> Self:
         """The controller that a dict of the file's shape describes; raises ProjectError."""
+        need_text(name, "the name of a controller")
+        need_map(data, "the data of a controller")
         return cls._build(Document(name, data), name)
 
     @classmethod
@@ -62,14 +66,22 @@ class Controller(ControllerDefinition):
 
         Raises UsageError for a missing, unknown or NaN input, LumenError where no rule fires and there is no default.
         """
+        if previous is not None:
+            need_numbers(previous, "`previous`")
         return self._evaluator.evaluate(inputs, previous)
 
     def evaluate_batch(
         self, inputs: "Mapping[str, ArrayLike]", previous: Mapping[str, float] | None = None
     ) -> "dict[str, NDArray[np.float64]]":
         """All outputs for inputs of Shape (n,) each: arrays of Shape (n,). Raises as `evaluate` does."""
+        need(inputs, Mapping, "`inputs`", "a map of arrays")
+        if previous is not None:
+            need_numbers(previous, "`previous`")
         return self._evaluator.evaluate_batch(inputs, previous)
 
     def explain(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> Explanation:
         """Memberships, each rule's degree, the concluded sets and the outputs, for these inputs."""
+        need_numbers(inputs, "`inputs`")
+        if previous is not None:
+            need_numbers(previous, "`previous`")
         return explain(self._evaluator, inputs, previous)

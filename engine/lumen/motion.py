@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from lumen.errors import ProjectError, UsageError
+from lumen.interpreters.arguments import need_map, need_number, need_numbers, need_path, need_text
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory
 from lumen.language import motions
@@ -36,7 +37,7 @@ class Motion(motions.MotionDefinition):
         It may play the other motions of that project. Raises UsageError where it can't be read, ProjectError for what
         it says.
         """
-        path = Path(path)
+        path = need_path(path)
         try:
             content = read_regular(path, MAX_FILE_BYTES)
         except OSError as error:
@@ -49,6 +50,8 @@ class Motion(motions.MotionDefinition):
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "motion") -> Self:
         """The motion that a dict of the file's shape describes, for the shipped robot; raises ProjectError."""
+        need_text(name, "the name of a motion")
+        need_map(data, "the data of a motion")
         return cls._build(Document(name, data), name, _surroundings(shipped_root()))
 
     @classmethod
@@ -71,8 +74,12 @@ class Motion(motions.MotionDefinition):
     def sample(self, t: float, start: Mapping[str, float] | None = None) -> dict[str, float]:
         """The angle [rad; a hand 0..1] at `t` [s] of every joint that it moves.
 
-        It begins at the angles `start` [rad], where they are given, else in its start posture.
+        It begins at the angles `start` [rad], where they are given, else in its start posture. Raises UsageError where
+        something else than numbers is given.
         """
+        need_number(t, "the time to sample at", finite=False)
+        if start is not None:
+            need_numbers(start, "`start`")
         return self._trajectory.sample(t) if start is None else Trajectory(self, start).sample(t)
 
 

@@ -210,7 +210,7 @@ def test_a_thousand_and_more_timers_may_end_at_once() -> None:
 @pytest.mark.parametrize("dt", [-1.0, float("inf"), float("nan")])
 def test_a_time_that_never_passes_is_refused(dt: float) -> None:
     it = running()
-    with pytest.raises(UsageError, match="can't advance"):
+    with pytest.raises(UsageError, match="advance"):
         it.clock.advance(dt)
     assert it.clock.now() == 0.0
 

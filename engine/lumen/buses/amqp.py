@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from itertools import count
 from typing import Any
 
-from lumen.buses.bodies import JSON, check_key, encode
+from lumen.buses.bodies import JSON, check_key, check_subscription, encode
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import OutageLog
 from lumen.buses.outbox import OutgoingMessage
@@ -95,7 +95,7 @@ class AmqpBus:
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
             raise BusClosedError("the bus is closed: nobody can subscribe any more")
-        check_key(pattern)
+        check_subscription(pattern, handler)
         route = self._routes.get(pattern)
         consumer = self._transport_of(route).consumer
         subscription = consumer.add(pattern, handler, route)

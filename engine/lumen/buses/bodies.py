@@ -112,6 +112,13 @@ def check_key(key: str) -> None:
         raise BadMessageError(f"a key is a text of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
 
 
+def check_subscription(pattern: str, handler: object) -> None:
+    """Raise BusError where nobody could be called, or no key be meant."""
+    check_key(pattern)
+    if not callable(handler):
+        raise BadMessageError(f"who subscribes is called with each message, which {str(handler)[:40]!r} can't be")
+
+
 def _fits(key: str) -> bool:
     try:
         return len(key.encode()) <= MAX_KEY_BYTES

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 from weakref import WeakValueDictionary
 
-from lumen.buses.bodies import check_key, copied
+from lumen.buses.bodies import check_key, check_subscription, copied
 from lumen.errors import BusClosedError, Refused
 from lumen.interpreters.routing import matches
 from lumen.language.routes import Route
@@ -155,6 +155,7 @@ class MemoryBus:
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
             raise BusClosedError("the bus is closed: nobody can subscribe any more")
+        check_subscription(pattern, handler)
         subscription = _Subscription(pattern, handler)
         self._mine[subscription] = None
         self._hub.change(add=subscription)

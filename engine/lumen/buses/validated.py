@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from lumen.buses.bodies import check_subscription
 from lumen.buses.checking import BodyCheck, body_checks
 from lumen.errors import BadMessageError, Refused
 from lumen.language.projects import Project
@@ -63,6 +64,8 @@ class ValidatedBus:
         self._bus.prepare(routes)
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
+        check_subscription(pattern, handler)
+
         def checked(message: Message) -> None:
             if reason := self._wrong(message.key, message.body):
                 self._on_refused(message.key, reason)

@@ -4,6 +4,7 @@ from math import inf
 from typing import Protocol
 
 from lumen.errors import UsageError
+from lumen.interpreters.arguments import need_number
 from lumen.language.nanoseconds import to_the_nanosecond
 
 
@@ -23,6 +24,7 @@ class VirtualClock:
     """A clock that stands still between calls of `advance`."""
 
     def __init__(self, now: float = 0.0) -> None:
+        need_number(now, "the time of a clock")
         self._now = to_the_nanosecond(now)
         self._sleepers: list[Sleeper] = []
 
@@ -34,12 +36,14 @@ class VirtualClock:
 
         Raises UsageError for a time that never passes: below 0, infinite, NaN.
         """
+        need_number(dt, "what a clock advances by", finite=False)
         if not 0.0 <= dt < inf:
             raise UsageError(f"a clock can't advance by {dt} s")
         self.wait(self._now + dt)
 
     def wait(self, until: float) -> None:
         """Let time pass until `until` [s], to the nanosecond."""
+        need_number(until, "the time to wait for", finite=False)
         until = to_the_nanosecond(until)
         while (sleeper := self._first(until)) is not None:
             self._now = max(self._now, sleeper.next_due() or 0.0)

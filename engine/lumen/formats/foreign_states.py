@@ -80,16 +80,6 @@ def free_key(parent: ForeignState, wanted: str, id: str, ids: Container[str]) ->
     return unused_name(stem, is_taken, len(parent.keys))
 
 
-ENDED_REGION = "an atomic final region becomes one with a final state in it"
-
-
-def ended_region(data: dict[str, Any]) -> dict[str, Any]:
-    """A final state that is itself a region of a parallel one, as a region that ends at once: it counts the same."""
-    inner = {key: data[key] for key in ("output",) if key in data}
-    outer = {key: value for key, value in data.items() if key not in ("type", "output")}
-    return {**outer, "initial": "ended", "states": {"ended": {"type": "final", **inner}}}
-
-
 def passing_key(home: ForeignState, taken: Container[str]) -> str:
     """A key for a state that is passed through on the way into `home`."""
     return unused_name("begin", lambda key: key in home.keys or key in taken, len(home.keys))

@@ -99,11 +99,15 @@ class TransitionReader:
         delay: float | None = None,
         schedule: Schedule | None = None,
     ) -> Iterator[Transition]:
+        leaves = bool(event)
         for place, row in _rows(body, where):
-            if found := self._one(entry, row, place, event):
+            found = self._one(entry, row, place, event, leaves)
+            leaves = leaves or (isinstance(row, Mapping) and "guard" in row and "target" in row)
+            if found:
                 yield replace(found, delay=delay, schedule=schedule, exact=exact, where=place)
 
-    def _one(self, entry: OutlinedState, row: Any, where: NodePath, event: str) -> Transition | None:
+    def _one(self, entry: OutlinedState, row: Any, where: NodePath, event: str, leaves: bool) -> Transition | None:
+        """A candidate; `leaves` says that an event, or one that stands before it with a guard, ends what it repeats."""
         if isinstance(row, str):
             row, place = {"target": row}, where
         else:
@@ -114,8 +118,8 @@ class TransitionReader:
         if targets is None or (guard is None and "guard" in row):
             self.report.missed.update(text for _, text in _rows(row.get("target", []), place))
             return None
-        if not (event or targets or guard):
-            hint = "give it a `target` or a `guard`"
+        if not (leaves or targets or guard):
+            hint = "give it a `target` or a `guard`, or let one before it lead elsewhere"
             self.report(ENDLESS_ALWAYS, where, "an `always` without target and guard would run for ever", hint=hint)
             return None
         paths = tuple(target.path for target in targets)

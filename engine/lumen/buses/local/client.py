@@ -11,7 +11,7 @@ from contextlib import suppress
 from itertools import count
 from typing import Any
 
-from lumen.buses.bodies import check_key, encode
+from lumen.buses.bodies import check_key, check_subscription, encode
 from lumen.buses.local.address import ANSWER_TIMEOUT, LocalAddress
 from lumen.buses.local.frames import (
     CLIENT,
@@ -72,7 +72,7 @@ class LocalBusClient:
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
             raise BusClosedError("the bus is closed: nobody can subscribe any more")
-        check_key(pattern)
+        check_subscription(pattern, handler)
         number = next(self._numbers)
         answered, reason = self._answers[number] = (threading.Event(), [])
         self._handlers[number] = handler

@@ -5,7 +5,7 @@ from typing import Any
 from lumen.formats.behavior_data import ActionData, single
 from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.formats.ecmascript import ScriptError
-from lumen.formats.foreign_states import ENDED_REGION, ForeignState, ended_region, passing_key
+from lumen.formats.foreign_states import ForeignState, passing_key
 from lumen.formats.scxml.action_reader import LeftOutError, ScxmlActionReader, own
 from lumen.formats.scxml.data_model import ScxmlDataModel
 from lumen.formats.scxml.invoke_reader import invocation
@@ -87,9 +87,6 @@ class _ScxmlReader:
         data.update(self._behaviour(node))
         if regular(node):
             data["states"] = {child.key: self._state(child) for child in node.children} | self._passed(node)
-        elif data.get("type") == "final" and node.parent and node.parent.source.tag == "parallel":
-            self.findings.changed(node.source.place, ENDED_REGION)
-            return ended_region(data)
         elif node.children:
             self.findings.lost(node.source.place, f"`{node.name}` has a history and no other states", "delete it")
         return data

@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.formats.behavior_data import ActionData, TransitionData, quoted, single
 from lumen.formats.conversion_findings import ConversionFindings, broken
-from lumen.formats.foreign_states import ENDED_REGION, ended_region, passing_key
+from lumen.formats.foreign_states import passing_key
 from lumen.formats.xstate.action_reader import XStateActionReader
 from lumen.formats.xstate.descriptors import descriptor_of, invoke_id, longest_first, translated
 from lumen.formats.xstate.invoke_reader import XStateInvokeReader
@@ -98,11 +98,7 @@ class _XStateReader:
             if key in source and (actions := self.parts.actions(source[key], (*where, key))):
                 data[key] = actions
         if state.kind == "final":
-            data |= self._output(state)
-            if state.parent is None or not isinstance(state.parent, XStateNode) or state.parent.kind != "parallel":
-                return data
-            self.parts.changed(where, ENDED_REGION)
-            return ended_region(data)
+            return {**data, **self._output(state)}
         data.update(self._behaviour(state))
         if state.regular:
             data["states"] = {c.key: self._state(c) for c in state.children if isinstance(c, XStateNode)}

@@ -74,7 +74,7 @@ class Evaluator:
 
     def _values(self, inputs: Mapping[str, float]) -> list[float]:
         try:
-            values = [float(inputs[name]) for name in self._names]
+            values = [float(inputs[name] + 0.0) for name in self._names]  # a text is no number
         except KeyError as error:
             raise UsageError(f"the input `{error.args[0]}` of `{self.controller.name}` is missing") from None
         except (TypeError, ValueError, OverflowError):
@@ -93,7 +93,10 @@ class Evaluator:
         if missing := [name for name in self._names if name not in inputs]:
             raise UsageError(f"the input `{missing[0]}` of `{self.controller.name}` is missing")
         try:
-            columns = [np.atleast_1d(np.asarray(inputs[name], dtype=float)) for name in self._names]
+            given = [np.atleast_1d(np.asarray(inputs[name])) for name in self._names]
+            if any(column.dtype.kind not in "biuf" for column in given if column.size):
+                raise self._no_numbers(inputs)
+            columns = [column.astype(float) for column in given]
         except (TypeError, ValueError, OverflowError):
             raise self._no_numbers(inputs) from None
         if any(column.shape != columns[0].shape or column.ndim != 1 for column in columns):
@@ -104,7 +107,7 @@ class Evaluator:
         return columns
 
     def _no_numbers(self, inputs: Mapping[str, Any]) -> UsageError:
-        return UsageError(f"the inputs of `{self.controller.name}` have to be numbers, not {str(dict(inputs))[:200]}")
+        return UsageError(f"the inputs of `{self.controller.name}` have to be numbers, not {str(inputs)[:200]}")
 
     def _refuse_unknown(self, inputs: Mapping[str, Any]) -> None:
         for name in inputs:

@@ -114,7 +114,8 @@ class ExecutionContext:
     ) -> Self:
         """The context of a macrostep from that snapshot at `at` [s]; raises KeyError with a state that is unknown."""
         (
-            names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted, place, zone, output,
+            names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted, place, zone,
+            output,
         ) = snapshot  # fmt: skip
         start = machine.planner.configuration(names)
         return cls(

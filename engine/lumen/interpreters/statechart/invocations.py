@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Mapping
+from copy import deepcopy
 from typing import Any
 
 from lumen.errors import LumenError, UsageError
@@ -45,7 +46,7 @@ class Invocations:
             context.raise_error(str(error), (*invoke.where, "input"))
             _raise_failure(context, id, str(error))
             return
-        before = Snapshot(frozenset(), {**chart.definition.context, **given})
+        before = Snapshot(frozenset(), {**deepcopy(dict(chart.definition.context)), **given})
         self.children = {**self.children, id: Invoked(node.path, before, context.counters.commands)}
         self.deliver(context, id, None)
 

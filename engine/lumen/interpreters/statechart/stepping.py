@@ -1,10 +1,12 @@
 """What runs a behaviour: `initial`, `step`, and for its timers `due` and `elapse`."""
 
 from collections.abc import Callable, Iterator, Mapping
+from copy import deepcopy
 from math import inf
 from typing import Any
 
-from lumen.errors import LumenError, SnapshotError, UsageError
+from lumen.errors import LumenError, SnapshotError
+from lumen.interpreters.arguments import need, need_map, need_number, need_text
 from lumen.interpreters.statechart.command_ids import outer_id
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.external_events import process
@@ -35,11 +37,17 @@ def initial(
     type. `epoch` is when time 0 was [s since 1970, in UTC] and `timezone` where the clock on the wall hangs, an
     IANA name (else UsageError); `seed` begins the drawing of alternatives.
     """
-    if input is not None and not isinstance(input, Mapping):
-        raise UsageError(f"the input of `{machine.id}` has to be a map of context keys and values")
+    need(machine, MachineDefinition, "what is to begin", "a Machine")
+    if input is not None:
+        need_map(input, f"the input of `{machine.id}`")
+    need_number(at, "`at`")
+    need_text(language, "`language`", empty=True)
+    need_number(epoch, "`epoch`")
+    need(seed, int, "`seed`", "a whole number")
     program = compiled(machine)
+    need_text(timezone, "`timezone`", empty=True)
     zone(timezone)
-    data = {**machine.context, **checked(machine.id, program.chart.checks, input or {})}
+    data = {**deepcopy(dict(machine.context)), **checked(machine.id, program.chart.checks, input or {})}
     before = Snapshot(frozenset(), data, at, language, generator=seed % 2**32, epoch=epoch, timezone=timezone)
     return enter_machine(open_context(program, before, None, at))
 
@@ -51,14 +59,21 @@ def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
     more change nothing. Time never goes back: an event from the past happens at `snapshot.at`. Raises LumenError
     where the machine never comes to rest, SnapshotError where the snapshot has states that the machine has not.
     """
-    program = compiled(machine)
     try:
+        program = compiled(machine)
         taken = program.fast_paths.step(snapshot, event)
         if taken is not None:
             return taken
         context = open_context(program, snapshot, event, max(snapshot.at, event.at))
     except KeyError as error:
         raise SnapshotError(f"`{machine.id}` has no state `{error.args[0]}`, which is active in the snapshot") from None
+    except (AttributeError, TypeError, ValueError):
+        need(machine, MachineDefinition, "what takes a step", "a Machine")
+        need(snapshot, Snapshot, "where a step begins", "a Snapshot")
+        need(event, Event, "what happens", "an Event")
+        need_text(event.name, "the name of an event")
+        need_number(event.at, "the time of an event", finite=False)
+        raise
     return process(context, event)
 
 

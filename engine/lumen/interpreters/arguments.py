@@ -1,0 +1,58 @@
+"""Arguments of public functions: who gives something else than is meant hears what would be right."""
+
+from collections.abc import Mapping
+from math import isfinite, isnan
+from pathlib import Path
+from typing import Any
+
+from lumen.errors import UsageError
+
+
+def need(value: Any, kind: type | tuple[type, ...], what: str, meant: str) -> None:
+    """Raises UsageError where the value is of another kind."""
+    if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
+        raise UsageError(f"{what} has to be {meant}, not {_shown(value)}")
+
+
+def need_map(value: Any, what: str) -> None:
+    """Raises UsageError where it is no map with texts as keys."""
+    need(value, Mapping, what, "a map")
+    for key in value:
+        need(key, str, f"each key of {what}", "a text")
+
+
+def need_text(value: Any, what: str, *, empty: bool = False) -> None:
+    """Raises UsageError where it is no text, or an empty one where that says nothing."""
+    need(value, str, what, "a text")
+    if not value and not empty:
+        raise UsageError(f"{what} is empty")
+
+
+def need_number(value: Any, what: str, *, finite: bool = True) -> None:
+    """Raises UsageError where it is no number; an infinite one is none where it has to be `finite`."""
+    try:
+        sound = not isinstance(value, str | bytes | bool) and not isnan(value) and (not finite or isfinite(value))
+    except (TypeError, ValueError, OverflowError):
+        sound = False
+    if not sound:
+        raise UsageError(f"{what} has to be a number, not {_shown(value)}")
+
+
+def need_numbers(values: Any, what: str) -> None:
+    """Raises UsageError where it is no map of numbers."""
+    need_map(values, what)
+    for key, value in values.items():
+        need_number(value, f"`{key}` of {what}")
+
+
+def need_path(value: Any) -> Path:
+    """The path of a file; raises UsageError where it is none."""
+    need(value, (str, Path), "the path of a file", "a text or a Path")
+    if "\0" in str(value):
+        raise UsageError("the path of a file has a character in it that no path has")
+    return Path(value)
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}…"

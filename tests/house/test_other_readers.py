@@ -1,0 +1,37 @@
+"""The shipped YAML as others read it: PyYAML has YAML 1.1, the npm package `yaml` 1.2 as JavaScript's tools have it."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+import yaml
+
+from lumen.loading.files import PROJECT_FOLDERS
+from tests.fetched import fetched
+from tests.guarded import run_guarded
+
+ROOT = Path(__file__).parents[2]
+FILES = [ROOT / "lumen.yaml", *(f for name in PROJECT_FOLDERS for f in sorted((ROOT / name).rglob("*.yaml")))]
+READ = """
+const {parseAllDocuments} = require(process.argv[1]), {readFileSync} = require('fs');
+const wrong = [];
+for (const file of process.argv.slice(2)) for (const version of ['1.1', '1.2'])
+  for (const document of parseAllDocuments(readFileSync(file, 'utf8'), {version}))
+    for (const error of document.errors) wrong.push(`${file} ${version}: ${error.message}`);
+console.log(JSON.stringify(wrong));
+"""
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_pyyaml_reads_it(path: Path) -> None:
+    assert yaml.safe_load(path.read_text("utf-8"))
+
+
+@pytest.mark.npm
+def test_the_package_of_npm_reads_them_all() -> None:
+    node = shutil.which("node")
+    assert node, "install Node"
+    package = fetched("yaml") / "node_modules" / "yaml"
+    done = run_guarded([node, "-e", READ, str(package), *map(str, FILES)], capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout) == []
