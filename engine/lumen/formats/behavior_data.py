@@ -21,6 +21,7 @@ from lumen.language.actions import (
     Raise,
     SayText,
     Send,
+    Template,
     Wait,
 )
 from lumen.language.machines import MachineDefinition
@@ -72,7 +73,7 @@ def plain_action(action: Action) -> ActionData:
         case Raise(event, data):
             return {"raise": _event(event, data)}
         case Send(event, data, delay, id):
-            extra = ({"delay": duration(delay * 1000)} if delay else {}) | ({"id": id} if id else {})
+            extra = _delay(delay) | ({"id": id} if id else {})
             body = _event(event, data)
             return {"send": {**(body if isinstance(body, dict) else {"event": body}), **extra} if extra else body}
         case CancelSend(id):
@@ -128,3 +129,9 @@ def _event(event: str, data: ComputedValue) -> Any:
 def _say(texts: Mapping[str, tuple[Any, ...]]) -> dict[str, Any]:
     table = {language or "any": [template.text for template in templates] for language, templates in texts.items()}
     return {language: said[0] if len(said) == 1 else said for language, said in table.items()}
+
+
+def _delay(delay: float | Template) -> dict[str, str]:
+    if isinstance(delay, Template):
+        return {"delay": delay.shown}
+    return {"delay": duration(delay * 1000)} if delay else {}

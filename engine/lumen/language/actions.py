@@ -77,11 +77,14 @@ class Raise:
 
 @dataclass(frozen=True, slots=True)
 class Send:
-    """`send`: an event for this machine, after `delay` [s]; `id` lets `cancel` take it back."""
+    """`send`: an event for this machine, after `delay` [s]; `id` lets `cancel` take it back.
+
+    A delay that is a template says when the action is done how long it is: `{{ context.patience }}s`.
+    """
 
     event: str
     data: ComputedValue = None
-    delay: float = 0.0
+    delay: float | Template = 0.0
     id: str = ""
 
 

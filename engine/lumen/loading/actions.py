@@ -142,10 +142,15 @@ class Actions:
     def _send(self, body: Any, where: NodePath) -> Send | None:
         event, data = _event(body)
         options = {} if isinstance(body, str) else body
-        delay = self.duration(options["delay"], (*where, "delay")) if "delay" in options else 0.0
+        delay = self._delay(options["delay"], (*where, "delay")) if "delay" in options else 0.0
         if delay is None:
             return None
         return Send(event, self.expressions.value(data, (*where, "data")), delay, options.get("id", ""))
+
+    def _delay(self, text: Any, where: NodePath) -> float | Template | None:
+        if isinstance(text, str) and "{{" in text:
+            return self.expressions.template(text, where)
+        return self.duration(text, where)
 
     def _if(self, data: Mapping[str, Any], where: NodePath, *, do: bool) -> If | None:
         guard = self.expressions.expression(data["if"], (*where, "if"))

@@ -1,26 +1,15 @@
 """Durations, angles and lengths as people write them, in SI."""
 
-import re
 from collections.abc import Mapping
 from math import pi
 
 from lumen.language.diagnostics import ERROR, Code
+from lumen.language.durations import seconds
+
+__all__ = ["ANGLES", "BAD_DURATION", "LENGTHS", "seconds"]
 
 BAD_DURATION = Code("bad-duration", "shape", ERROR, "a duration can't be read")
 
 
 ANGLES: Mapping[str, float] = {"rad": 1.0, "deg": pi / 180}
 LENGTHS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
-
-MAX_DURATION = 1e9
-"""A third of a century [s]: what is longer is a slip."""
-
-_DURATION = re.compile(r"(\d+(?:\.\d+)?) ?(ms|s|min|h)")
-_SECONDS: Mapping[str, float] = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
-
-
-def seconds(text: object) -> float | None:
-    """The duration in [s] of `500ms`, `20s`, `1.5s`, `2min` or `1h`; None where it is not one, or longer than any."""
-    match = _DURATION.fullmatch(text) if isinstance(text, str) else None
-    duration = float(match[1]) * _SECONDS[match[2]] if match else None
-    return duration if duration is not None and duration <= MAX_DURATION else None

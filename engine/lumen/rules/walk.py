@@ -113,6 +113,9 @@ def _spots(site: ActionSite) -> Iterator[ExpressionSite]:
             yield ExpressionSite(text, transition)
         case GoTo(to):
             yield ExpressionSite(Template(to, (*site.step.where, "walk", "to")), transition)
+        case Send(data=value, delay=Template() as delay):
+            yield ExpressionSite(delay, transition)
+            yield from (ExpressionSite(text, transition) for text in _values(value))
         case PublishBody(body=value) | Raise(data=value) | Send(data=value):
             yield from (ExpressionSite(text, transition) for text in _values(value))
 

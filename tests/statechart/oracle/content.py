@@ -113,6 +113,7 @@ class World:
             case Raise(event, data):
                 self.enqueue(Event(event, self.value(data, here), self.at))
             case Send(event, data, delay, id):
+                assert isinstance(delay, float)  # the generator computes none
                 self.timers.append(Waiting(event, self.at + delay, self.value(data, here), None, id))
             case CancelSend(id):
                 self.timers = [t for t in self.timers if t.state is not None or t.id != id]

@@ -12,7 +12,18 @@ from lumen.formats.scxml.log_templates import expression_of
 from lumen.formats.scxml.xml_tags import XmlTag
 from lumen.interpreters.expressions import parse_expression, unparse
 from lumen.interpreters.expressions.tree import Literal
-from lumen.language.actions import Assign, CancelSend, ComputedValue, Expression, If, LogText, PlacedAction, Raise, Send
+from lumen.language.actions import (
+    Assign,
+    CancelSend,
+    ComputedValue,
+    Expression,
+    If,
+    LogText,
+    PlacedAction,
+    Raise,
+    Send,
+    Template,
+)
 
 
 class ScxmlActionWriter:
@@ -55,7 +66,7 @@ class ScxmlActionWriter:
                 yield XmlTag("raise", {"event": event})
             case Raise(event, data):
                 yield XmlTag("send", {"event": event, "target": "#_internal"}, self.data(data))
-            case Send(event, data, delay, id):
+            case Send(event, data, delay, id) if not isinstance(delay, Template):
                 attributes = {"event": event, "id": id, "delay": duration(delay * 1000) if delay else ""}
                 yield XmlTag("send", attributes, self.data(data) if data is not None else [])
             case CancelSend(id):

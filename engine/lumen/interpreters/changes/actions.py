@@ -18,6 +18,7 @@ from lumen.language.actions import (
     Raise,
     SayText,
     Send,
+    Template,
     Wait,
 )
 from lumen.language.verbs import verb_of
@@ -108,7 +109,8 @@ def described(action: Action) -> str:
         case Raise(event):
             return f"raises `{event}`"
         case Send(event, _, delay):
-            return f"sends `{event}`" + (f" after {seconds(delay)}" if delay else "")
+            after = code(delay.shown) if isinstance(delay, Template) else delay and seconds(delay)
+            return f"sends `{event}`" + (f" after {after}" if after else "")
         case CancelSend(id):
             return f"cancels `{id}`"
         case Wait(time):

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
-from lumen.interpreters.expressions import ExpressionError, ExpressionNode, names, parse_expression
-from lumen.language.actions import Assign, ComputedValue, Expression, If, Parallel, PlacedAction, Raise, Send
+from lumen.interpreters.expressions import ExpressionError, ExpressionNode, names, parse_expression, split_template
+from lumen.language.actions import Assign, ComputedValue, Expression, If, Parallel, PlacedAction, Raise, Send, Template
 from lumen.language.machines import MachineDefinition, State, Transition
 from lumen.language.properties import Property, conditions_of
 
@@ -60,7 +60,12 @@ def of_block(block: tuple[PlacedAction, ...]) -> Iterator[ExpressionUse]:
             case Assign(values):
                 for key, value in values.items():
                     yield from _of(value, key)
-            case Raise(data=data) | Send(data=data):
+            case Send(data=data, delay=delay):
+                yield from _of(data)
+                if isinstance(delay, Template):
+                    holes = (part for part in split_template(delay.text) if not isinstance(part, str))
+                    yield from (use for hole in holes for use in _of(Expression(hole.source)))
+            case Raise(data=data):
                 yield from _of(data)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
 from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
-from lumen.interpreters.statechart.action_context import ActionContext
+from lumen.interpreters.statechart.action_context import ActionContext, ActionError
 from lumen.language.actions import (
     Action,
     Assign,
@@ -19,10 +19,12 @@ from lumen.language.actions import (
     Raise,
     SayText,
     Send,
+    Template,
     Wait,
 )
 from lumen.language.commands import BodyCommand, GoTo, Language, Log, Publish, Say, VerbCommand
 from lumen.language.diagnostics import NodePath
+from lumen.language.durations import seconds
 from lumen.language.events import Event
 
 ActionFunction: TypeAlias = Callable[[ActionContext], None]
@@ -44,8 +46,8 @@ def compile_action(action: Action) -> ActionFunction:
             body = compile_value(data)
             return lambda context: context.raise_event(Event(event, body(context.scope()), context.at))
         case Send(event, data, delay, id):
-            body = compile_value(data)
-            return lambda context: context.send(id, delay, event, body(context.scope()))
+            body, length = compile_value(data), _length(delay)
+            return lambda context: context.send(id, length(context), event, body(context.scope()))
         case CancelSend(id):
             return lambda context: context.cancel_send(id)
         case PublishBody(route, data):
@@ -99,6 +101,21 @@ def compile_value(value: ComputedValue) -> Callable[[Scope], Any]:
             return lambda scope: {key: item(scope) for key, item in pairs.items()}
         case _:
             return lambda scope: value
+
+
+def _length(delay: float | Template) -> Callable[[ActionContext], float]:
+    """How long a delay is [s]; one that is computed and says no time is an error of the action."""
+    if not isinstance(delay, Template):
+        return lambda context: delay
+    text = compile_template(delay.text)
+
+    def length(context: ActionContext) -> float:
+        said = text(context.scope())
+        if (found := seconds(said)) is None:
+            raise ActionError(f"the delay `{said}` is no duration: it needs a number and its unit, such as `20s`")
+        return found
+
+    return length
 
 
 def _assign(values: Mapping[str, ComputedValue]) -> ActionFunction:
