@@ -98,5 +98,8 @@ def test_a_change_of_words_is_seen_at_once_and_told_once_in_their_file() -> None
 
 def test_the_shipped_answers_stand_in_words() -> None:
     machine = load(ROOT).machine
-    assert machine.borrowed == {("answers", "faq"): "faq", ("answers", "explanations"): "faq"}
-    assert draft(read_files(ROOT)).words["faq"].answers == machine.answers
+    words = draft(read_files(ROOT)).words
+    assert {machine.borrowed["answers", name] for name in machine.answers} == {"faq"}
+    assert {machine.borrowed["phrases", name] for name in machine.phrases} == {"visitors"}
+    assert words["faq"].answers == machine.answers
+    assert words["visitors"].phrases == machine.phrases

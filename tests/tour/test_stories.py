@@ -8,6 +8,7 @@ import pytest
 from lumen.app.exploring import explored
 from lumen.app.rehearsal import rehearse
 from lumen.language.projects import Project
+from lumen.loading.schedules import read_schedule
 from lumen.runtime.coverage import Coverage
 from tests.tour.names import GUIDE, ROOT, SAFETY
 from tests.tour.playing import Run, play
@@ -99,4 +100,4 @@ def test_the_greeting_suits_the_hour(project: Project, clock: str, english: str,
 
     story = project.stories["unknown_visitor"]
     for language, greeting in (("en", english), ("id", indonesian)):
-        assert play(project, replace(story, clock=clock, language=language)).said[0][1] == greeting
+        assert play(project, replace(story, clock=read_schedule(clock), language=language)).said[0][1] == greeting
