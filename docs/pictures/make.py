@@ -1,13 +1,13 @@
 """Makes every picture of the documentation from the shipped project, at honest physics.
 
-    python docs/pictures/make.py [tour] [head] [sides] [motions] [walk] [postures] [fuzzy] [loop]
+    python docs/pictures/make.py [tour] [museum] [head] [sides] [motions] [walk] [postures] [fuzzy] [loop]
 
-`tour` is the README's picture, mid-dance in the shipped story. `head` is the paper's Fig. 13 and 14: the top camera's
-image when the visitor's face is first seen, and once the head has turned to it; a cross marks the image's centre, a
-ring the face. `sides` is the robot from three sides. `motions` is a sheet of each motion, at the moments that differ
-most. `walk` is a strip of `walk: {x: 0.2}`, `postures` one of each way down to the floor and up again. `fuzzy` draws
-the head controller, one evaluation of it, and the paper's erratum against it; `loop` the closed loop, and prints its
-numbers.
+`tour` is the README's picture, mid-dance in the shipped story; `museum` the guide of examples/museum at the organ.
+`head` is the paper's Fig. 13 and 14: the top camera's image when the visitor's face is first seen, and once the head
+has turned to it; a cross marks the image's centre, a ring the face. `sides` is the robot from three sides. `motions`
+is a sheet of each motion, at the moments that differ most. `walk` is a strip of `walk: {x: 0.2}`, `postures` one of
+each way down to the floor and up again. `fuzzy` draws the head controller, one evaluation of it, and the paper's
+erratum against it; `loop` the closed loop, and prints its numbers.
 """
 
 import argparse
@@ -32,6 +32,7 @@ from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Posture, Walk
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
+from lumen.loading.lending import model_files
 from lumen.ports import Image as Frame
 from lumen.ports import Perform, Sense
 from lumen.robots.simulation import SimulatedRobot, available
@@ -41,13 +42,15 @@ HERE = Path(__file__).parent
 MID_DANCE = 7.0
 STRIP = 8
 WALK = 5.4
+ORGAN = 2.1, 0.8
 LONG = 14.0
 SIDES = {"front": 20.0, "right": -75.0, "back": 205.0}
 FLOOR, MIDDLE, DISTANCE = 0.5, 0.27, 1.05
 
 
 def robot_of(project: Project) -> SimulatedRobot:
-    return SimulatedRobot(project.body, Path(project.root) / "models", project.hall, stage=project.stage)
+    models, hall = model_files(project)
+    return SimulatedRobot(project.body, models, hall, stage=project.stage)
 
 
 def picture(robot: SimulatedRobot, camera: str | mujoco.MjvCamera, width: int, height: int) -> Image.Image:
@@ -83,6 +86,20 @@ def tour(project: Project) -> None:
     both.paste(picture(robot, "observer", 720, 480), (0, 0))
     both.paste(picture(robot, "close", 560, 480), (720, 0))
     both.save(HERE / "tour.png", optimize=True)
+
+
+def museum(project: Project) -> None:
+    project = lumen.load(Path(project.root) / "examples" / "museum")
+    robot = robot_of(project)
+
+    def look(show: Exhibition, now: float) -> bool:
+        return "showing" in show.configuration and math.dist(robot.world.data.xpos[robot.world.torso][:2], ORGAN) < 0.2
+
+    play(project, robot, look)
+    both = Image.new("RGB", (1280, 480))
+    both.paste(picture(robot, "observer", 720, 480), (0, 0))
+    both.paste(picture(robot, "close", 560, 480), (720, 0))
+    both.save(HERE / "museum.png", optimize=True)
 
 
 def head(project: Project) -> None:
@@ -228,6 +245,7 @@ PICTURES = {
     "fuzzy": fuzzy,
     "loop": loop,
     "tour": tour,
+    "museum": museum,
     "head": head,
     "sides": sides,
     "motions": motions,

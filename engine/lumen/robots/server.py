@@ -87,9 +87,14 @@ class RobotServer:
         return {sense: self._broadcasts[sense].count for sense in Sense if sense in self._broadcasts}
 
     @property
-    def busy(self) -> bool:
-        """Whether it has readings to publish, or commands to begin."""
-        return bool(self._routes) or self._orders.waiting
+    def samples(self) -> bool:
+        """Whether it has readings to publish."""
+        return bool(self._routes)
+
+    @property
+    def waiting(self) -> bool:
+        """Whether it has commands to begin."""
+        return self._orders.waiting
 
     def sample(self, now: float) -> None:
         """Read the senses that are due at `now` [s] and hand them on; begin the commands that have come."""

@@ -62,8 +62,9 @@ class RobotPart(Part, Observer):
         self._look(now)
 
     def quiet_until(self, now: float) -> float:
-        idle = getattr(self.robot, "idle", False) and not self.server.busy and not (self.faces and self.faces.busy)
-        return inf if idle else now
+        server = self.server  # where nobody is told what it senses, only controllers ask, and the brain knows of these
+        busy = server.waiting or (server.samples and not self._silent) or (self.faces and self.faces.busy)
+        return now if busy or not getattr(self.robot, "idle", False) else inf
 
     def leap(self, now: float) -> None:
         if self.faces:

@@ -1,0 +1,112 @@
+"""The guide of examples/museum: its stories, its page, and a visit at honest physics."""
+
+import re
+from dataclasses import replace
+from math import dist
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.app.exploring import explored
+from lumen.app.rehearsal import rehearse
+from lumen.app.setup import Setup
+from lumen.clocks.simulated import SimulatedClock
+from lumen.interpreters.statechart import Step
+from lumen.language.commands import Command, Publish, Start, Volume
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.loading.lending import model_files
+from lumen.robots.simulation import SimulatedRobot
+from lumen.rules import check_files
+from lumen.runtime.loop import Observer
+from tests.tour.playing import play
+
+ROOT = Path(__file__).parents[2]
+MUSEUM = ROOT / "examples" / "museum"
+PAGE = (ROOT / "docs" / "museum.md").read_text("utf-8")
+TORSO = 0.01
+"""How far ahead of the feet the torso is [m]."""
+EXHIBITS = ["clock", "organ", "globe", "telescope", "loom"]
+
+
+@pytest.fixture(scope="module")
+def museum() -> Project:
+    return lumen.load(MUSEUM)
+
+
+def test_nothing_is_wrong_with_it() -> None:
+    assert check_files(MUSEUM, read_files(MUSEUM))[1] == ()
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in (MUSEUM / "behaviors" / "stories").glob("*.yaml")))
+def test_the_story_ends_well(museum: Project, name: str) -> None:
+    run = play(museum, museum.stories[name])
+    assert run.failure == ""
+    assert run.errors == []
+
+
+def test_whatever_happens_nothing_fails(museum: Project) -> None:
+    """A thousand configurations of it; `lumen test examples/museum --explore` goes on from there."""
+    assert explored(museum, "museum", bound=1_000).findings == ()
+
+
+def test_the_page_shows_what_is_there() -> None:
+    """Every line of YAML in docs/museum.md stands in a file of the project, in that order within a block."""
+    lines = [line.strip() for file in MUSEUM.rglob("*.yaml") for line in file.read_text("utf-8").splitlines()]
+    known = {re.sub(r"\s+#.*", "", line) for line in lines}
+    blocks = re.findall(r"```yaml\n(.*?)```", PAGE, re.S)
+    assert len(blocks) >= 8
+    shown = [re.sub(r"\s+#.*", "", line.strip()) for block in blocks for line in block.splitlines()]
+    assert [line for line in shown if line not in known] == []
+
+
+class Watch(Observer):
+    """What is published on the lamps, how loud it speaks, and where the robot says that it is."""
+
+    def __init__(self) -> None:
+        self.lamps: list[tuple[str, float]] = []
+        self.volumes: list[float] = []
+        self.arrived: list[tuple[str, float]] = []
+        self.texts: list[str] = []
+
+    def stepped(self, step: Step) -> None:
+        if step.event and step.event.name == "arrived":
+            self.arrived.append((step.event.data["place"], step.event.data["doubt"]))
+
+    def performing(self, command: Command, now: float) -> None:
+        match command:
+            case Publish("lamp", body):
+                self.lamps.append((body["exhibit"], body["brightness"]))
+            case Start(_, Volume(level)):
+                self.volumes.append(level)
+
+    def answered(self, event: Event) -> None: ...
+
+
+@pytest.mark.physics
+def test_a_visit_at_honest_physics(museum: Project) -> None:
+    """It walks to each exhibit, is there as exactly as it claims, never falls, and is at the door again."""
+    blind = replace(museum, routes={name: route for name, route in museum.routes.items() if name != "image"})
+    models, hall = model_files(museum)
+    robot = SimulatedRobot(museum.body, models, hall, stage=museum.stage)
+    watch, off = Watch(), list[tuple[str, float, float]]()
+
+    def measure(now: float) -> None:
+        if len(watch.arrived) > len(off):
+            name, doubt = watch.arrived[-1]
+            place = museum.places[name]
+            x, y = robot.world.data.xpos[robot.world.torso][:2]
+            off.append((name, dist((x, y), (place.x, place.y)), doubt))
+
+    setup = Setup(robot, SimulatedClock(robot.advance), robot)
+    rehearsal = rehearse(blind, museum.stories["visit"], setup, observers=[watch], hooks=[measure])
+    robot.close()
+    assert str(rehearsal.failed or "") == ""
+    assert [name for name, *_ in off] == ["door", *EXHIBITS, "door"]
+    assert all(error < doubt + TORSO for _, error, doubt in off), off
+    assert not robot.fallen
+    assert robot.greatest_tilt < 15.0
+    assert watch.lamps == [lamp for name in EXHIBITS for lamp in ((name, 1), (name, 0.2))]
+    assert min(watch.volumes) < 0.7 < max(watch.volumes)
