@@ -63,6 +63,6 @@ def test_a_rule_of_thousands_of_conditions_is_one_line(tmp_path: Path, capsys: p
     rule = " and ".join(["a is t"] * 5_000)
     head = "Engine: e\nInputVariable: a\n  range: 0 1\n  term: t Triangle 0 0.5 1\nOutputVariable: o\n  range: 0 1\n"
     output = "  defuzzifier: Centroid 100\n  term: y Triangle 0 0.5 1\n"
-    file.write_text(f"{head}{output}RuleBlock: r\n  rule: if {rule} then o is y\n")
+    file.write_text(f"{head}{output}RuleBlock: r\n  rule: if {rule} then o is y\n  rule: if a is t then o is y\n")
     assert main(["import", str(file)]) == 1
     assert "this rule is left out: the rule has more than 200 conditions" in capsys.readouterr().err

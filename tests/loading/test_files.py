@@ -46,7 +46,7 @@ def test_a_project_is_loaded_with_all_its_parts(project: Path) -> None:
     assert set(loaded.motions) == {"wave"}
     assert set(loaded.controllers) == {"head"}
     assert set(loaded.messages) == {"face", "heard"}
-    assert loaded.stories["hello"].clock == "09:30"
+    assert loaded.stories["hello"].clock.text == "09:30"
     assert len(loaded.stories["hello"].steps) == 8
     assert loaded.body.name == "tiny"
 

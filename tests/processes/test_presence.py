@@ -1,6 +1,7 @@
 """Presence, the guard over a brain, and commands to a robot that does not answer: in virtual time."""
 
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -308,7 +309,7 @@ def test_the_motion_module_does_what_it_can_and_the_brain_the_rest(line: Line) -
             self.ticks += 1
 
     own = Own()
-    controllers = {"head": object()}
+    controllers = {"head": SimpleNamespace(output_bindings=("yaw",))}
     here = project(messages=messages(), controllers=controllers)
     shared = DelegatedTracking(own, here, bus, lambda: able[0], lambda: 1.0)  # type: ignore[arg-type]
     shared.switch(Track("head"))

@@ -7,6 +7,7 @@ from lumen.interpreters.expressions import check_expression
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
 from lumen.language.properties import Property
+from lumen.loading.complaints import ONE_VERB
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import place_within
 from lumen.loading.routes import duration
@@ -19,6 +20,13 @@ def build_properties(data: Mapping[str, Any], report: DocumentReport, read: Read
     found = []
     for name, row in (data.get("properties") or {}).items():
         where = ("properties", name)
+        said = [key for key in ("always", "eventually") if key in row]
+        if not said and report.broken(where):
+            continue
+        if len(said) != 1:
+            hint = "write `always:` and a condition, or `eventually:` and `within:`; for both, another property"
+            report(ONE_VERB, where, f"`{name}` says not one thing that has to be so", hint, key=True)
+            continue
         conditions = {key: read(row[key], (*where, key)) for key in ("always", "eventually", "whenever") if key in row}
         within = duration(row, "within", report, where) if "within" in row else 0.0
         if None not in conditions.values() and within is not None:

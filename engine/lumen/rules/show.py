@@ -111,7 +111,7 @@ class _Ways:
 
     def twice(self, taken: dict[str, str], place: str, name: str, path: NodePath) -> None:
         if (other := taken.setdefault(place, name)) != name:
-            message = f"`{other}` has {place} already: what goes out on one would come in on the other, or twice"
+            message = f"`{other}` has `{place}` already: what goes out on one would come in on the other, or twice"
             self.report(SHOW_ADDRESS, path, message, "give each route a place of its own")
 
     def arguments(self, route: Route, fields: tuple[str, ...] | None, path: NodePath) -> None:

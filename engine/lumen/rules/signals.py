@@ -198,7 +198,7 @@ def _twice(draft: ProjectDraft) -> None:
     for (name, signal, target), (other, later, same) in combinations(bound, 2):
         if target == same and (name == other or {name, other} <= forever):
             whose = "" if name == other else f" of `{name}`"
-            message = f"`{signal.variable}`{whose} is bound to {target}, too"
+            message = f"`{later.variable}` is bound to {target}, as is `{signal.variable}`{whose}"
             hint = "bind one of them" if name == other else "bind one of them, or switch one off with `track`"
             draft.report("fuzzy", other)(BOUND_TWICE, later.where, message, hint, key=True)
 
