@@ -22,6 +22,7 @@ ACTIONS: list[dict[str, Any]] = [
     {"raise": {"event": "f.g", "data": {"x": "context.n % 2 == 0", "deep": [1, {"y": "'text'"}]}}},
     {"send": {"event": "e", "delay": "300ms", "id": "one", "data": "context.t"}},
     {"send": {"event": "f.g.h", "delay": "1.5s"}},
+    {"send": {"event": "e", "to": "parent", "data": {"n": "context.t"}}},
     {"cancel": "one"},
     {"log": "{{ context.n }} of {{ context.t }}{{ '{{' }}"},
     {"say": {"any": ["x", "y's"]}},

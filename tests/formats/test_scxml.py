@@ -44,6 +44,8 @@ B = '<state id="b"><state id="c"/></state>'
          {"entry": [{"send": {"event": "e", "delay": "1.5s", "id": "i"}}]}),
         ('<onentry><send event="e" delayexpr="\'2s\'"><param name="p" expr="x + 1"/></send></onentry>',
          {"entry": [{"send": {"event": "e", "data": {"p": "context.x + 1"}, "delay": "2s"}}]}),
+        ('<onexit><send event="e" target="#_parent" delay="2s"/><send event="e" targetexpr="\'#_q.a\'"/></onexit>',
+         {"exit": [{"send": {"event": "e", "to": "parent", "delay": "2s"}}, {"send": {"event": "e", "to": "q.a"}}]}),
         ('<onexit><send target="#_internal" event="e"><content>{"a": "b"}</content></send></onexit>',
          {"exit": [{"raise": {"event": "e", "data": {"a": "'b'"}}}]}),
         ('<onexit><cancel sendid="i"/><log label="L" expr="\'n: \' + x"/></onexit>',

@@ -75,6 +75,25 @@ def test_code_that_is_not_in_the_file() -> None:
     assert lines == sorted(set(lines))
 
 
+def test_what_goes_to_other_actors() -> None:
+    sent = [
+        {"type": "xstate.sendTo", "to": "#_parent", "event": {"type": "E"}},
+        {"type": "xstate.sendTo", "to": "my quiz", "event": {"type": "E"}, "delay": 2000, "id": "x"},
+        {"type": "xstate.send", "to": "#_quiz", "event": {"type": "E"}},
+        {"type": "xstate.sendTo", "to": "quiz", "event": {"type": "E", "answer": 42}},
+        {"type": "xstate.sendTo", "event": {"type": "E"}},
+    ]
+    data, said = read({"id": "m", "states": {"a": {"entry": sent}}})
+    assert data["states"]["a"]["entry"][:3] == [
+        {"send": {"event": "E", "to": "parent"}},
+        {"send": {"event": "E", "delay": "2s", "id": "x", "to": "my_quiz"}},
+        {"send": {"event": "E", "to": "quiz"}},
+    ]
+    assert [message.partition(": ")[2] for message in said] == [
+        "the code of the action `xstate.sendTo` is not in the file"
+    ] * 2
+
+
 def test_order_and_prefixes_survive_xstates_rules() -> None:
     chart = {
         "id": "m",

@@ -98,3 +98,16 @@ def test_one_that_is_new_in_an_active_state_begins() -> None:
     verdict = migrate(none, OLD, initial(none).snapshot)
     assert isinstance(verdict, MigrationPlan)
     assert verdict.entering == (Start("d1@quiz", Say("Well?")),)
+
+
+def test_what_it_sends_as_it_changes_comes_to_the_one_that_invoked_it() -> None:
+    asking = {**QUIZ["states"]["ask"], "exit": {"send": {"event": "lost", "to": "parent"}}}
+    before = tour({**QUIZ, "states": {**QUIZ["states"], "ask": asking}}, on={"lost": "b", "told": "c"})
+    hint = {"entry": {"send": {"event": "told", "to": "parent"}}}
+    gone = {"states": {"hint": hint, "end": QUIZ["states"]["end"]}, "context": {"asked": 0}, "onReload": ".hint"}
+    after = tour(gone, on={"lost": {"actions": {"log": "lost"}}, "told": "c"})
+    verdict = migrate(before, after, initial(before).snapshot, at=1.0, now=True)
+    assert isinstance(verdict, MigrationPlan), verdict
+    assert Log("lost") in verdict.entering
+    assert verdict.snapshot.configuration == {"c"}
+    assert not verdict.snapshot.invoked

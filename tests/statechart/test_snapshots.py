@@ -21,12 +21,14 @@ WAITING = {"states": {"a": {"after": {"4s": "b"}}, "b": {"after": {"4s": "c"}}, 
 INVOKING = {"states": {"a": {"invoke": {"behavior": "quiz", "onDone": "b"}}, "b": None}}
 DOING = {"states": {"a": {"do": [{"wait": "3s"}], "onDone": "b"}, "b": None}}
 SENDING = {"states": {"a": {"entry": {"send": {"event": "x", "delay": "3s"}}, "on": {"x": "b"}}, "b": None}}
+TELLING = {"states": {"a": {"invoke": {"behavior": "teller"}, "on": {"x": "b"}}, "b": None}}
+TELLER = {"states": {"t": {"entry": {"send": {"event": "x", "to": "parent", "delay": "3s"}}}}}
 MIDDLE = {"states": {"m": {"invoke": {"behavior": "quiz", "onDone": "n"}}, "n": {"type": "final"}}}
 DEEP = {"states": {"a": {"invoke": {"behavior": "middle", "onDone": "b"}}, "b": None}}
 
 
 def machine(data: dict[str, Any]) -> Machine:
-    return Machine.from_dict(data, behaviors={"quiz": QUIZ, "middle": MIDDLE})
+    return Machine.from_dict(data, behaviors={"quiz": QUIZ, "middle": MIDDLE, "teller": TELLER})
 
 
 def saved(data: dict[str, Any], after: float) -> dict[str, Any]:
@@ -40,7 +42,9 @@ def saved(data: dict[str, Any], after: float) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("timers", "ends"), [("deadline", 100.0), ("remaining", 102.0), ("restart", 103.0)])
-@pytest.mark.parametrize("data", [INVOKING, DOING, SENDING, DEEP], ids=["invoke", "wait", "send", "two levels"])
+@pytest.mark.parametrize(
+    "data", [INVOKING, DOING, SENDING, TELLING, DEEP], ids=["invoke", "wait", "send", "to", "two levels"]
+)
 def test_a_timer_that_was_under_way(data: dict[str, Any], timers: Any, ends: float) -> None:
     again = Interpreter.restore(machine(data), saved(data, 1.0), VirtualClock(100.0), timers)
     assert (again.configuration == frozenset({"b"})) is (ends == 100.0)

@@ -72,8 +72,8 @@ def plain_action(action: Action) -> ActionData:
             return {"assign": {key: plain_value(value) for key, value in values.items()}}
         case Raise(event, data):
             return {"raise": _event(event, data)}
-        case Send(event, data, delay, id):
-            extra = _delay(delay) | ({"id": id} if id else {})
+        case Send(event, data, delay, id, to):
+            extra = ({"to": to} if to else {}) | _delay(delay) | ({"id": id} if id else {})
             body = _event(event, data)
             return {"send": {**(body if isinstance(body, dict) else {"event": body}), **extra} if extra else body}
         case CancelSend(id):

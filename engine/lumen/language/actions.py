@@ -75,17 +75,23 @@ class Raise:
     data: ComputedValue = None
 
 
+PARENT = "parent"
+"""Who a `send` goes to that goes to the behaviour which invoked this one."""
+
+
 @dataclass(frozen=True, slots=True)
 class Send:
     """`send`: an event for this machine, after `delay` [s]; `id` lets `cancel` take it back.
 
-    A delay that is a template says when the action is done how long it is: `{{ context.patience }}s`.
+    A delay that is a template says when the action is done how long it is: `{{ context.patience }}s`. `to` is the id
+    of a behaviour that this one has invoked, or PARENT for the one that invoked this.
     """
 
     event: str
     data: ComputedValue = None
     delay: float | Template = 0.0
     id: str = ""
+    to: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -145,7 +145,9 @@ class Actions:
         delay = self._delay(options["delay"], (*where, "delay")) if "delay" in options else 0.0
         if delay is None:
             return None
-        return Send(event, self.expressions.value(data, (*where, "data")), delay, options.get("id", ""))
+        return Send(
+            event, self.expressions.value(data, (*where, "data")), delay, options.get("id", ""), options.get("to", "")
+        )
 
     def _delay(self, text: Any, where: NodePath) -> float | Template | None:
         if isinstance(text, str) and "{{" in text:

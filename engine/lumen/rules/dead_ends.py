@@ -212,7 +212,8 @@ class _Ways:
 
     def waiting(self, state: State) -> None:
         """A state that is left only if a visitor does something."""
-        raised = {a.event for step in nested((*state.entry, *state.do)) if isinstance(a := step.action, Raise | Send)}
+        steps = nested((*state.entry, *state.do))
+        raised = {a.event for step in steps if isinstance(a := step.action, Raise | Send) and not _goes_away(a)}
         ways = [t for t in self.ways_out(state.path) if self.in_course(t)]
         names = sorted({t.event for t in ways} - raised)
         if any(t.event in raised for t in ways):
@@ -232,3 +233,8 @@ class _Ways:
             or transition.event in self.events
             or (transition.timed or transition.exact or "*" in transition.event or "error" in transition.event)
         )
+
+
+def _goes_away(action: Raise | Send) -> bool:
+    """Whether it is for another behaviour."""
+    return isinstance(action, Send) and bool(action.to)

@@ -12,6 +12,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.endings import ending_fault
 from lumen.rules.lookups import first
+from lumen.rules.recipients import recipients, sent_to
 from lumen.rules.walk import action_sites
 
 UNKNOWN_EVENT = Code("unknown-event", "references", ERROR, "a behaviour waits for an event that nothing raises")
@@ -33,7 +34,7 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report("behaviors", name)
         _waited(draft, machine, report)
         if report.whole:
-            _raised(machine, report)
+            _raised(draft, name, report)
 
 
 def hears(descriptor: str, event: str) -> bool:
@@ -83,7 +84,7 @@ def _output(machine: MachineDefinition) -> Mapping[str, Any] | None:
 
 
 def raised(data: Any) -> Iterator[str]:
-    """The names of all events that the data of a behaviour raises or sends; those of broken actions too."""
+    """The names of all events that the data of a behaviour raises, or sends to itself; those of broken actions too."""
     waiting = [data]
     while waiting:
         item = waiting.pop()
@@ -92,7 +93,7 @@ def raised(data: Any) -> Iterator[str]:
         elif isinstance(item, Mapping):
             waiting.extend(item.values())
             for body in (item.get("raise"), item.get("send")):
-                name = body.get("event") if isinstance(body, Mapping) else body
+                name = body.get("event") if isinstance(body, Mapping) and "to" not in body else body
                 if isinstance(name, str):
                     yield name
 
@@ -100,7 +101,13 @@ def raised(data: Any) -> Iterator[str]:
 def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentReport) -> None:
     if draft.settings is None or draft.main is None:
         return
-    known = {*declared(draft, machine), *raised(report.document.data), *draft.main.lost, *report.lost}
+    known = {
+        *declared(draft, machine),
+        *raised(report.document.data),
+        *sent_to(draft, machine),
+        *draft.main.lost,
+        *report.lost,
+    }
     said: set[str] = set()
     routed = any(route.event for route in draft.settings.routes.values())
     sound = not report.diagnostics
@@ -139,9 +146,14 @@ def _descriptor(where: NodePath, event: str) -> NodePath:
     return where if where[-1] == event else where[:-1]
 
 
-def _raised(machine: MachineDefinition, report: DocumentReport) -> None:
-    waited = set(descriptors(machine))
+def _raised(draft: ProjectDraft, name: str, report: DocumentReport) -> None:
+    machine = draft.behaviors[name]
+    own = set(descriptors(machine))
     for site in action_sites(machine):
+        waited = own
+        if isinstance(site.step.action, Send) and site.step.action.to:
+            others = recipients(draft, name, site.step.action)
+            waited = {"*"} if not others else {d for other in others for d in descriptors(other)}
         match site.step.action:
             case Raise(event=event) | Send(event=event) if not any(hears(d, event) for d in waited):
                 verb = "raise" if isinstance(site.step.action, Raise) else "send"

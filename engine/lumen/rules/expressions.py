@@ -16,6 +16,7 @@ from lumen.loading.expressions import cause_of, place_within
 from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.lists import entry_schema, list_schema
 from lumen.rules.lookups import value_at
+from lumen.rules.recipients import sent_to
 from lumen.rules.walk import ExpressionSite, expression_sites
 
 BOOLEAN_SCHEMA: Mapping[str, Any] = {"type": "boolean"}
@@ -33,7 +34,7 @@ class _Expressions:
         self.machine, self.report = machine, report
         self.known, self.whole = draft.settings is not None, draft.words.keys() >= set(machine.words)
         self.events = declared(draft, machine)
-        for event in raised(report.document.data):
+        for event in (*raised(report.document.data), *sent_to(draft, machine)):
             self.events[event] = None
         self.context = {key: machine.types.get(key, schema_of(value)) for key, value in machine.context.items()}
         for behavior, part, key in draft.unsound:

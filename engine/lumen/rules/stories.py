@@ -20,6 +20,7 @@ from lumen.loading.expressions import place_within
 from lumen.loading.schema import faults
 from lumen.rules.events import UNKNOWN_EVENT, declared, descriptors, hears, raised
 from lumen.rules.lookups import References, first
+from lumen.rules.recipients import sent_to
 from lumen.rules.references import known_route
 
 UNKNOWN_SENSOR = Code("unknown-sensor", "references", ERROR, "the robot has no tactile sensor of that name")
@@ -138,7 +139,7 @@ class _Script:
         if machine is None or self._lost(event) or any(hears(d, event) for d in descriptors(machine)):
             return
         data = self.draft.report("behaviors", self.behavior).document.data
-        known = {*self.events, *raised(data)}
+        known = {*self.events, *raised(data), *sent_to(self.draft, machine)}
         if event not in known:
             waited = {d for d in descriptors(machine) if "*" not in d}
             message = f"nothing in `{self.behavior}` knows the event `{event}`"

@@ -133,8 +133,10 @@ class ScxmlActionReader:
         delay = self._delay(element)
         if processor not in PROCESSORS:
             raise LeftOutError(f"`<send>` through `{processor}`", "only events for the chart itself are carried over")
-        if target not in ("", "#_internal"):
-            raise LeftOutError(f"`<send>` to `{target}`", "only events for the chart itself are carried over")
+        to = target.removeprefix("#_") if target.startswith("#_") and not target.startswith("#_scxml_") else ""
+        if target and not to:
+            hint = "only events for the chart itself, for `#_parent` and for what it invokes are carried over"
+            raise LeftOutError(f"`<send>` to `{target}`", hint)
         if "idlocation" in element.attributes:
             raise LeftOutError("`<send>` with `idlocation`", "give it an `id`")
         body: dict[str, Any] = {"event": event}
@@ -144,6 +146,8 @@ class ScxmlActionReader:
             if delay:
                 raise LeftOutError("`<send>` to `#_internal` with a delay", "leave out the target")
             return {"raise": body if len(body) > 1 else event}
+        if to:
+            body["to"] = to
         if delay:
             body["delay"] = duration(delay)
         if id := element.get("id"):

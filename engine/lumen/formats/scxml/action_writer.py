@@ -66,8 +66,10 @@ class ScxmlActionWriter:
                 yield XmlTag("raise", {"event": event})
             case Raise(event, data):
                 yield XmlTag("send", {"event": event, "target": "#_internal"}, self.data(data))
-            case Send(event, data, delay, id) if not isinstance(delay, Template):
-                attributes = {"event": event, "id": id, "delay": duration(delay * 1000) if delay else ""}
+            case Send(event, data, delay, id, to) if not isinstance(delay, Template):
+                target = f"#_{to}" if to else ""
+                length = duration(delay * 1000) if delay else ""
+                attributes = {"event": event, "target": target, "id": id, "delay": length}
                 yield XmlTag("send", attributes, self.data(data) if data is not None else [])
             case CancelSend(id):
                 yield XmlTag("cancel", {"sendid": id})

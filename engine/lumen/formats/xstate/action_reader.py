@@ -8,7 +8,9 @@ from typing import Any
 from lumen.formats.behavior_data import ActionData
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.durations import duration
+from lumen.formats.xstate.descriptors import invoke_id
 from lumen.formats.xstate.json_source import JsonSource
+from lumen.language.actions import PARENT
 from lumen.language.diagnostics import NodePath, has_errors
 from lumen.loading.behaviors import build_machine
 from lumen.loading.document_report import DocumentReport
@@ -55,6 +57,8 @@ class XStateActionReader:
             return own
         if kind == "xstate.raise" and isinstance(data, dict) and (own := self._raise(data)):
             return own
+        if kind in ("xstate.sendTo", "xstate.send") and isinstance(data, dict) and (own := self._send_to(data)):
+            return own
         shown = kind if params is None else f"{kind} {json.dumps(params, ensure_ascii=False)}"
         self.lost(where, f"the code of the action `{kind}` is not in the file", "a line in the log stands for it")
         return {"log": re.sub(r"\{(?=\{)", "{{ '{' }}", shown)}
@@ -68,16 +72,17 @@ class XStateActionReader:
         return action if self.fits({"entry": [action]}) else None
 
     def _raise(self, data: Mapping[str, Any]) -> ActionData | None:
-        event, delay = data.get("event"), data.get("delay")
-        name = event.get("type") if isinstance(event, dict) else None
-        if not isinstance(name, str) or len(event or {}) > 1:
+        body = _sent(data)
+        if body is None:
             return None
-        if delay is None:
-            return {"raise": name}
-        if isinstance(delay, bool) or not isinstance(delay, int | float) or delay < 0:
+        return {"send": body} if "delay" in body else {"raise": body["event"]}
+
+    def _send_to(self, data: Mapping[str, Any]) -> ActionData | None:
+        """What goes to another actor, where JSON can name it: `sendTo` of version 5, `send` with `to` of version 4."""
+        to, body = data.get("to"), _sent(data)
+        if body is None or not isinstance(to, str) or not to.removeprefix("#_") or to == "#_internal":
             return None
-        id = data.get("id")
-        return {"send": {"event": name, "delay": duration(delay)} | ({"id": id} if isinstance(id, str) and id else {})}
+        return {"send": body | {"to": PARENT if to == f"#_{PARENT}" else invoke_id(to.removeprefix("#_"))}}
 
     def do(self, steps: Any) -> list[ActionData] | None:
         """The `do` that Lumen wrote as an invocation."""
@@ -132,3 +137,16 @@ class XStateActionReader:
             self.lost(where, f"the code of the delay `{text}` is not in the file", "write milliseconds")
             return None
         return duration(length)
+
+
+def _sent(data: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The event of `raise` and `sendTo` with its delay and its id; None where they hold more than JSON can say."""
+    event, delay, id = data.get("event"), data.get("delay"), data.get("id")
+    name = event.get("type") if isinstance(event, dict) else None
+    if not isinstance(name, str) or len(event or {}) > 1:
+        return None
+    if delay is None:
+        return {"event": name}
+    if isinstance(delay, bool) or not isinstance(delay, int | float) or delay < 0:
+        return None
+    return {"event": name, "delay": duration(delay)} | ({"id": id} if isinstance(id, str) and id else {})

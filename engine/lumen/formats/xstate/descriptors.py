@@ -104,7 +104,7 @@ def _covers(transition: Transition, event: str) -> bool:
 def _raised(steps: Sequence[PlacedAction]) -> Iterator[str]:
     for step in steps:
         match step.action:
-            case Raise(event) | Send(event):
+            case Raise(event) | Send(event, to=""):
                 yield event
             case If(_, then, otherwise):
                 yield from _raised(then)

@@ -108,9 +108,9 @@ def described(action: Action) -> str:
             return f"sets {names(values)}"
         case Raise(event):
             return f"raises `{event}`"
-        case Send(event, _, delay):
+        case Send(event, _, delay, _, to):
             after = code(delay.shown) if isinstance(delay, Template) else delay and seconds(delay)
-            return f"sends `{event}`" + (f" after {after}" if after else "")
+            return f"sends `{event}`" + (f" to `{to}`" if to else "") + (f" after {after}" if after else "")
         case CancelSend(id):
             return f"cancels `{id}`"
         case Wait(time):

@@ -51,7 +51,7 @@ class Abstraction:
         return (
             snapshot.configuration,
             tuple((k, self._known(k, snapshot.context.get(k))) for k in sorted(live)),
-            tuple(sorted((t.event if t.kind != "wait" else "", t.state, t.kind) for t in snapshot.timers)),
+            tuple(sorted((t.event if t.kind != "wait" else "", t.state, t.kind, t.to) for t in snapshot.timers)),
             tuple((path, _shape(position)) for path, position in sorted(snapshot.doing.items())),
             tuple(self._remembered(snapshot)),
             snapshot.language if self._language else "",

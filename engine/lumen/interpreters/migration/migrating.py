@@ -77,13 +77,16 @@ class _Migration:
             after.timers, after.beginnings = (), ()
         step = complete(after)
         notes = (*self._destinations(step), *self.notes)
-        return MigrationPlan(step.snapshot, leaving, step.commands, before.exited + step.exited, step.entered, notes)
+        return MigrationPlan(
+            step.snapshot, leaving, step.commands, before.exited + step.exited, step.entered, notes, after.for_parent
+        )
 
     def _left(self) -> ExecutionContext:
         """Leave what does not stay, and end what can't go on, by the old machine."""
         situation, snapshot = self.situation, self.situation.snapshot
         invocations = Invocations(snapshot.invoked)
         context = ExecutionContext.of(self.old, snapshot, None, snapshot.at, invocations)
+        context.is_invoked = situation.options.is_invoked
         microstep(context, self.old.planner.passage(situation.start, self.placement.left, set(), snapshot.history))
         for id in situation.ending(self.placement):
             if id in invocations.children:
@@ -118,7 +121,8 @@ class _Migration:
             output=before.output,
         )
         after = ExecutionContext.of(self.new, snapshot, None, before.at, self.invocations)
-        after.internal_queue = before.internal_queue
+        after.is_invoked, after.internal_queue = before.is_invoked, before.internal_queue
+        after.for_parent, after.outbox = before.for_parent, before.outbox
         beginnings = (self._beginning(node, image) for node, image in kept.items())
         after.beginnings = tuple(found for found in beginnings if found.invokes or found.do)
         return after, notes
@@ -142,8 +146,11 @@ class _Migration:
             place=after.place,
             timezone=after.timezone,
         )  # fmt: skip
-        verdict = migrated(old, new, lent, self.situation.options._replace(at=after.at, languages=()), behavior)
+        options = self.situation.options._replace(at=after.at, languages=(), is_invoked=True)
+        verdict = migrated(old, new, lent, options, behavior)
         if isinstance(verdict, MigrationPlan):
+            for event in verdict.sent:
+                after.raise_event(event)
             after.commands += tuple(outer_command(command, id) for command in verdict.entering)
             self.invocations.adopt(after, id, Invoked(owner.path, verdict.snapshot, child.commands))
         return verdict

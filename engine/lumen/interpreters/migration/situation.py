@@ -18,12 +18,14 @@ class MigrationOptions(NamedTuple):
     """The time of the change [s], whether to cancel rather than wait, whether back to a bundle that ran before.
 
     `languages` are those that may be spoken, the first where the present one is gone; any where there are none.
+    `is_invoked` says that another behaviour invoked it.
     """
 
     at: float
     now: bool = False
     back: bool = False
     languages: Sequence[str] = ()
+    is_invoked: bool = False
 
 
 class Situation:

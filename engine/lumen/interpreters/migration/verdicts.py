@@ -5,6 +5,7 @@ from typing import NamedTuple
 from lumen.interpreters.statechart import Snapshot
 from lumen.language.commands import Command
 from lumen.language.diagnostics import NodePath
+from lumen.language.events import Event
 
 
 class MigrationPlan(NamedTuple):
@@ -13,7 +14,7 @@ class MigrationPlan(NamedTuple):
     Perform `leaving` under the old bundle (exit actions and cancels, in the order of exit), then `entering` under the
     new one. `exited` are names of old states, `entered` of new ones, as in a Step; both are empty where every active
     state goes on. `notes` are sentences about what somebody could miss: where the behaviour went, what it
-    has forgotten.
+    has forgotten. `sent` is what an invoked behaviour sends meanwhile to the one that invoked it.
     """
 
     snapshot: Snapshot
@@ -22,6 +23,7 @@ class MigrationPlan(NamedTuple):
     exited: tuple[str, ...] = ()
     entered: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    sent: tuple[Event, ...] = ()
 
     @property
     def commands(self) -> tuple[Command, ...]:

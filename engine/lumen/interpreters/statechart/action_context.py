@@ -41,8 +41,8 @@ class ActionContext(Protocol):
     def raise_error(self, reason: str, where: tuple[str | int, ...]) -> None:
         """Raise error.execution."""
 
-    def send(self, id: str, delay: float, event: str, data: Any) -> None:
-        """Set a timer: the event comes from outside after `delay` [s]."""
+    def send(self, id: str, delay: float, event: str, data: Any, to: str) -> None:
+        """Set a timer: the event comes from outside after `delay` [s], or goes `to` another behaviour."""
 
     def cancel_send(self, id: str) -> None:
         """Take back what was sent under that id and has not come yet."""

@@ -45,9 +45,9 @@ def compile_action(action: Action) -> ActionFunction:
         case Raise(event, data):
             body = compile_value(data)
             return lambda context: context.raise_event(Event(event, body(context.scope()), context.at))
-        case Send(event, data, delay, id):
+        case Send(event, data, delay, id, to):
             body, length = compile_value(data), _length(delay)
-            return lambda context: context.send(id, length(context), event, body(context.scope()))
+            return lambda context: context.send(id, length(context), event, body(context.scope()), to)
         case CancelSend(id):
             return lambda context: context.cancel_send(id)
         case PublishBody(route, data):

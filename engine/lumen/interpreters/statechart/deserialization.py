@@ -133,7 +133,8 @@ class _SnapshotReader:
         event, content = data["event"].text(), data["data"].plain()
         if kind == "at" and event not in compiled(self.machine).chart.nodes[state].schedules:
             raise data["event"].refused(f"is no `at` of `{state}`")
-        return Timer(data["id"].text(), due, delay, event, content, state, kind)  # type: ignore[arg-type]  # one of three
+        to = data["to"].text() if any(key == "to" for key, _ in data.items()) else ""
+        return Timer(data["id"].text(), due, delay, event, content, state, kind, to)  # type: ignore[arg-type]  # one of three
 
     def position(self, path: str, data: JsonCursor) -> Within:
         node = compiled(self.machine).chart.nodes.get(path)

@@ -12,6 +12,7 @@ from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine
 from lumen.interpreters.statechart.plans import Configuration
 from lumen.interpreters.statechart.values import Counters, Halted, Invoked, Snapshot, Step, Timer
+from lumen.language.actions import PARENT
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ARRIVED, LEFT, Event
@@ -61,6 +62,9 @@ class InvocationHandler(Protocol):
     def deliver(self, context: "ExecutionContext", id: str, event: Event) -> None:
         """Let one of them hear an event."""
 
+    def post(self, context: "ExecutionContext") -> None:
+        """Hand over what the machine sends to them."""
+
 
 @dataclass(slots=True, eq=False)
 class ExecutionContext:
@@ -68,7 +72,8 @@ class ExecutionContext:
 
     `trigger` is the event that began the macrostep, `event` the one being handled; `active` is what `In` asks, and
     `node` the state that expressions know as `state`. `unforwarded` is an event from outside that invoked behaviours
-    have not heard yet, `beginnings` are the states entered and not left, `failed` the places of errors.
+    have not heard yet, `beginnings` are the states entered and not left, `failed` the places of errors. `outbox` is
+    what goes to invoked behaviours, and to which; `for_parent` what goes to that which invoked this, if any.
     """
 
     machine: CompiledMachine
@@ -94,6 +99,9 @@ class ExecutionContext:
     internal_queue: deque[Event] | tuple[()] = ()
     unforwarded: Event | None = None
     beginnings: tuple[Beginning, ...] = ()
+    is_invoked: bool = False
+    for_parent: tuple[Event, ...] = ()
+    outbox: tuple[tuple[str, Event], ...] = ()
     microsteps: int = 0
     failed: frozenset[NodePath] = frozenset()
     output: Any = None
@@ -193,11 +201,31 @@ class ExecutionContext:
         self.emit(Start(id, command))
         return id
 
-    def send(self, id: str, delay: float, event: str, data: Any) -> None:
-        """A `send`: due after `delay` [s], at the earliest in the next macrostep (SCXML 6.2)."""
+    def send(self, id: str, delay: float, event: str, data: Any, to: str) -> None:
+        """A `send`: due after `delay` [s], at the earliest in the next macrostep (SCXML 6.2).
+
+        What goes to another behaviour without delay is handed over in this macrostep.
+        """
         length = nanoseconds(delay)
+        if to and not length:
+            self.hand_over(to, Event(event, data, self.at))
+            return
         due = nanoseconds(self.at) + length
-        self.timers = (*self.timers, Timer(id or self._timer_id("s"), due, length, event, data))
+        timer = Timer(id or self._timer_id("s"), due, length, event, data, to=to)
+        self.timers = (*self.timers, timer)
+
+    def hand_over(self, to: str, event: Event) -> None:
+        """Have the behaviour that invoked this one, or one that it invokes, hear an event."""
+        if to == PARENT and self.is_invoked:
+            self.for_parent = (*self.for_parent, event)
+        else:
+            self.outbox = (*self.outbox, (to, event))
+
+    def returned(self, to: str, event: Event) -> None:
+        """Raise error.communication: there is nobody to whom that could be sent (SCXML 6.2.5)."""
+        whom = "nobody has invoked this behaviour" if to == PARENT else f"no behaviour `{to}` is invoked here now"
+        reason = f"{whom}: `{event.name}` goes to nobody"
+        self.raise_event(Event("error.communication", {"to": to, "reason": reason}, self.at))
 
     def cancel_send(self, id: str) -> None:
         """Take back what was sent under that id and is not due yet (SCXML 6.3)."""

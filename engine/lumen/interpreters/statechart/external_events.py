@@ -67,6 +67,8 @@ def _end_timer(context: ExecutionContext, event: Event) -> None:
         context.timers = (*context.timers, again) if again else context.timers
     if timer.kind in ("after", "at"):
         take_enabled(context, context.configuration.timed(timer.event))
+    elif timer.to:
+        context.hand_over(timer.to, event._replace(sendid=""))
     elif timer.kind == "send":
         take_enabled(context, context.configuration.candidates(event.name))
     elif timer.id in awaited(context.activities.positions.get(timer.state)):

@@ -62,6 +62,15 @@ class Invocations:
         for id in tuple(self.children):
             self.deliver(context, id, event)
 
+    def post(self, context: ExecutionContext) -> None:
+        """Hand over what the machine sends to them; what is for none of them is an error (SCXML 6.2.5)."""
+        sent, context.outbox = context.outbox, ()
+        for id, event in sent:
+            if id in self.children:
+                self.deliver(context, id, event)
+            else:
+                context.returned(id, event)
+
     def end(self, context: ExecutionContext, id: str) -> None:
         """End one of them: it leaves all its states."""
         child = self._open(context, id, None)
@@ -93,6 +102,8 @@ class Invocations:
         context.microsteps += child.microsteps - before
         self.children = {**self.children, id: Invoked(state, step.snapshot, commands)}
         self._follow(context, id, step)
+        for sent in child.for_parent:
+            context.raise_event(sent)
         if child.configuration.finished:
             self._finish(context, id, step.snapshot.output)
 
@@ -108,7 +119,9 @@ class Invocations:
             language=context.language, counters=context.counters, generator=context.generator, epoch=context.epoch,
             timezone=context.timezone, place=place_after(context.place, event),
         )  # fmt: skip
-        return open_context(invoked_machine(context.machine, state, id), lent, event, context.at)
+        child = open_context(invoked_machine(context.machine, state, id), lent, event, context.at)
+        child.is_invoked = True
+        return child
 
     def _follow(self, context: ExecutionContext, id: str, step: Step) -> None:
         """Take over what a step asks for, and what was lent for it."""

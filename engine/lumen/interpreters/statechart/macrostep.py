@@ -20,7 +20,8 @@ def exit_machine(context: ExecutionContext) -> Step:
 def complete(context: ExecutionContext) -> Step:
     """Go on until there is nothing more to do now.
 
-    An event from outside comes to the invoked behaviours that run already and still do; then what was entered begins.
+    An event from outside comes to the invoked behaviours that run already and still do; then what was entered begins,
+    and in the end they hear what the machine sends to them.
     """
     while True:
         _macrostep(context)
@@ -29,6 +30,8 @@ def complete(context: ExecutionContext) -> Step:
             context.invocations.forward(context, event)
         elif context.beginnings:
             _begin(context)
+        elif context.outbox:
+            context.invocations.post(context)
         else:
             return context.step()
 

@@ -77,7 +77,7 @@ def _end(context: ExecutionContext) -> None:
         context.active = change.active
         _exit(context, change.node)
     context.active = context.configuration.known
-    context.timers, context.internal_queue = (), ()
+    context.timers, context.internal_queue, context.outbox = (), (), ()
 
 
 def count_microstep(context: ExecutionContext) -> None:

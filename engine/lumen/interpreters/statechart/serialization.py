@@ -120,7 +120,7 @@ def _moved(position: Position, later: float) -> Position:
 
 def _timer(timer: Timer) -> dict[str, Any]:
     """A timer in [s], as everything in a snapshot."""
-    id, _, _, event, data, state, kind = timer
+    id, _, _, event, data, state, kind, to = timer
     return {
         "id": id,
         "due": timer.due,
@@ -129,7 +129,7 @@ def _timer(timer: Timer) -> dict[str, Any]:
         "data": plain(data, id),
         "state": state,
         "kind": kind,
-    }
+    } | ({"to": to} if to else {})
 
 
 def _position(position: Position) -> dict[str, Any]:

@@ -13,7 +13,7 @@ class Timer(NamedTuple):
     """Something that happens at `due_ns` [ns], `delay_ns` [ns] after it was set: whole numbers, which add up exactly.
 
     An `after`, an `at` and a `wait` (of a `do`) end with their state, whose path they hold; a `send` ends with
-    `cancel`.
+    `cancel`, and may go `to` another behaviour.
     """
 
     id: str
@@ -23,6 +23,7 @@ class Timer(NamedTuple):
     data: Any = None
     state: str = ""
     kind: Literal["after", "at", "send", "wait"] = "send"
+    to: str = ""
 
     @property
     def due(self) -> float:

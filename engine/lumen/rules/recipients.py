@@ -1,0 +1,60 @@
+"""What behaviours send to one another: to those that they invoke, and to the one that invoked them."""
+
+from collections.abc import Iterator
+
+from lumen.language.actions import PARENT, Send
+from lumen.language.diagnostics import WARNING, Code, did_you_mean
+from lumen.language.machines import MachineDefinition
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.walk import ActionSite, action_sites
+
+UNKNOWN_RECIPIENT = Code(
+    "unknown-recipient", "references", WARNING, "a `send` goes to what the behaviour never invokes"
+)
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report every `send` to an id under which its behaviour invokes nothing."""
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        for site, send in _sends(machine):
+            if send.to != PARENT and report.whole:
+                _known(machine, report, site, send)
+
+
+def recipients(draft: ProjectDraft, name: str, send: Send) -> list[MachineDefinition]:
+    """The behaviours that hear what a behaviour of that name sends; none where they could not be read."""
+    if send.to == PARENT:
+        return [machine for machine in draft.behaviors.values() if name in set(_invoked(machine).values())]
+    behavior = _invoked(draft.behaviors[name]).get(send.to)
+    return [draft.behaviors[behavior]] if behavior in draft.behaviors else []
+
+
+def sent_to(draft: ProjectDraft, machine: MachineDefinition) -> set[str]:
+    """The events that a behaviour is sent by those that invoke it, and by those that it invokes."""
+    return {
+        send.event
+        for name, other in draft.behaviors.items()
+        for _, send in _sends(other)
+        if any(heard is machine for heard in recipients(draft, name, send))
+    }
+
+
+def _invoked(machine: MachineDefinition) -> dict[str, str]:
+    """The behaviours that a behaviour invokes, by their ids."""
+    return {invoke.id: invoke.behavior for state in machine.states.values() for invoke in state.invoke}
+
+
+def _known(machine: MachineDefinition, report: DocumentReport, site: ActionSite, send: Send) -> None:
+    ids = _invoked(machine).keys()
+    if send.to not in ids:
+        hint = did_you_mean(send.to, {*ids, PARENT}, "it can go to")
+        report(UNKNOWN_RECIPIENT, (*site.step.where, "send", "to"), f"nothing is invoked here as `{send.to}`", hint)
+
+
+def _sends(machine: MachineDefinition) -> Iterator[tuple[ActionSite, Send]]:
+    """What goes to other behaviours."""
+    for site in action_sites(machine):
+        if isinstance(site.step.action, Send) and site.step.action.to:
+            yield site, site.step.action
