@@ -40,10 +40,18 @@ class Case:
     def complaints(self) -> list[str]:
         """What can't be carried over of the chart, and of those in other files that it invokes."""
         found = [d.message for d in self.read()[1] if d.severity is Severity.ERROR]
-        for name in re.findall(r'<invoke [^>]*src="file:([^"]*)\.scxml"', self.chart.read_text("utf-8")):
-            for chart in sorted(self.chart.parent.glob(f"{name}.*scxml")):
-                found += _case(chart).complaints()
+        for invoked in self.invoked().values():
+            found += invoked.complaints()
         return found
+
+    def invoked(self) -> "dict[str, Case]":
+        """The charts in other files that it invokes, by the names of the behaviours that they become."""
+        names = re.findall(r'<invoke [^>]*src="file:([^"]*)\.scxml"', self.chart.read_text("utf-8"))
+        return {name: _case(chart) for name in names for chart in sorted(self.chart.parent.glob(f"{name}.*scxml"))}
+
+    def behaviors(self) -> dict[str, dict[str, Any]]:
+        """What it invokes, as the importer makes it."""
+        return {name: data for name, case in self.invoked().items() if (data := case.read()[0])}
 
 
 def machine_of(data: Mapping[str, Any]) -> Machine:

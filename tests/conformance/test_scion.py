@@ -31,7 +31,8 @@ def test_a_case_passes(case: Case) -> None:
     assert data is not None
     assert case.driver is not None
     driver = case.driver["legacySemantics"] if case.name in TABLE["legacy semantics"] else case.driver
-    for expected, found in play(Machine.from_dict(data), driver):
+    pairs = list(play(Machine.from_dict(data, behaviors=case.behaviors()), driver))
+    for expected, found in pairs[case.name in TABLE["answered at once"] :]:
         assert found == expected, diagnostics
 
 
@@ -61,8 +62,9 @@ def test_xstate_carries_a_case_and_changes_nothing(case: Case) -> None:
     data, _ = case.read()
     assert data is not None
     assert case.driver is not None
-    machine = Machine.from_dict(data)
+    machine = Machine.from_dict(data, behaviors=case.behaviors())
     text, _ = write_xstate(machine, dotted(case.name))
-    back = Machine.from_dict(read_xstate(case.name, text.encode(), "chart")[0])
+    carried = read_xstate(case.name, text.encode(), "chart")[0]
+    back = Machine.from_dict(carried, behaviors=case.behaviors())
 
     assert list(play(back, case.driver)) == list(play(machine, case.driver))
