@@ -19,6 +19,8 @@ from tests.rabbitmq import RabbitMQ
 
 PHYSICS = ("lumen.robots.simulation", "mujoco", "dm_control")
 """What lives in MuJoCo's world."""
+SHARED = frozenset(("broker", "secure", "speaker"))
+"""The fixtures that are a broker for several tests."""
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -30,8 +32,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             used += [value for value in parameters(item) if isinstance(value, FunctionType | type)]
             for mark in {mark for thing in used for mark in marks(thing)}:
                 item.add_marker(mark)
-        if item.get_closest_marker("broker"):
-            item.add_marker(pytest.mark.xdist_group("rabbitmq"))  # one worker starts it, for all of them
+        if shared := SHARED.intersection(item.fixturenames):  # one worker starts it, for all of a folder
+            item.add_marker(pytest.mark.xdist_group(f"{min(shared)} {item.path.parent.name}"))
 
 
 def parameters(item: pytest.Function) -> Iterable[Any]:
