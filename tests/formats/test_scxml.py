@@ -126,6 +126,31 @@ def test_nothing_is_dropped_in_silence(body: str, said: list[str]) -> None:
     assert read(body)[1] == said
 
 
+def test_assignments_to_a_part() -> None:
+    data, said = read('<datamodel><data id="v" expr="{}"/></datamodel><state id="a"><onentry>'
+                      '<assign location="v.at.room" expr="2"/>\n<assign location="w.at" expr="2"/>\n'
+                      '<assign location="v[0]" expr="2"/></onentry></state>')  # fmt: skip
+    assert data["states"]["a"]["entry"] == [{"assign": {"v.at.room": 2}}]
+    assert said == [
+        "3: `<assign>` to `w.at`, which stands in no datamodel",
+        "4: `<assign>` to `v[0]`, which is no plain name",
+    ]
+
+
+def test_assignments_to_a_part_are_written() -> None:
+    chart = {
+        "id": "chart",
+        "context": {"v": {"at": {}}, "w": {}},
+        "initial": "a",
+        "states": {"a": {"entry": [{"assign": {"v.at.room": 2}}, {"assign": {"w.x": "context.v.at"}}]}},
+    }
+    text, said = write_scxml(Machine.from_dict(chart), dotted("chart"))
+    assert said == []
+    assert read_scxml("chart.scxml", text.encode(), "chart") == (chart, [])
+    chart["states"] = {"a": {"entry": {"assign": {"v.living-room": 2}}}}
+    assert 'location="v[&quot;living-room&quot;]"' in write_scxml(Machine.from_dict(chart), dotted("chart"))[0]
+
+
 def test_what_only_lumen_has_comes_back() -> None:
     chart = {
         "id": "tour",

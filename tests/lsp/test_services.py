@@ -160,6 +160,16 @@ def test_rename(file: str, text: str, name: str, edits: int, moved: tuple[str, s
     assert name in after.index.names(word.kind, word.scope) or word.kind is NameKind.STATE
 
 
+def test_the_key_in_a_way_that_assign_goes() -> None:
+    """Its definition is the context's, and a rename leaves the rest of the way as it is."""
+    analysis, here = written(TOUR, "{posture: Stand}", "{assign: {visi|tor.name: 1}}")
+    (found,) = definitions(analysis, *here)
+    assert analysis.text(TOUR).split("\n")[found.line - 1][found.column - 1 :].startswith("visitor:")
+    word = renamable(analysis, *here)
+    assert word
+    assert "{assign: {guest.name: 1}}" in applied(analysis, rename(analysis, word, "guest")).text(TOUR)
+
+
 @pytest.mark.parametrize(
     ("file", "text", "name", "reason"),
     [

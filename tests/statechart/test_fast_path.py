@@ -34,6 +34,8 @@ ASSIGNS = [
     {"m": "1 / context.n"},
     {"m": "state.path"},
     {"m": "In('r1.b')"},
+    {"m.k": "context.n"},
+    {"m": {"k": {"x": 1}}, "m.k.x": "context.m.k.x + context.n"},
 ]
 ROWS = st.fixed_dictionaries(
     {},

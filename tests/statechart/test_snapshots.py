@@ -244,3 +244,15 @@ def test_a_snapshot_without_end_is_refused() -> None:
             Interpreter.restore(machine(RICH), broken)
     with pytest.raises(SnapshotError, match="nested too deeply"):
         Interpreter.restore(machine(RICH), {**rich(), "context": {"n": 0, "t": "x", "any": deep}})
+
+
+def test_an_assignment_within_a_map_leaves_the_map_to_those_who_have_it() -> None:
+    deep = {"visitor": {"at": {"room": 1}}}
+    going = {"go": {"actions": {"assign": {"visitor.at.room": "context.visitor.at.room + 1"}}}}
+    chart = machine({"context": deep, "states": {"a": {"on": going, "entry": {"assign": {"visitor.at.floor": 2}}}}})
+    first = initial(chart).snapshot
+    second = step(chart, first, Event("go")).snapshot
+    assert second.context == {"visitor": {"at": {"room": 2, "floor": 2}}}
+    assert first.context == {"visitor": {"at": {"room": 1, "floor": 2}}}
+    assert initial(chart).snapshot.context == first.context
+    assert chart.context == deep == {"visitor": {"at": {"room": 1}}}

@@ -12,16 +12,18 @@ from lumen.statechart import Machine
 
 NAMES = "pqrs"
 EVENTS = {"a": {"const": None}, "b": {"const": None}}
-VALUES = st.sampled_from([0, 1, 2, "(context.n + 1) % 3", "context.m", "2 - context.n"])
+VALUES = st.sampled_from([0, 1, 2, "(context.n + 1) % 3", "context.m", "2 - context.n", "context.map.x"])
+KEYS = {"n": VALUES, "m": VALUES, "map": VALUES.map(lambda value: {"x": value, "y": 0}), "map.x": VALUES}
+READ = st.sampled_from(["n", "m", "map.x", "map.y"])
 
-assigns = st.fixed_dictionaries({"assign": st.dictionaries(st.sampled_from("nm"), VALUES, min_size=1)})
+assigns = st.fixed_dictionaries({"assign": st.fixed_dictionaries({}, optional=KEYS).filter(bool)})
 
 
 @st.composite
 def rows(draw: st.DrawFn, names: str) -> Any:
     row: dict[str, Any] = {"target": draw(st.sampled_from(names))}
     if draw(st.booleans()):
-        row["guard"] = f"context.{draw(st.sampled_from('nm'))} == {draw(st.integers(0, 2))}"
+        row["guard"] = f"context.{draw(READ)} == {draw(st.integers(0, 2))}"
     if draw(st.booleans()):
         row["actions"] = draw(assigns)
     return row
@@ -53,7 +55,11 @@ def walked(machine: Machine) -> StateSpaceSearch:
 @settings(max_examples=60, deadline=None)
 @given(regions(), regions())
 def test_keys_that_can_not_matter_any_more_do_not_matter(one: Any, other: Any) -> None:
-    data = {"type": "parallel", "context": {"n": 0, "m": 1}, "states": {"one": one, "two": other}}
+    data = {
+        "type": "parallel",
+        "context": {"n": 0, "m": 1, "map": {"x": 0, "y": 1}},
+        "states": {"one": one, "two": other},
+    }
     lively = walked(Machine.from_dict(data))
     original = Liveness.of
     Liveness.of = lambda self, configuration: self.keys  # type: ignore[method-assign]

@@ -62,9 +62,17 @@ class PublishBody:
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """`assign`: context keys and their new values, evaluated and stored in the order written."""
+    """`assign`: context keys and their new values, evaluated and stored in the order written.
+
+    A key with dots, such as `visitor.name`, is the way to one key within a map of the context.
+    """
 
     values: Mapping[str, ComputedValue]
+
+
+def context_key(way: str) -> str:
+    """The key of the context that a key of `assign` is, or lies within."""
+    return way.partition(".")[0]
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from lumen.language.actions import (
     Send,
     Template,
     Wait,
+    context_key,
 )
 from lumen.language.commands import VerbCommand
 from lumen.language.diagnostics import ERROR, Code, NodePath
@@ -135,7 +136,7 @@ class Actions:
         return SayText(texts) if texts else None
 
     def _assign(self, body: Mapping[str, Any], where: NodePath) -> Assign | None:
-        known = {k: v for k, v in body.items() if self.expressions.key(k, (*where, k))}
+        known = {k: v for k, v in body.items() if self.expressions.key(context_key(k), (*where, k))}
         values = {k: self.expressions.value(v, (*where, k)) for k, v in known.items()}
         return Assign(values) if values else None
 

@@ -5,6 +5,7 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from typing import Any
 
+from lumen.language.actions import context_key
 from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
@@ -110,8 +111,9 @@ class _Reader:
 
     def named(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[NameUse]:
         """The name that a whole key or value is."""
-        place = self.lines.scalar(path, key=key)
-        text = str(path[-1]) if key else str(_value(self.document.data, path))
+        whole = str(path[-1]) if key else str(_value(self.document.data, path))
+        text = context_key(whole) if kind is NameKind.CONTEXT else whole
+        place = self.lines.part(self.document.place(path, key=key), whole, 0, len(text))
         if place is None or kind is NameKind.FIELD:
             return
         name = _state_at(path) if kind is NameKind.STATE else text

@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template, schema_of
 from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH
-from lumen.language.actions import Template
+from lumen.language.actions import Template, context_key
 from lumen.language.diagnostics import NodePath, Related
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.loading.document_report import DocumentReport
@@ -60,8 +60,17 @@ class _Expressions:
         }
         if isinstance(spot.text, Template):
             return check_template(spot.text.shown, **around)
-        expected = BOOLEAN_SCHEMA if spot.guard else spot.expected or self.context.get(spot.key)
+        expected = BOOLEAN_SCHEMA if spot.guard else spot.expected or self.expected(spot.key)
         return check_expression(spot.text.shown, **around, expected=expected)
+
+    def expected(self, way: str) -> Mapping[str, Any] | None:
+        """The schema of what `assign` calls so; None where nothing is known of it."""
+        key, *within = way.split(".")
+        schema: Any = self.context.get(key)
+        for name in within:
+            properties = schema.get("properties") if isinstance(schema, Mapping) else None
+            schema = properties.get(name) if isinstance(properties, Mapping) else None
+        return schema if isinstance(schema, Mapping) else None
 
     def variables(self, where: NodePath) -> dict[str, Any]:
         """What stands for entries there, each with its schema."""
@@ -86,7 +95,7 @@ class _Expressions:
     def declared(self, spot: ExpressionSite, part: str, finding: ExpressionFinding) -> Iterator[Related]:
         """Where the context keys stand whose types don't fit."""
         if finding.code == TYPE_MISMATCH:
-            keys = [*re.findall(r"\bcontext\.(\w+)", part), *([spot.key] if spot.key else [])]
+            keys = [*re.findall(r"\bcontext\.(\w+)", part), *([context_key(spot.key)] if spot.key else [])]
             for key in dict.fromkeys(k for k in keys if k in self.machine.context):
                 place = self.report.document.place(("context", key), key=True)
                 yield Related(place, f"`{key}` begins with {json.dumps(self.machine.context[key], ensure_ascii=False)}")

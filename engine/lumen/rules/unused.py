@@ -6,6 +6,7 @@ from typing import Any
 
 from lumen.interpreters.expressions import expression_findings
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
+from lumen.language.actions import context_key
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath, has_errors, nearest
 from lumen.language.machines import MachineDefinition
@@ -111,7 +112,7 @@ def _said(report: DocumentReport) -> str:
 
 
 def _context(machine: MachineDefinition, report: DocumentReport, read: set[str]) -> None:
-    written = {key for site in action_sites(machine) for key in getattr(site.step.action, "values", ())}
+    written = {context_key(key) for site in action_sites(machine) for key in getattr(site.step.action, "values", ())}
     for key in report.document.data.get("context") or ():
         if key not in read:
             hint = "use it in an expression, or delete it"

@@ -33,7 +33,7 @@ class ActionSite(NamedTuple):
 
 
 class ExpressionSite(NamedTuple):
-    """An expression or template; `key` is the context key that its value goes to, `guard` whether it is a condition.
+    """An expression or template; `key` is where `assign` puts its value, `guard` whether it is a condition.
 
     `expected` is the JSON Schema that its value has to fit, where neither says so.
     """

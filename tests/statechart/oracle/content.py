@@ -1,6 +1,7 @@
 """Executable content and data, as simply as can be: what actions do to a plain, changeable world."""
 
 from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -105,8 +106,8 @@ class World:
             case Assign(values):
                 before = dict(self.context)
                 try:
-                    for key, value in values.items():
-                        self.store(key, self.value(value, here))
+                    for way, value in values.items():
+                        self.put(way.split("."), self.value(value, here))
                 except (FaultError, ExpressionError):
                     self.context = before
                     raise
@@ -127,6 +128,17 @@ class World:
                 self.commands.append(Start(f"c{self.started}", play))
             case other:
                 raise NotImplementedError(other)
+
+    def put(self, way: list[str], value: Any) -> None:
+        """Set in a copy of all there is, a key within maps or the context's own."""
+        world = deepcopy(self.context)
+        place: Any = world
+        for key in way[:-1]:
+            place = place.get(key)
+            if not isinstance(place, dict):
+                raise FaultError(key)
+        place[way[-1]] = value
+        self.store(way[0], world[way[0]])
 
     def store(self, key: str, value: Any) -> None:
         """A key keeps the type of its first value, if that is not null."""

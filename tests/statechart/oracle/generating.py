@@ -26,6 +26,7 @@ ACTIONS: list[Data] = [
     {"assign": {"n": "context.n + event.data.k"}},
     {"assign": {"n": "context.n + 1", "t": "context.n"}},
     {"assign": {"t": "event.name", "any": {"was": "context.any", "list": ["context.n", 1]}}},
+    {"assign": {"any.was": "context.n", "t": "event.name"}},
     {"assign": {"t": "In(S) ? 'x' : 'y'"}},
     {"if": "context.n < 9", "then": [{"assign": {"n": "context.n + 1"}}, {"raise": "a"}], "else": [{"play": "p"}]},
     {"if": "event.data.k > 0", "then": [{"raise": {"event": "b.c", "data": {"k": "event.data.k - 1"}}}]},

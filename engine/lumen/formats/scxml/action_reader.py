@@ -1,5 +1,6 @@
 """Executable content of SCXML (section 4) as our actions."""
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -18,6 +19,7 @@ from lumen.interpreters.expressions import unparse
 
 PROCESSORS = ("", "scxml", "http://www.w3.org/TR/scxml/#SCXMLEventProcessor", "http://www.w3.org/TR/scxml/")
 _NOT_CONSTANT = object()
+_WAY = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*", re.ASCII)
 
 
 class LeftOutError(Exception):
@@ -87,15 +89,16 @@ class ScxmlActionReader:
         return name
 
     def _assign(self, element: XmlElement) -> ActionData:
-        location = element.get("location")
-        if location not in self.context.keys:
-            where = "stands in no datamodel" if location.isidentifier() else "is no plain name"
+        location = element.get("location").strip()
+        id, *within = location.split(".") if _WAY.fullmatch(location) else [location]
+        if id not in self.context.keys:
+            where = "stands in no datamodel" if within or location.isidentifier() else "is no plain name"
             raise LeftOutError(f"`<assign>` to `{location}`, which {where}", "declare it with `<data>`")
         if element.children:
             raise LeftOutError(f"`<assign>` of XML to `{location}`")
         given = "expr" in element.attributes
         value = self.value(element.get("expr")) if given else quoted(written(element.text))
-        return {"assign": {self.context.keys[location]: value}}
+        return {"assign": {".".join((self.context.keys[id], *within)): value}}
 
     def _script(self, element: XmlElement) -> Iterator[ActionData]:
         """A script that only assigns; raises where it does more."""

@@ -1,6 +1,7 @@
 """Our actions as SCXML's executable content."""
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -25,6 +26,8 @@ from lumen.language.actions import (
     Template,
 )
 
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
 
 class ScxmlActionWriter:
     """Writes the actions of one machine."""
@@ -46,6 +49,11 @@ class ScxmlActionWriter:
         for name in names:
             self.report.foreign(f"`{name}` in an expression", where)
 
+    def _location(self, way: str) -> str:
+        key, *within = way.split(".")
+        fields = (f".{name}" if _IDENTIFIER.fullmatch(name) else f"[{json.dumps(name)}]" for name in within)
+        return "".join((self.vocabulary.keys[key], *fields))
+
     def _one(self, step: PlacedAction) -> list[XmlTag]:
         try:
             return list(self._tags(step))
@@ -61,7 +69,7 @@ class ScxmlActionWriter:
                     message = "this `assign` becomes several: where one fails, those before it have happened"
                     self.report.changed(message, step.where)
                 for key, value in values.items():
-                    yield XmlTag("assign", {"location": self.vocabulary.keys[key], "expr": self.value(value)})
+                    yield XmlTag("assign", {"location": self._location(key), "expr": self.value(value)})
             case Raise(event, None):
                 yield XmlTag("raise", {"event": event})
             case Raise(event, data):

@@ -5,7 +5,18 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.interpreters.expressions import ExpressionError, ExpressionNode, names, parse_expression, split_template
-from lumen.language.actions import Assign, ComputedValue, Expression, If, Parallel, PlacedAction, Raise, Send, Template
+from lumen.language.actions import (
+    Assign,
+    ComputedValue,
+    Expression,
+    If,
+    Parallel,
+    PlacedAction,
+    Raise,
+    Send,
+    Template,
+    context_key,
+)
 from lumen.language.machines import MachineDefinition, State, Transition
 from lumen.language.properties import Property, conditions_of
 
@@ -58,8 +69,10 @@ def of_block(block: tuple[PlacedAction, ...]) -> Iterator[ExpressionUse]:
             case Parallel(branches):
                 yield from of_block(branches)
             case Assign(values):
-                for key, value in values.items():
-                    yield from _of(value, key)
+                for way, value in values.items():
+                    yield from _of(value, context_key(way))
+                    if (key := context_key(way)) != way:  # the rest of the map stays
+                        yield from _of(Expression(f"context.{key}"), key)
             case Send(data=data, delay=delay):
                 yield from _of(data)
                 if isinstance(delay, Template):

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from lumen.interpreters.exploration.expression_uses import of_state, relevant, tree_of
 from lumen.interpreters.expressions import names
 from lumen.interpreters.expressions.tree import Literal
-from lumen.language.actions import Assign, ComputedValue, Expression, PlacedAction
+from lumen.language.actions import Assign, ComputedValue, Expression, PlacedAction, context_key
 from lumen.language.machines import MachineDefinition, State, StateKind
 
 
@@ -93,7 +93,7 @@ def _assigned(block: tuple[PlacedAction, ...]) -> frozenset[str]:
         for step in block
         if isinstance(step.action, Assign)
         for key, value in step.action.values.items()
-        if _certain(value)
+        if context_key(key) == key and _certain(value)
     )
 
 

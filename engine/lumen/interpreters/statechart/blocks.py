@@ -5,6 +5,7 @@ from typing import Any, TypeAlias
 
 from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
 from lumen.interpreters.statechart.action_context import ActionContext, ActionError
+from lumen.interpreters.statechart.nested_values import with_value
 from lumen.language.actions import (
     Action,
     Assign,
@@ -103,6 +104,19 @@ def compile_value(value: ComputedValue) -> Callable[[Scope], Any]:
             return lambda scope: value
 
 
+def compile_assignment(way: str, value: ComputedValue) -> tuple[str, Callable[[Scope], Any]]:
+    """The context key that one key of `assign` gives another value, and what computes that.
+
+    Of a way into a map it is a copy of the map, with the value at the way's end; raises ExpressionError where there
+    is no map on the way.
+    """
+    compute = compile_value(value)
+    key, *within = way.split(".")
+    if not within:
+        return key, compute
+    return key, lambda scope: with_value(scope.context[key], key, within, compute(scope))
+
+
 def _length(delay: float | Template) -> Callable[[ActionContext], float]:
     """How long a delay is [s]; one that is computed and says no time is an error of the action."""
     if not isinstance(delay, Template):
@@ -119,7 +133,7 @@ def _length(delay: float | Template) -> Callable[[ActionContext], float]:
 
 
 def _assign(values: Mapping[str, ComputedValue]) -> ActionFunction:
-    pairs = [(key, compile_value(value)) for key, value in values.items()]
+    pairs = [compile_assignment(way, value) for way, value in values.items()]
 
     def assign(context: ActionContext) -> None:
         before = context.data

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from lumen.interpreters.expressions import ExpressionError, Scope
 from lumen.interpreters.expressions.scope import no_draw
-from lumen.interpreters.statechart.blocks import compile_value
+from lumen.interpreters.statechart.blocks import compile_assignment
 from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
 from lumen.interpreters.statechart.plans import Candidates, Configuration, MicrostepPlan, MicrostepPlanner, make_room
 from lumen.interpreters.statechart.referenced_names import assigned_sources, referenced_names, sources_of
@@ -197,12 +197,13 @@ class FastPaths:
         actions = [step.action for step in (*left, *(s for t in plan.transitions for s in t.actions), *entered)]
         pairs = [pair for action in actions if isinstance(action, Assign) for pair in action.values.items()]
         used = referenced_names(assigned_sources((*left, *entered)))
+        compiled = [compile_assignment(*pair) for pair in pairs]
         checks = self.planner.chart.checks
         return FastOutcome(
             guard,
             plain=not (busy or used & {"event", "state", "In"} or plan.target.eventless)
             and all(isinstance(action, Assign) for action in actions),
-            assigns=self._shared(tuple((key, compile_value(value), checks.get(key)) for key, value in pairs)),
+            assigns=self._shared(tuple((key, value, checks.get(key)) for key, value in compiled)),
             target=plan.target.names,
             exited=self._shared(plan.exited),
             entered=self._shared(plan.entered),
