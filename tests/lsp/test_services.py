@@ -190,6 +190,16 @@ def test_names_that_can_not_be_given(file: str, text: str, name: str, reason: st
         rename(SHIPPED, word, name)
 
 
+def test_the_key_that_says_how_long_is_renamed_with_what_it_reads() -> None:
+    text = SHIPPED.text(TOUR).replace("after: {12s: ", 'after: {"{{ context.battery }}s": ')
+    analysis = Analysis(SHIPPED.root, {**SHIPPED.files, TOUR: text.encode()})
+    word = renamable(analysis, *place(analysis, TOUR, "{{ context.bat|tery }}s"))
+    assert word
+    after = applied(analysis, rename(analysis, word, "charge"))
+    assert not after.diagnostics
+    assert 'after: {"{{ context.charge }}s": ' in after.text(TOUR)
+
+
 @pytest.mark.slow
 def test_every_state_key_phrase_and_route_can_be_renamed() -> None:
     """A sample of all words that can: the project after it says the same, so it has no findings."""

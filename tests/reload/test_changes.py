@@ -91,6 +91,12 @@ CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
         Risk.BEHAVIOR,
     ),
     (
+        "a delay that is computed",
+        [(TOUR, "after: {12s: ", 'after: {"{{ context.battery }}s": ')],
+        ["state `goodbye` waits `{{ context.battery }}s`, not 12 s"],
+        Risk.BEHAVIOR,
+    ),
+    (
         "a guard",
         [(TOUR, "context.mood_tries < 3", "context.mood_tries < 2")],
         ["state `not_understood` goes to `how_are_you` when it is done if `context.mood_tries < 2` now"],

@@ -243,6 +243,31 @@ def test_timers() -> None:
     assert [t.event for t in none.snapshot.timers] == ["after.30s.talk"]
 
 
+def test_computed_timers() -> None:
+    """A computed delay counts as it was; another text is computed in the new context, and no duration sets no timer."""
+    first, longer = "{{ context.tries + 5 }}s", "{{ context.tries + 6 }}s"
+
+    def waiting(*texts: str, tries: int = 0) -> dict[str, Any]:
+        machine = talk({"ask": {**ASK, "after": dict.fromkeys(texts, "dance")}, "dance": DANCE})
+        return {**machine, "context": {**TOUR["context"], "tries": tries}}
+
+    def timers(before: tuple[Machine, Snapshot], data: dict[str, Any]) -> list[tuple[str, float]]:
+        return [(t.event, t.due) for t in planned(before, data).snapshot.timers if t.state == "talk.ask"]
+
+    constant, computed = at(waiting("5s"), ("face", 1.0)), at(waiting(first), ("face", 1.0))
+    assert timers(computed, waiting(first, tries=3)) == [(f"after.{first}.talk.ask", 6.0)]
+    assert timers(computed, waiting(longer)) == [(f"after.{longer}.talk.ask", 7.0)]
+    assert timers(computed, waiting("9s")) == [("after.9s.talk.ask", 10.0)]
+    assert timers(constant, waiting(longer)) == [(f"after.{longer}.talk.ask", 7.0)]
+    assert timers(computed, waiting(first, longer)) == [
+        (f"after.{first}.talk.ask", 6.0),
+        (f"after.{longer}.talk.ask", 14.0),
+    ]
+    broken = planned(computed, waiting("{{ context.tries - 9 }}s"))
+    assert [t.event for t in broken.snapshot.timers] == ["after.30s.talk"]
+    assert deserialize(computed[0], serialize(*computed)).timers == computed[1].timers
+
+
 def test_what_is_new_in_a_state_that_stays_begins() -> None:
     plan = planned(ASKING, talk({"ask": {**ASK, "do": {"say": "well?"}}, "dance": DANCE}))
     assert plan.commands == (Start("d1", Say("well?")),)

@@ -60,7 +60,7 @@ def machines(draw: st.DrawFn) -> Machine:
             if draw(st.integers(0, 3)) == 0:
                 data[key] = {"assign": draw(st.sampled_from(ASSIGNS))}
         if draw(st.integers(0, 3)) == 0:
-            data["after"] = {draw(st.sampled_from(["1s", "9s"])): {"target": "b"}}
+            data["after"] = {draw(st.sampled_from(["1s", "9s", "{{ context.n + 1 }}s"])): {"target": "b"}}
         rare = draw(st.integers(0, 30))
         return data | {0: {"entry": {"log": "x"}}, 1: {"always": {"guard": "context.n > 4", "target": "a"}}}.get(
             rare, {}

@@ -33,10 +33,8 @@ def _cause(taken: Transition, step: Step) -> str:
 
 
 def _trigger(taken: Transition, step: Step) -> str:
-    if taken.delay is not None:
-        return f"after {taken.delay:g} s"
-    if taken.schedule:
-        return f"at {taken.schedule.text}"
+    if taken.timed:
+        return taken.awaited_time
     if taken.event.startswith("done."):
         return "done"
     if taken.event.startswith("error."):

@@ -14,10 +14,8 @@ def invocation(invoke: Invoke) -> str:
 def caption(transition: Transition) -> str:
     """`event [guard]`; an `after` or `at` with its time, `onDone` and `onError` as done and error."""
     event = transition.event
-    if transition.delay is not None:
-        event = f"after {transition.delay:g} s"
-    elif transition.schedule:
-        event = f"at {transition.schedule.text}"
+    if transition.timed:
+        event = transition.awaited_time
     elif transition.exact:
         event = "error" if event.startswith("error.") else "done"
     guard = " ".join(transition.guard.shown.split()) if transition.guard else ""

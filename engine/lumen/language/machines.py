@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any, Literal
 
-from lumen.language.actions import ComputedValue, Expression, PlacedAction
+from lumen.language.actions import ComputedValue, Expression, PlacedAction, Template
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
 from lumen.language.properties import Property
@@ -28,10 +28,10 @@ class StateKind(StrEnum):
 class Transition:
     """A candidate: taken on `event` where its guard holds.
 
-    `event` is a descriptor (`heard`, `error.*`, `*`), empty for `always`; `delay` [s] is set for `after`, `schedule`
-    for `at`. `targets` are the paths of existing states, empty for a targetless transition. `reenter` is SCXML's
-    `type="external"`. Where `exact`, the event's name has to be the whole descriptor, not begin with it: `onDone` of
-    `talk` has nothing to do with `done.state.talk.ask`.
+    `event` is a descriptor (`heard`, `error.*`, `*`), empty for `always`; `delay` is set for `after` ([s], or what says
+    how long when its state is entered), `schedule` for `at`. `targets` are the paths of existing states, empty for a
+    targetless transition. `reenter` is SCXML's `type="external"`. Where `exact`, the event's name has to be the whole
+    descriptor, not begin with it: `onDone` of `talk` has nothing to do with `done.state.talk.ask`.
     """
 
     source: str
@@ -40,7 +40,7 @@ class Transition:
     guard: Expression | None = None
     actions: tuple[PlacedAction, ...] = ()
     reenter: bool = False
-    delay: float | None = None
+    delay: float | Template | None = None
     exact: bool = False
     where: NodePath = field(default=(), compare=False)
     schedule: Schedule | None = None
@@ -49,6 +49,15 @@ class Transition:
     def timed(self) -> bool:
         """Whether a timer of its state selects it, and no event's name."""
         return self.delay is not None or self.schedule is not None
+
+    @property
+    def awaited_time(self) -> str:
+        """`after 20 s` or `at 18:00`, empty where no timer selects it."""
+        if self.schedule:
+            return f"at {self.schedule.text}"
+        if isinstance(self.delay, Template):
+            return f"after {self.delay.shown}"
+        return "" if self.delay is None else f"after {self.delay:g} s"
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,6 +70,12 @@ class Actions:
             self.report(BAD_DURATION, where, f"`{text}` is not a duration", hint=DURATION_HINT, key=key)
         return length
 
+    def delay(self, text: Any, where: NodePath, *, key: bool = False) -> float | Template | None:
+        """[s], or what computes it; None (and reported) where the text is neither."""
+        if isinstance(text, str) and "{{" in text:
+            return self.expressions.template(text, where)
+        return self.duration(text, where, key=key)
+
     def _verb(self, verb: str, data: Any, where: NodePath) -> Action | None:
         if read := COMPUTED_READERS.get(verb):
             return read(self, data, where)
@@ -143,17 +149,12 @@ class Actions:
     def _send(self, body: Any, where: NodePath) -> Send | None:
         event, data = _event(body)
         options = {} if isinstance(body, str) else body
-        delay = self._delay(options["delay"], (*where, "delay")) if "delay" in options else 0.0
+        delay = self.delay(options["delay"], (*where, "delay")) if "delay" in options else 0.0
         if delay is None:
             return None
         return Send(
             event, self.expressions.value(data, (*where, "data")), delay, options.get("id", ""), options.get("to", "")
         )
-
-    def _delay(self, text: Any, where: NodePath) -> float | Template | None:
-        if isinstance(text, str) and "{{" in text:
-            return self.expressions.template(text, where)
-        return self.duration(text, where)
 
     def _if(self, data: Mapping[str, Any], where: NodePath, *, do: bool) -> If | None:
         guard = self.expressions.expression(data["if"], (*where, "if"))

@@ -133,8 +133,11 @@ def cause_of(file: str, finding: ExpressionFinding) -> str:
 
 
 def place_within(document: Document, path: NodePath, source: str, offset: int, length: int) -> Place:
-    """The place of some characters of the text at `path`, however it is written; else of the whole text."""
-    place = document.place(path)
+    """The place of some characters of the text at `path`, however it is written; else of the whole text.
+
+    A text that computes how long an `after` waits is the last of its path: it is a key.
+    """
+    place = document.place(path, key=path[-2:] == ("after", source))
     lines = document.text.splitlines()
     if place.line > len(lines):
         return place

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from lumen.language.actions import Template
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.hours import Schedule
 from lumen.language.machines import StateKind, Transition
@@ -76,9 +77,10 @@ class TransitionReader:
 
     def _after(self, entry: OutlinedState, body: Mapping[str, Any], where: NodePath) -> Iterator[Transition]:
         for text, rows in body.items():
-            delay = self.actions.duration(text, (*where, text), key=True)
+            delay = self.actions.delay(text, (*where, text), key=True)
             if delay is not None:
-                event = f"after.{text.replace(' ', '')}.{entry.name}"
+                length = text if isinstance(delay, Template) else text.replace(" ", "")
+                event = f"after.{length}.{entry.name}"
                 yield from self._candidates(entry, rows, (*where, text), event=event, exact=True, delay=delay)
 
     def _at(self, entry: OutlinedState, body: Mapping[str, Any], where: NodePath) -> Iterator[Transition]:
@@ -96,7 +98,7 @@ class TransitionReader:
         *,
         event: str = "",
         exact: bool = False,
-        delay: float | None = None,
+        delay: float | Template | None = None,
         schedule: Schedule | None = None,
     ) -> Iterator[Transition]:
         leaves = bool(event)

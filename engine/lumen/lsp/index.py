@@ -103,6 +103,8 @@ class _Reader:
         for path, span in self.document.spans.items():
             if span.key and isinstance(path[-1], str) and (kind := key_kind(self.kind, path)):
                 yield from self.named(kind, path, key=True)
+            if span.key and path[-2:-1] == ("after",):
+                yield from self.parts(path, str(path[-1]), in_template(str(path[-1])), key=True)
             value = _value(self.document.data, path)
             if isinstance(value, str) and value and (kind := value_kind(self.kind, path)):
                 yield from self.valued(kind, path, value)
@@ -133,10 +135,10 @@ class _Reader:
             case _:
                 yield from self.named(kind, path)
 
-    def parts(self, path: NodePath, value: str, parts: Iterator[NameInText]) -> Iterator[NameUse]:
-        place = self.document.place(path)
+    def parts(self, path: NodePath, value: str, parts: Iterator[NameInText], *, key: bool = False) -> Iterator[NameUse]:
+        place = self.document.place(path, key=key)
         for part in parts:
-            if part.kind is NameKind.STATE:
+            if part.kind is NameKind.STATE and not key:
                 yield from self.segments(path, value, part.text, part.offset, self._named_state)
             elif here := self.lines.part(place, value, part.offset, len(part.text)):
                 yield self.use(part.kind, part.text, part.text, here)

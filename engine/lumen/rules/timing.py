@@ -23,7 +23,7 @@ def check(draft: ProjectDraft) -> None:
     """Report an `after` that always comes before the `do` beside it is done."""
     for name, machine in draft.behaviors.items():
         for state in machine.states.values():
-            if state.do and any(t.delay is not None for t in state.transitions):
+            if state.do and any(isinstance(t.delay, float) for t in state.transitions):
                 _cut(machine, state, draft.report("behaviors", name), draft.motions)
 
 
@@ -33,7 +33,7 @@ def _cut(
     length = duration(state.do, motions)
     for transition in state.transitions:
         delay = transition.delay
-        if delay is None or transition.guard or not transition.targets or length <= delay + 0.05:
+        if not isinstance(delay, float) or transition.guard or not transition.targets or length <= delay + 0.05:
             continue
         texts = [step for step in state.do if isinstance(step.action, SayText) and duration((step,), motions) > delay]
         what = "saying this" if texts else "its `do`"

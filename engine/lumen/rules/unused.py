@@ -179,6 +179,7 @@ def _played(data: Any) -> set[str]:
             if isinstance(item.get("play"), str):
                 found.add(item["play"])
             waiting.extend(item.values())
+            waiting.extend(key for key in item if "{{" in str(key))
         elif isinstance(item, list):
             waiting.extend(item)
     return found
@@ -216,7 +217,7 @@ def _alike(names: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 def _texts(data: Any) -> Iterator[str]:
-    """Every text in plain data, keys left out."""
+    """Every text in plain data; of keys those that compute how long an `after` waits."""
     waiting = [data]
     while waiting:
         item = waiting.pop()
@@ -224,5 +225,6 @@ def _texts(data: Any) -> Iterator[str]:
             yield item
         elif isinstance(item, Mapping):
             waiting.extend(item.values())
+            waiting.extend(key for key in item if "{{" in str(key))
         elif isinstance(item, list):
             waiting.extend(item)

@@ -63,6 +63,8 @@ def expression_sites(machine: MachineDefinition) -> Iterator[ExpressionSite]:
             yield from _input(invoke, machine.invoked.get(invoke.behavior))
         if state.for_each:
             yield ExpressionSite(state.for_each.each, None, expected={"type": "array"})
+        delays = {t.event: t.delay for t in state.transitions if isinstance(t.delay, Template)}
+        yield from (ExpressionSite(delay, None) for delay in delays.values())
         for transition in state.transitions:
             if transition.guard and not _made(transition.guard.where):
                 yield ExpressionSite(transition.guard, transition, guard=True)

@@ -88,10 +88,8 @@ def described(machine: MachineDefinition, transition: Transition) -> str:
 
 def trigger(transition: Transition) -> str:
     """What a transition waits for, in words."""
-    if transition.delay is not None:
-        return f"after {transition.delay:g} s"
-    if transition.schedule:
-        return f"at {transition.schedule.text}"
+    if transition.timed:
+        return transition.awaited_time
     if transition.exact:
         return "done" if transition.event.startswith("done.") else "failed"
     return f"on `{transition.event}`" if transition.event else "always"

@@ -132,7 +132,7 @@ class Oracle(Sets):
         for state in states:
             world.configuration.append(state)
             self.entered += [state.name] if state.path else []
-            for event, delay in {t.event: t.delay for t in state.transitions if t.delay is not None}.items():
+            for event, delay in {t.event: t.delay for t in state.transitions if isinstance(t.delay, float)}.items():
                 world.timers.append(Waiting(event, world.at + delay, None, state.path, event))
             world.execute(state.entry, state)
             if state.kind is StateKind.FINAL:

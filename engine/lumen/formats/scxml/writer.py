@@ -13,6 +13,7 @@ from lumen.formats.ecmascript.script_parser import is_reserved
 from lumen.formats.scxml.action_writer import ScxmlActionWriter
 from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE, SCXML_INVOKE_TYPE, SCXML_NAMESPACE
 from lumen.formats.scxml.xml_tags import XmlTag
+from lumen.language.actions import Template
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 
@@ -134,7 +135,7 @@ class _ScxmlWriter:
             ours["resume"] = state.resume
         if ours:
             yield _json("state", ours)
-        timers = {t.event: t.delay for t in state.transitions if t.delay is not None}
+        timers = {t.event: t.delay for t in state.transitions if isinstance(t.delay, float)}
         for event, delay in timers.items():
             name = self._event(state, event)
             send = XmlTag("send", {"event": name, "id": name, "delay": duration(delay * 1000)})
@@ -170,6 +171,10 @@ class _ScxmlWriter:
         for transition in state.transitions:
             if transition.schedule:
                 message = f"`at: {transition.schedule.text}` is left out: SCXML knows no time of day"
+                self.report.lost(message, transition.where)
+                continue
+            if isinstance(transition.delay, Template):
+                message = f"`after: {transition.delay.shown}` is left out: its delay is computed"
                 self.report.lost(message, transition.where)
                 continue
             attributes = {"event": self._event(state, transition.event) if transition.exact else transition.event}

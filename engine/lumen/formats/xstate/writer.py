@@ -10,7 +10,7 @@ from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSI
 from lumen.formats.xstate.descriptors import EventDescriptors
 from lumen.interpreters.expressions import ExpressionError, parse_expression
 from lumen.interpreters.expressions.tree import Literal
-from lumen.language.actions import ComputedValue, Expression, PlacedAction
+from lumen.language.actions import ComputedValue, Expression, PlacedAction, Template
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import Answer, Invoke, MachineDefinition, State, StateKind, Transition
 
@@ -130,7 +130,10 @@ class _XStateWriter:
             if transition.schedule:
                 message = f"`at: {transition.schedule.text}` is left out: XState knows no time of day"
                 self.report.lost(message, transition.where)
-            if transition.delay is not None:
+            if isinstance(transition.delay, Template):
+                message = f"`after: {transition.delay.shown}` is left out: its delay is computed"
+                self.report.lost(message, transition.where)
+            elif transition.delay is not None:
                 length = round(transition.delay * 1000, 6)
                 key = f"{int(length)}" if length == int(length) else f"{length}"
                 data.setdefault(key, []).append(self._row(state, transition))

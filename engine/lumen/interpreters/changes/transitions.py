@@ -6,6 +6,7 @@ from dataclasses import replace
 from lumen.interpreters.changes.actions import block_changes, paired
 from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.formatting import code, names, seconds
+from lumen.language.actions import Template
 from lumen.language.machines import State, Transition
 
 PathMapping = Callable[[tuple[str, ...]], tuple[str, ...]]
@@ -82,6 +83,8 @@ def _by_trigger(transitions: list[Transition]) -> dict[str, list[Transition]]:
 def _trigger(transition: Transition) -> str:
     """When it is taken, in words that do not depend on what the state is called."""
     event = transition.event
+    if isinstance(transition.delay, Template):
+        return f"after {code(transition.delay.shown)}"
     if transition.delay is not None:
         return f"after {seconds(transition.delay)}"
     if transition.schedule:

@@ -43,9 +43,10 @@ def property_trees(properties: Iterable[Property]) -> Iterator[ExpressionNode]:
 
 
 def of_transition(transition: Transition) -> Iterator[ExpressionUse]:
-    """What a transition reads: its guard, and what its actions do."""
+    """What a transition reads: its guard, how long it waits, and what its actions do."""
     if transition.guard:
         yield from _of(transition.guard)
+    yield from _of_delay(transition.delay)
     yield from of_block(transition.actions)
 
 
@@ -75,9 +76,7 @@ def of_block(block: tuple[PlacedAction, ...]) -> Iterator[ExpressionUse]:
                         yield from _of(Expression(f"context.{key}"), key)
             case Send(data=data, delay=delay):
                 yield from _of(data)
-                if isinstance(delay, Template):
-                    holes = (part for part in split_template(delay.text) if not isinstance(part, str))
-                    yield from (use for hole in holes for use in _of(Expression(hole.source)))
+                yield from _of_delay(delay)
             case Raise(data=data):
                 yield from _of(data)
 
@@ -91,6 +90,12 @@ def relevant(machine: MachineDefinition) -> frozenset[str]:
         if read <= found:
             return frozenset(found)
         found |= read
+
+
+def _of_delay(delay: float | Template | None) -> Iterator[ExpressionUse]:
+    if isinstance(delay, Template):
+        holes = (part for part in split_template(delay.text) if not isinstance(part, str))
+        yield from (use for hole in holes for use in _of(Expression(hole.source)))
 
 
 def _of(value: ComputedValue, key: str = "") -> Iterator[ExpressionUse]:

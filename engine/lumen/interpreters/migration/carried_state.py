@@ -7,12 +7,14 @@ from typing import Any, NamedTuple
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.migration.rounds import carried_round
 from lumen.interpreters.statechart.chart import Chart, StateNode
+from lumen.interpreters.statechart.computed_timers import computed_delay
 from lumen.interpreters.statechart.execution_context import ExecutionContext
 from lumen.interpreters.statechart.history import History
 from lumen.interpreters.statechart.schedule_timers import schedule_timer
 from lumen.interpreters.statechart.state_sets import EntrySet, StateSets
 from lumen.interpreters.statechart.type_checks import fits, type_name
 from lumen.interpreters.statechart.values import Halted, Timer
+from lumen.language.actions import Template
 from lumen.language.machines import StateKind
 from lumen.language.nanoseconds import nanoseconds
 
@@ -57,20 +59,29 @@ def timers(
 ) -> tuple[Timer, ...]:
     """The timers that go on, in their order, each with its deadline; what is new in a state's `after` or `at` is set.
 
-    Where the delay of an `after` was changed, it counts from when the old one was set.
+    Where the delay of an `after` was changed, it counts from when the old one was set. One that is computed is so again
+    where it is new or its text was changed, in the new machine's `context`.
     """
     images = {node.path: image for node, image in kept.items()}
     going: dict[int, Timer] = {}
     fresh: list[Timer] = []
     for node, image in kept.items():
         pending = {i: t for i, t in enumerate(timers) if t.kind == "after" and t.state == node.path}
-        for event, delay, known in _afters(node, image):
-            place = next((i for i, t in pending.items() if not known or t.delay_ns == delay), None)
-            if place is not None:
-                timer = pending.pop(place)
-                due = timer.due_ns if known else timer.due_ns - timer.delay_ns + delay
+        were = _delays(node)
+        for event, said, known in _afters(node, image):
+            place = next((i for i, t in pending.items() if not known or were.get(t.event) == said), None)
+            timer = None if place is None else pending.pop(place)
+            if known:
+                if place is not None and timer:
+                    going[place] = timer._replace(id=event, event=event, state=image.path)
+                continue
+            delay = said if isinstance(said, int) else computed_delay(context, image, image.computed[event])
+            if delay is None:
+                continue
+            if place is not None and timer:
+                due = timer.due_ns - timer.delay_ns + delay
                 going[place] = Timer(event, due, delay, event, None, image.path, "after")
-            elif not known:
+            else:
                 fresh.append(Timer(event, nanoseconds(context.at) + delay, delay, event, None, image.path, "after"))
         awaited = {node.schedules[t.event]: i for i, t in enumerate(timers) if t.kind == "at" and t.state == node.path}
         for event, schedule in image.schedules.items():
@@ -84,11 +95,16 @@ def timers(
     return (*(timer for _, timer in sorted(going.items())), *fresh)
 
 
-def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int, bool]]:
-    """The events and delays [ns] of a new state's `after`, those first (True) that the old one had."""
-    before = [delay for _, delay in node.afters]
+def _delays(node: StateNode) -> dict[str, int | Template]:
+    """The delays of a state's `after` by their events: [ns], or what computes them."""
+    return {**dict(node.afters), **{event: after.delay for event, after in node.computed.items()}}
+
+
+def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int | Template, bool]]:
+    """The events and delays of a new state's `after`, those first (True) that the old one had."""
+    before = list(_delays(node).values())
     found = []
-    for event, delay in image.afters:
+    for event, delay in _delays(image).items():
         if known := delay in before:
             before.remove(delay)
         found.append((event, delay, known))

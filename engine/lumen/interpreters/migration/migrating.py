@@ -109,7 +109,6 @@ class _Migration:
             context=data,
             at=before.at,
             language=language,
-            timers=carried_state.timers(before.timers, kept, before),
             doing={image.path: doing[node.path] for node, image in kept.items() if node.path in doing},
             halted=carried_state.halted(before.activities.halted, self.old.chart, self.new.chart),
             history=carried_state.history(before.history, self.new.chart, situation.identity),
@@ -123,6 +122,7 @@ class _Migration:
         after = ExecutionContext.of(self.new, snapshot, None, before.at, self.invocations)
         after.is_invoked, after.internal_queue = before.is_invoked, before.internal_queue
         after.for_parent, after.outbox = before.for_parent, before.outbox
+        after.timers = carried_state.timers(before.timers, kept, after)
         beginnings = (self._beginning(node, image) for node, image in kept.items())
         after.beginnings = tuple(found for found in beginnings if found.invokes or found.do)
         return after, notes

@@ -47,7 +47,7 @@ def compile_action(action: Action) -> ActionFunction:
             body = compile_value(data)
             return lambda context: context.raise_event(Event(event, body(context.scope()), context.at))
         case Send(event, data, delay, id, to):
-            body, length = compile_value(data), _length(delay)
+            body, length = compile_value(data), compile_delay(delay)
             return lambda context: context.send(id, length(context), event, body(context.scope()), to)
         case CancelSend(id):
             return lambda context: context.cancel_send(id)
@@ -117,7 +117,7 @@ def compile_assignment(way: str, value: ComputedValue) -> tuple[str, Callable[[S
     return key, lambda scope: with_value(scope.context[key], key, within, compute(scope))
 
 
-def _length(delay: float | Template) -> Callable[[ActionContext], float]:
+def compile_delay(delay: float | Template) -> Callable[[ActionContext], float]:
     """How long a delay is [s]; one that is computed and says no time is an error of the action."""
     if not isinstance(delay, Template):
         return lambda context: delay

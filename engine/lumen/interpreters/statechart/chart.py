@@ -4,9 +4,11 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions import Scope, compile_guard
-from lumen.interpreters.statechart.blocks import CompiledBlock, compile_block, compile_value
+from lumen.interpreters.statechart.action_context import ActionContext
+from lumen.interpreters.statechart.blocks import CompiledBlock, compile_block, compile_delay, compile_value
 from lumen.interpreters.statechart.do_actions import CompiledAction, compile_do
 from lumen.interpreters.statechart.type_checks import type_checks
+from lumen.language.actions import Template
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
 from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
@@ -24,15 +26,24 @@ class CompiledInvoke(NamedTuple):
     where: NodePath
 
 
+class ComputedAfter(NamedTuple):
+    """An `after` whose delay is computed when its state is entered; `length` gives it in [s]."""
+
+    delay: Template
+    length: Callable[[ActionContext], float]
+    where: NodePath
+
+
 class StateNode:
     """A state, with its neighbours at hand; compared by identity. `index` is its place in document order.
 
-    `afters` are the events of its `after`, each with its delay [ns]; `schedules` those of its `at`.
+    `afters` are the events of its `after`, each with its delay [ns], but for the `computed` ones; `schedules` those of
+    its `at`.
     """
 
     __slots__ = (
-        "afters", "ancestors", "children", "do", "entry", "exit", "histories", "index", "initial", "invokes",
-        "kind", "name", "output", "parent", "path", "schedules", "state", "transitions", "views",
+        "afters", "ancestors", "children", "computed", "do", "entry", "exit", "histories", "index", "initial",
+        "invokes", "kind", "name", "output", "parent", "path", "schedules", "state", "transitions", "views",
     )  # fmt: skip
 
     def __init__(self, state: State | None, index: int, parent: "StateNode | None") -> None:
@@ -48,6 +59,7 @@ class StateNode:
         self.initial: tuple[StateNode, ...] = ()
         self.transitions: tuple[CompiledTransition, ...] = ()
         self.afters: tuple[tuple[str, int], ...] = ()
+        self.computed: Mapping[str, ComputedAfter] = {}
         self.schedules: Mapping[str, Schedule] = {}
         self.entry: CompiledBlock = compile_block(state.entry) if state else ()
         self.exit: CompiledBlock = compile_block(state.exit) if state else ()
@@ -59,7 +71,12 @@ class StateNode:
     @property
     def busy(self) -> bool:
         """Whether it has anything to be started when it is entered, or ended when it is left."""
-        return bool(self.do or self.invokes or self.afters or self.schedules)
+        return bool(self.do or self.invokes or self.timed)
+
+    @property
+    def timed(self) -> bool:
+        """Whether it has timers of its own."""
+        return bool(self.afters or self.computed or self.schedules)
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or 'root'}>"
@@ -135,8 +152,13 @@ class Chart:
             CompiledTransition(t, node, tuple(self.nodes[path] for path in t.targets)) for t in node.state.transitions
         )
         node.afters = tuple(
-            {t.event: nanoseconds(t.delay) for t in node.state.transitions if t.delay is not None}.items()
+            {t.event: nanoseconds(t.delay) for t in node.state.transitions if isinstance(t.delay, float)}.items()
         )
+        node.computed = {
+            t.event: ComputedAfter(t.delay, compile_delay(t.delay), t.delay.where)
+            for t in node.state.transitions
+            if isinstance(t.delay, Template)
+        }
         node.schedules = {t.event: t.schedule for t in node.state.transitions if t.schedule}
 
 

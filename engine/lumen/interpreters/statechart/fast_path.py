@@ -237,7 +237,7 @@ def _after_timers(plan: MicrostepPlan) -> AfterTimers | None:
 def _is_busy(change: StateChange) -> bool:
     """Whether more is begun or ended there than `after` timers."""
     node = change.node
-    return bool(node.do or node.invokes or node.schedules or change.done)
+    return bool(node.do or node.invokes or node.schedules or node.computed or change.done)
 
 
 def _state(node: StateNode) -> State:

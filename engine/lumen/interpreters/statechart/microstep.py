@@ -7,6 +7,7 @@ from lumen.interpreters.expressions import ExpressionError
 from lumen.interpreters.statechart.action_context import ActionError
 from lumen.interpreters.statechart.blocks import CompiledBlock
 from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
+from lumen.interpreters.statechart.computed_timers import begin_computed
 from lumen.interpreters.statechart.execution_context import Beginning, ExecutionContext
 from lumen.interpreters.statechart.plans import Candidates, MicrostepPlan
 from lumen.interpreters.statechart.schedule_timers import begin_schedules
@@ -112,7 +113,7 @@ def _exit(context: ExecutionContext, node: StateNode) -> None:
     if node.path in context.activities.positions:
         context.activities.halt(node, context.at)
         context.activities.cancel(context, node.path)
-    if node.afters or node.schedules:
+    if node.timed:
         context.timers = tuple(t for t in context.timers if t.kind not in ("after", "at") or t.state != node.path)
     if node.invokes:
         context.invocations.cancel(context, node)
@@ -134,6 +135,8 @@ def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ..
         begin_schedules(context, node)
     if node.entry:
         _execute(context, node.entry, node)
+    if node.computed:
+        begin_computed(context, node)
     if node.do or node.invokes:
         halted = context.activities.forget(node.path)
         halted = halted if node.path in restored else None
