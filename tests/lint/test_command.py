@@ -29,7 +29,8 @@ def edit(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new))
 
 
-def test_a_sound_project(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_sound_project(project: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(Path(__file__).parent)  # from where its path is shortest in full
     assert main(["lint", str(project)]) == 0
     assert capsys.readouterr().out == f"nothing wrong; 10 files checked in {project}\n"
 
@@ -38,7 +39,10 @@ def test_the_shipped_project_has_no_findings() -> None:
     assert main(["lint", str(ENGINE.parent), "--strict"]) == 0
 
 
-def test_an_error_with_its_excerpt(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_error_with_its_excerpt(
+    project: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(Path(__file__).parent)  # from where its path is shortest in full
     edit(project / "behaviors/tour.yaml", "onError: idle", "onError: idel")
     assert main(["lint", str(project)]) == 1
     shown = capsys.readouterr().out.splitlines()

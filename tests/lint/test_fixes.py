@@ -171,7 +171,10 @@ def project(tmp_path: Path) -> Path:
     return tmp_path / "p"
 
 
-def test_diff_shows_and_changes_nothing(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_diff_shows_and_changes_nothing(
+    project: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(Path(__file__).parent)  # from where its path is shortest in full
     before = (project / TOUR).read_bytes()
     assert main(["lint", str(project), "--diff"]) == 1
     shown = capsys.readouterr().out
