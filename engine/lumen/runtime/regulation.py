@@ -1,7 +1,6 @@
 """Controllers that are on, as far as they move no joint: fed by messages and the context, they speak for themselves."""
 
-from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.regulation import Regulator, RouteField
@@ -10,8 +9,8 @@ from lumen.language.commands import Command, Start, Track, Volume
 from lumen.language.controllers import MessageBinding
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.ports import Bus, Message
-from lumen.runtime.tracking import MAX_WAITING_MESSAGES
+from lumen.ports import Bus
+from lumen.runtime.route_inbox import RouteInbox
 
 
 class Regulated(NamedTuple):
@@ -29,10 +28,8 @@ class Regulation:
     """
 
     def __init__(self, project: Project, bus: Bus) -> None:
-        self._bus = bus
-        self._waiting: deque[tuple[str, Message]] = deque(maxlen=MAX_WAITING_MESSAGES)
+        self._inbox = RouteInbox(bus)
         self._on: dict[str, Regulator] = {}
-        self._undo: dict[tuple[str, str], Callable[[], None]] = {}
         self._project = project
         self._volumes = 0
         self.reload(project)
@@ -61,8 +58,7 @@ class Regulation:
 
     def tick(self, now: float, snapshot: Snapshot) -> Regulated:
         """Take what has come in; what is to be told at `now` [s]."""
-        while self._waiting:
-            route, message = self._waiting.popleft()
+        for route, message in self._inbox.taken():
             for regulator in self._on.values():
                 regulator.take(route, message.body)
         commands: list[Command] = []
@@ -79,17 +75,8 @@ class Regulation:
         return Regulated(tuple(commands), tuple(events))
 
     def _listen(self) -> None:
-        """Subscribe to the routes of the controllers that are on, and to no others."""
-        names = {name for regulator in self._on.values() for name in regulator.routes}
-        routes = {name: route for name in names if (route := self._project.routes.get(name))}
-        wanted = {(route.key_for(self._project.robot), name) for name, route in routes.items()}
-        for key, name in sorted(wanted - self._undo.keys()):
-            self._undo[key, name] = self._bus.subscribe(key, self._receiver(name))
-        for gone in sorted(self._undo.keys() - wanted):
-            self._undo.pop(gone)()
-
-    def _receiver(self, route: str) -> Callable[[Message], None]:
-        return lambda message: self._waiting.append((route, message))
+        """Hear the routes of the controllers that are on."""
+        self._inbox.listen(self._project, {name for regulator in self._on.values() for name in regulator.routes})
 
 
 def whole_fields(project: Project) -> frozenset[RouteField]:

@@ -1,16 +1,15 @@
 """Lumen Motion: controllers that follow what is seen, switched on and off by the behaviour."""
 
-from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, Protocol
 
 from lumen.interpreters.tracking import Tracker
 from lumen.language.commands import Track
 from lumen.language.projects import Project
-from lumen.ports import Aim, Bus, Message, Robot
+from lumen.ports import Aim, Bus, Robot
+from lumen.runtime.route_inbox import RouteInbox
 
 POSE_ROUTE = "joint"
-MAX_WAITING_MESSAGES = 1000
 
 
 class TrackingService(Protocol):
@@ -34,10 +33,8 @@ class LocalTracking:
     """
 
     def __init__(self, project: Project, robot: Robot, bus: Bus) -> None:
-        self._robot, self._bus = robot, bus
-        self._waiting: deque[tuple[str, Message]] = deque(maxlen=MAX_WAITING_MESSAGES)
+        self._robot, self._inbox = robot, RouteInbox(bus)
         self._trackers: dict[str, Tracker] = {}
-        self._undo: dict[tuple[str, str], Callable[[], None]] = {}
         self._project = project
         self.reload(project)
 
@@ -69,8 +66,7 @@ class LocalTracking:
     def tick(self, now: float) -> None:
         """Take what has come in, and aim."""
         seen: dict[str, dict[str, float]] = {}
-        while self._waiting:
-            route, message = self._waiting.popleft()
+        for route, message in self._inbox.taken():
             for name, tracker in self._trackers.items():
                 if route == POSE_ROUTE and (angles := _angles(message.body, tracker.joints)):
                     tracker.pose(_time(message.body, now), angles, now=now)
@@ -84,17 +80,9 @@ class LocalTracking:
                 self._robot.start("", Aim(target, tracker.controller.tracking.speed))
 
     def _listen(self) -> None:
-        """Subscribe to the poses and to the routes of all controllers."""
-        names = {POSE_ROUTE} | {b.route for c in self._project.controllers.values() for b in c.input_bindings}
-        routes = {name: route for name in sorted(names) if (route := self._project.routes.get(name))}
-        wanted = {(route.key_for(self._project.robot), name) for name, route in routes.items()}
-        for key, name in sorted(wanted - self._undo.keys()):
-            self._undo[key, name] = self._bus.subscribe(key, self._receiver(name))
-        for gone in sorted(self._undo.keys() - wanted):
-            self._undo.pop(gone)()
-
-    def _receiver(self, route: str) -> Callable[[Message], None]:
-        return lambda message: self._waiting.append((route, message))
+        """Hear the poses and the routes of all controllers."""
+        routes = {b.route for c in self._project.controllers.values() for b in c.input_bindings}
+        self._inbox.listen(self._project, {POSE_ROUTE} | routes)
 
 
 def _angles(body: Any, joints: tuple[str, ...]) -> dict[str, float]:
