@@ -2,6 +2,8 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
+# Runs what uses the Debian packages that were unpacked where nobody is root.
+WITH := sh scripts/with_packages.sh
 STORY ?= visitor
 SPEED ?= 4
 TESTS ?= tests
@@ -12,7 +14,7 @@ LEFT_OUT := soak or slow or broker or physics or npm
 # Where Python may not write what it has compiled, each of the processes that tests start compiles everything again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help run setup quick test soak broker check packages clean
+.PHONY: help run setup quick test soak broker check docs packages clean
 
 help:
 	@echo "make run      a visitor meets the simulated robot (STORY=visitor, SPEED=1|4|max)"
@@ -21,6 +23,7 @@ help:
 	@echo "make test     everything, with style, types and floors"
 	@echo "make broker   a private RabbitMQ on loopback, installed where it is missing"
 	@echo "make check    style, types and floors only"
+	@echo "make docs     the documentation as a site, build/docs/index.html; what it shows is run and compared"
 	@echo "make soak     the randomised tests with all their examples: hours"
 	@echo "make packages the Debian packages among that, where they are missing"
 	@echo "make clean    delete what all these made"
@@ -29,7 +32,7 @@ run: .venv/run
 	@$(BIN)/lumen run --story $(STORY) --speed $(SPEED)
 
 setup: .venv/test packages
-	@$(BIN)/python scripts/fetch.py
+	@$(WITH) $(BIN)/python scripts/fetch.py
 
 quick: .venv/test
 	@$(BIN)/python scripts/nearest.py $(TESTS) | xargs $(BIN)/python -m pytest -n 2 --dist loadfile \
@@ -37,14 +40,14 @@ quick: .venv/test
 
 test: setup check
 	@$(BIN)/lumen lint --strict
-	@$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m "not soak"
+	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -rs -m "not soak"
 
 soak: setup check
-	@$(BIN)/python -m pytest -m soak -s
+	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -rs -m soak -p tests.soaking
 
 broker: .venv/test
 	@echo rabbitmq-server | sh scripts/packages.sh /dev/stdin
-	@$(BIN)/python -m tests.rabbitmq
+	@$(WITH) $(BIN)/python -m tests.rabbitmq
 
 check: .venv/test
 	@$(BIN)/ruff check .
@@ -52,14 +55,19 @@ check: .venv/test
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports --no-logo
 
-packages:
-	@sh scripts/packages.sh packages.txt
-	@command -v npm >/dev/null || echo npm | sh scripts/packages.sh /dev/stdin
+docs: .venv/docs
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+	@$(BIN)/python scripts/documented.py
+	@echo "open build/docs/index.html"
 
-.venv/run: requirements.txt pyproject.toml
+packages:
+	@(cat packages.txt; command -v npm >/dev/null || echo npm) | sh scripts/packages.sh /dev/stdin
+
+.venv/run: requirements-core.txt requirements.txt requirements-no-deps.txt pyproject.toml
 	@echo "setting up .venv (once, a minute or two) …"
 	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements.txt
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --require-hashes -r requirements-no-deps.txt
 	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
 	@touch $@
 
@@ -68,5 +76,10 @@ packages:
 		-r requirements-test.txt
 	@touch $@
 
+.venv/docs: .venv/test requirements-docs.txt
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --require-hashes \
+		-r requirements-docs.txt
+	@touch $@
+
 clean:
-	rm -rf .venv .cache .lumen .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf .venv .cache build .lumen .pytest_cache .mypy_cache .ruff_cache .import_linter_cache

@@ -1,4 +1,4 @@
-"""Searches a better passage from the one in a file, with CMA-ES in the simulation (`pip install lumen-robot[search]`):
+"""Searches a better passage from the one in a file, with CMA-ES in simulation (`pip install 'lumen-robot[search]'`):
 
     python scripts/search_passage.py models/passages/straddle-crouch.yaml --evaluations 500 --robots 4 -o found.yaml
 

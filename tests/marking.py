@@ -19,7 +19,7 @@ from tests.rabbitmq import RabbitMQ
 
 PHYSICS = ("lumen.robots.simulation", "mujoco", "dm_control")
 """What lives in MuJoCo's world."""
-SHARED = frozenset(("broker", "secure", "speaker"))
+SHARED = frozenset(("broker", "speaker"))
 """The fixtures that are a broker for several tests."""
 
 
@@ -32,8 +32,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             used += [value for value in parameters(item) if isinstance(value, FunctionType | type)]
             for mark in {mark for thing in used for mark in marks(thing)}:
                 item.add_marker(mark)
-        if shared := SHARED.intersection(item.fixturenames):  # one worker starts it, for all of a folder
-            item.add_marker(pytest.mark.xdist_group(f"{min(shared)} {item.path.parent.name}"))
+        if group := shared(item):
+            item.add_marker(pytest.mark.xdist_group(group))
+
+
+def shared(item: pytest.Item) -> str:
+    """With which tests one is to have a worker, since they share what is dear: a folder its broker, a file the rest."""
+    if brokers := SHARED.intersection(getattr(item, "fixturenames", ())):
+        return f"{min(brokers)} {item.path.parent.name}"
+    definitions = item._fixtureinfo.name2fixturedefs.values() if isinstance(item, pytest.Function) else ()
+    return (
+        f"{item.path.parent.name} {item.path.stem}" if any(found[-1].scope == "module" for found in definitions) else ""
+    )
 
 
 def parameters(item: pytest.Function) -> Iterable[Any]:

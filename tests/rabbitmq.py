@@ -16,12 +16,17 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
 from tests.guarded import Guarded, TimeoutExpired, temporary_folder
 
-PREFIX = Path("/usr/lib/rabbitmq/lib")
+UNPACKED = Path(__file__).parents[1] / ".cache/debian"
+"""What scripts/packages.sh has unpacked for who is not root; the file beside it says what it could not."""
+ROOTS = (Path("/"), UNPACKED / "root")
+GIVEN = "LUMEN_TEST_BROKER"
+"""Where a broker is that tests may use in place of one of their own, those that need no more than one: amqp://…"""
 START_TIMEOUT = 180.0
 """How long a broker may take until it listens, on a crowded machine [s]."""
 STOP_TIMEOUT = 20.0
@@ -59,7 +64,8 @@ class RabbitMQ:
     """
 
     def __init__(self, certificate: Path | None = None, *, speaks_mqtt: bool = False) -> None:
-        self._script, self.certificate, self._speaks_mqtt = _script(), certificate, speaks_mqtt
+        self._root, self._script = _installed()
+        self.certificate, self._speaks_mqtt = certificate, speaks_mqtt
         self.folder = temporary_folder("lumen-rabbitmq-")
         self.port, self.distribution, self.epmd, self.secure, self.mqtt = _free_ports(5)
         self.url = self.url_of("guest")
@@ -128,7 +134,7 @@ class RabbitMQ:
     def _environment(self) -> dict[str, str]:
         folder = str(self.folder)
         return {
-            "PATH": os.environ["PATH"],
+            "PATH": f"{self._root / 'usr/bin'}:{os.environ['PATH']}",
             "LANG": "C.UTF-8",
             "HOME": folder,
             "RABBITMQ_CONF_ENV_FILE": "/dev/null",
@@ -151,9 +157,29 @@ class RabbitMQ:
         return log.read_text(errors="replace")[-2000:] if log.exists() else "nothing"
 
 
+class GivenBroker:
+    """A broker that somebody else has started and may go on using: nothing of it is ended, or set up."""
+
+    certificate = None
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+
+    def __getattr__(self, name: str) -> NoReturn:
+        """What a broker of our own could do besides."""
+        pytest.skip(f"{GIVEN} names a broker that is not ours: what needs its users, its end or TLS is left out")
+
+    def url_of(self, user: str) -> str:
+        """The address for a user: there is only the one that was given."""
+        return self.url if user == "guest" else self.__getattr__("url_of")
+
+
 @pytest.fixture(scope="session")
-def broker() -> Iterator[RabbitMQ]:
+def broker() -> Iterator[RabbitMQ | GivenBroker]:
     """The session's broker."""
+    if url := os.environ.get(GIVEN):
+        yield GivenBroker(url)
+        return
     rabbitmq = RabbitMQ()
     rabbitmq.start()
     yield rabbitmq
@@ -203,15 +229,17 @@ def _hashed(password: str) -> str:
     return base64.b64encode(salt + hashlib.sha256(salt + password.encode()).digest()).decode()
 
 
-def _script() -> str:
-    found = sorted(PREFIX.glob("rabbitmq_server-*/sbin/rabbitmq-server"))
-    if not found:
-        pytest.fail(
-            f"RabbitMQ is not installed (nothing under {PREFIX}): run `make packages`, or as root\n"
-            "    apt-get install -y --no-install-recommends rabbitmq-server",
-            pytrace=False,
-        )
-    return str(found[-1])
+def _installed() -> tuple[Path, str]:
+    """Beneath which folder RabbitMQ is installed, and the script that starts it."""
+    for root in ROOTS:
+        if found := sorted(root.glob("usr/lib/rabbitmq/lib/rabbitmq_server-*/sbin/rabbitmq-server")):
+            return root, str(found[-1])
+    told = UNPACKED.with_suffix(".missing")
+    if told.exists() and "rabbitmq" in told.read_text():
+        pytest.skip(told.read_text().strip())
+    pytest.fail(
+        "RabbitMQ is not installed: `make packages` installs it, or unpacks it where you are not root", pytrace=False
+    )
 
 
 def _free_ports(count: int) -> list[int]:

@@ -33,6 +33,7 @@ PURPOSES: Mapping[str, str] = {
     "loading": "YAML to values that remember their file and line",
     "interpreters": "values to steps: statecharts, expressions, fuzzy inference, trajectories, walking",
     "ports": "Robot, Bus, Clock: what the runtime asks of the world",
+    "extras": "which package is missing, and how it comes",
     "upkeep": "threads begun again after a fault, and what is dropped counted",
     "errors": "the faults of the world, as one tree of exceptions",
     "language": "what the YAML can say, as frozen values",
@@ -50,6 +51,7 @@ ZONES: Mapping[str, str] = {
     "interpreters": "values",
     "ports": "values",
     "upkeep": "values",
+    "extras": "values",
     "errors": "values",
     "language": "values",
 }

@@ -13,10 +13,10 @@ __all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
 def connect(url: str, project: Project | None = None, *, on_refused: OnRefused | None = None) -> Bus:
     """The bus at `url`.
 
-    `memory://` is a new one inside this process, `memory://NAME` the one that everybody in this process shares under
+    `memory://` is a new bus inside this process, `memory://NAME` one that this process shares under
     that name, `amqp://USER:PASSWORD@HOST:PORT/VHOST` (or `amqps://`) a broker. With a project every body is checked
-    against the schema of its route: publishing a wrong one raises BusError, one that comes in goes to `on_refused`
-    (key, reason) instead of the subscriber. Raises BusError, saying what to do, where there is no such bus.
+    against the schema of its route: publishing a wrong one raises BusError; for a wrong one that comes in, `on_refused`
+    (key, reason) is called instead of the subscriber. If there is no such bus, it raises BusError and says what to do.
     """
     need_text(url, "the address of a bus")
     if project is not None:

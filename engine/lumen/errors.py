@@ -2,28 +2,28 @@
 
 LumenError
  ├── ProjectError      the YAML can't be used; carries the diagnostics that say why
- ├── FatalFilesError   reading the project's files ends the process that does it
- ├── UsageError        a flag, a name or a path given to Lumen is wrong
+ ├── FatalFilesError   reading the project's files crashes the process that reads them, or takes too long
+ ├── UsageError        a flag, a name or a path given to Lumen is wrong; MissingExtraError: packages are not installed
  ├── ExpressionError   an expression can't be read, or has no value here
  ├── SnapshotError     a snapshot belongs to another machine
  ├── RobotError        the robot can't be used, or can't do what it should
- │    ├── RobotUnreachableError   there is none at the address
- │    ├── RobotLostError          it was there, and is gone or silent
- │    ├── RobotModelError         it, or the model it is simulated from, lacks what is needed
- │    ├── BadCommandError         no robot of this body could do that, now or later
- │    ├── RobotRefusedError       it does not begin that as it stands now
- │    ├── RobotFailedError        it began, and did not succeed
- │    └── SenseError              a sensor gives nothing that can be used
- ├── BusError          the bus can't be used, or does not take a message
- │    ├── BusAddressError         the address, or a file that it names, is none
+ │    ├── RobotUnreachableError   there is no robot at the address
+ │    ├── RobotLostError          the connection broke, or the robot does not answer any more
+ │    ├── RobotModelError         the robot, or its model, lacks something that Lumen needs
+ │    ├── BadCommandError         no robot of this type can do that, now or later
+ │    ├── RobotRefusedError       the robot can't begin that in its present state
+ │    ├── RobotFailedError        the robot began, and did not succeed
+ │    └── SenseError              a sensor gives no usable value
+ ├── BusError          the bus can't be used, or does not accept a message
+ │    ├── BusAddressError         the address, or a file that it names, is not valid
  │    ├── BusUnreachableError     no broker, or no exhibition, answers there
- │    ├── BusRefusedError         it answers, and does not let this user or process do that
- │    ├── BusClosedError          it was closed, or whose bus it was has ended
- │    ├── BusFullError            too much waits to be sent already
+ │    ├── BusRefusedError         it answers, but does not allow this user or process to do that
+ │    ├── BusClosedError          the bus was closed, or the exhibition that owns it has ended
+ │    ├── BusFullError            too many messages are waiting to be sent
  │    └── BadMessageError         the body or the key can't be sent
- ├── Refused           a subscriber's word for a message that it can't use
+ ├── Refused           raised by a subscriber for a message that it can't use
  ├── ModuleError       a module (memory, eyes, ears, voice, social, show) can't do its work
- └── UndeliveredError  an alert did not reach who was to be told
+ └── UndeliveredError  an alert did not reach its recipient
 
 A fault in somebody's YAML is a `Diagnostic`, collected and returned; a fault in the world is one of these, and
 becomes an `Event` while an exhibition runs. A fault in Lumen itself is none of them and is allowed to crash.
@@ -50,7 +50,7 @@ class ProjectError(LumenError):
 
 
 class FatalFilesError(LumenError):
-    """Reading a project's files crashes, fills or holds up the process that does it: they are not read here.
+    """Reading a project's files crashes the reading process, or exceeds its memory or time: Lumen does not read them.
 
     `overdue` is whether it took too long.
     """
@@ -61,14 +61,14 @@ class FatalFilesError(LumenError):
 
 
 class UsageError(LumenError):
-    """What the caller asked for can't be: a missing folder, an unknown name, options that exclude each other."""
+    """The request can't be carried out: a missing folder, an unknown name, options that exclude each other."""
 
 
 class ExpressionError(LumenError):
     """An expression that can't be read, or that has no value in this scope.
 
     `offset` counts the characters of the expression's source (of the whole text, in a template) from 0; `hint` says
-    what would be right, and is empty where there is nothing to say.
+    what would be right, and may be empty.
     """
 
     def __init__(self, message: str, offset: int = 0, hint: str = "") -> None:
@@ -77,7 +77,7 @@ class ExpressionError(LumenError):
 
 
 class SnapshotError(LumenError):
-    """A snapshot does not fit the machine it should be restored into; the message names the difference."""
+    """A snapshot does not fit the machine that should be restored from it; the message names the difference."""
 
 
 class RobotError(LumenError):
@@ -93,78 +93,78 @@ class RobotLostError(RobotError):
 
 
 class RobotModelError(RobotError):
-    """The robot, or what it is simulated from (`models/`, MuJoCo), lacks what is needed: mend that, then start anew."""
+    """The robot, or its model (`models/`, MuJoCo), lacks something that Lumen needs: correct that, then start again."""
 
 
 class BadCommandError(RobotError):
-    """No robot of this body can do that: no such method, joint or posture, or a number out of range.
+    """No robot of this type can do that: no such method, joint or posture, or a number out of range.
 
     Sending it again changes nothing: change the command.
     """
 
 
 class RobotRefusedError(RobotError):
-    """The robot does not begin that as it stands: fallen, motors off, in another posture, at the edge of the stage.
+    """The robot can't begin that in its present state: fallen, motors off, in another posture, at the stage's edge.
 
     Nothing has moved. Bring it into the state that the message names, then send the command again.
     """
 
 
 class RobotFailedError(RobotError):
-    """The robot began, and something kept it from succeeding: it may stand in between."""
+    """The robot began, and did not succeed: it may have stopped between two postures or places."""
 
 
 class SenseError(RobotError):
-    """A sensor is missing, or gives nothing that can be used; the other senses go on."""
+    """A sensor is missing, or gives no usable value; the other senses still work."""
 
 
 class BusError(LumenError):
-    """The bus can't be used, or does not take a message."""
+    """The bus can't be used, or does not accept a message."""
 
 
 class BusAddressError(BusError):
-    """The address of the bus, or a file of credentials or certificates that it names, is none: mend it."""
+    """The address of the bus, or a file of credentials or certificates that it names, is not valid: correct it."""
 
 
 class BusUnreachableError(BusError):
-    """Nobody answers at the address, or no broker that Lumen can use: start it there, or try again later."""
+    """At the address there is no broker that Lumen can use: start one there, or try again later."""
 
 
 class BusRefusedError(BusError):
-    """What answers does not let us: wrong name, password or virtual host, a missing right, or another has the place.
+    """The broker refuses: wrong name, password or virtual host, a missing right, or another process has this role.
 
     Trying again changes nothing.
     """
 
 
 class BusClosedError(BusError):
-    """The bus was closed, here or by the exhibition that it belonged to: connect anew.
+    """The bus was closed, here or by the exhibition that owned it: connect again.
 
-    A broker that goes away raises nothing: an open bus comes back with it.
+    The loss of a broker raises nothing: an open bus reconnects by itself.
     """
 
 
 class BusFullError(BusError):
-    """So many messages that must arrive wait for the broker that no more are taken: send again later."""
+    """Too many messages that must arrive are waiting for the broker: send this one again later."""
 
 
 class BadMessageError(BusError):
-    """The body is no JSON data, too large, or against the schema of its route, or the key is too long: mend it."""
+    """The body is not JSON data, too large, or does not fit its route's schema, or the key is too long: correct it."""
 
 
-class Refused(LumenError):  # noqa: N818  a word to the bus, not an error of whoever hands the message over
+class Refused(LumenError):  # noqa: N818  an answer to the bus, not an error of the sender
     """Raised by a handler for a message that it can't use; the text says why.
 
-    The bus answers a sender who wants an answer, and a broker puts the message aside, with the reason.
+    If the sender wants an answer, the bus sends the reason; a broker puts the message aside, with the reason.
     """
 
 
 class ModuleError(LumenError):
-    """A module lacks what it works with, or can't use what it was sent; the tour goes on without it."""
+    """A module lacks something that it needs, or can't use a message; the exhibition continues without it."""
 
 
 class UndeliveredError(LumenError):
-    """An alert did not arrive; `final` is whether trying again would change nothing."""
+    """An alert did not arrive; `final` says whether a new attempt would fail in the same way."""
 
     def __init__(self, message: str, *, final: bool = False) -> None:
         super().__init__(message)

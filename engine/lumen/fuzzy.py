@@ -1,4 +1,4 @@
-"""Fuzzy controllers from files and dicts, to evaluate and to explain."""
+"""Fuzzy controllers from files and dicts: evaluate them, and explain the result."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -27,11 +27,11 @@ __all__ = ["Controller", "Evaluator", "Explanation"]
 
 
 class Controller(ControllerDefinition):
-    """A fuzzy controller that can be asked; compiled when it first is."""
+    """A fuzzy controller to evaluate; it is compiled at the first evaluation."""
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The controller in a file; raises UsageError where it can't be read, ProjectError for what it says."""
+        """The controller in a file; raises UsageError if the file can't be read, ProjectError if it has mistakes."""
         path = need_path(path)
         try:
             content = read_regular(path, MAX_FILE_BYTES)
@@ -44,7 +44,7 @@ class Controller(ControllerDefinition):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "controller") -> Self:
-        """The controller that a dict of the file's shape describes; raises ProjectError."""
+        """The controller in a dict with the structure of a file; raises ProjectError if it has mistakes."""
         need_text(name, "the name of a controller")
         need_map(data, "the data of a controller")
         return cls._build(Document(name, data), name)
@@ -62,9 +62,9 @@ class Controller(ControllerDefinition):
         return Evaluator(self)
 
     def evaluate(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> dict[str, float]:
-        """All outputs, in the file's units; `previous` outputs serve those with `lock-previous`.
+        """All outputs, in the file's units; outputs with `lock-previous` use the values in `previous`.
 
-        Raises UsageError for a missing, unknown or NaN input, LumenError where no rule fires and there is no default.
+        Raises UsageError for a missing, unknown or NaN input, LumenError if no rule fires and there is no default.
         """
         if previous is not None:
             need_numbers(previous, "`previous`")

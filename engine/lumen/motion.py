@@ -1,4 +1,4 @@
-"""Motions from files and dicts, to sample."""
+"""Motions from files and dicts: sample their joint angles."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -28,14 +28,14 @@ __all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]
 
 
 class Motion(motions.MotionDefinition):
-    """A gesture that can be asked where its joints are; compiled when it first is."""
+    """A motion whose joint angles can be sampled; it is compiled at the first sample."""
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The motion in a file, for the robot of the project that it stands in, else of the one around us.
+        """The motion in a file, for the robot of the file's project, otherwise of the project here or above.
 
-        It may play the other motions of that project. Raises UsageError where it can't be read, ProjectError for what
-        it says.
+        It may play the other motions of that project. Raises UsageError if the file can't be read, ProjectError if it
+        has mistakes.
         """
         path = need_path(path)
         try:
@@ -49,7 +49,7 @@ class Motion(motions.MotionDefinition):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "motion") -> Self:
-        """The motion that a dict of the file's shape describes, for the shipped robot; raises ProjectError."""
+        """The motion in a dict with the structure of a file, for the shipped robot; raises ProjectError."""
         need_text(name, "the name of a motion")
         need_map(data, "the data of a motion")
         return cls._build(Document(name, data), name, _surroundings(shipped_root()))
@@ -74,8 +74,8 @@ class Motion(motions.MotionDefinition):
     def sample(self, t: float, start: Mapping[str, float] | None = None) -> dict[str, float]:
         """The angle [rad; a hand 0..1] at `t` [s] of every joint that it moves.
 
-        It begins at the angles `start` [rad], where they are given, else in its start posture. Raises UsageError where
-        something else than numbers is given.
+        It begins at the angles `start` [rad] if they are given, otherwise in its start posture. Raises UsageError for
+        arguments that are not numbers.
         """
         need_number(t, "the time to sample at", finite=False)
         if start is not None:
@@ -84,14 +84,14 @@ class Motion(motions.MotionDefinition):
 
 
 def _home(path: Path) -> Path:
-    """The project that a motion file belongs to: two folders up, else the one around us."""
+    """The project of a motion file: two folders up, otherwise the project here or above."""
     folder = path.absolute().parent
     beside = any((folder.parent / name).exists() for name in (MAIN_FILE, "models"))
     return folder.parent if folder.name == "motions" and beside else find_project()
 
 
 def _surroundings(root: Path) -> ProjectDraft:
-    """What a motion needs of a project: its robot and its other motions."""
+    """The parts of a project that a motion needs: the robot and the other motions."""
     wanted = ("models/", "motions/")
     return draft({file: c for file, c in read_files(root).items() if file.startswith(wanted) or file == MAIN_FILE})
 

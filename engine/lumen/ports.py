@@ -1,9 +1,9 @@
-"""What the runtime asks of the world: three seams, and the readings that cross them."""
+"""The interfaces of the runtime to the world: robot, bus and clock, and the readings that they exchange."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,8 +29,8 @@ class Sense(StrEnum):
 class PixelSource(Protocol):
     """Renders or fetches a frame: Shape (height, width, 3), uint8 RGB.
 
-    `size` [px] is that of the images wanted now, None for the camera's own. A robot that can't give it for a frame that
-    is taken already gives that frame as it is, and the next ones in that size.
+    `size` [px] is the size wanted now, None for the camera's own. If a frame was already taken in another size, the
+    robot may return it as it is, and the next frames in the wanted size.
     """
 
     def __call__(self, size: Size | None = None) -> "NDArray[np.uint8]": ...
@@ -45,9 +45,9 @@ class Image:
 
 
 class Whereabouts(NamedTuple):
-    """Where a robot believes to be, from where it started: x forward, y left [m], theta to the left [rad].
+    """A robot's estimate of its position, relative to its start: x forward, y left [m], theta to the left [rad].
 
-    It adds up its steps, and looks at nothing: it may really be `doubt` [m] from there.
+    It only adds up its steps: the real position may be `doubt` [m] away.
     """
 
     x: float = 0.0
@@ -60,8 +60,8 @@ class Whereabouts(NamedTuple):
 class Joints:
     """Measured angles [rad, hands 0..1] and stiffness [0..1], in the order of `names`.
 
-    What a robot feels of itself besides, where it does: each motor's `temperature` [degrees Celsius] in that order, its
-    inertial unit and the weight on its soles, by ALMemory's names and in its units; and where it believes to be.
+    If the robot measures them, also: each motor's `temperature` [degrees Celsius] in that order, the inertial unit and
+    the weight on its soles, with ALMemory's names and units, and the estimate of its position.
     """
 
     time: float
@@ -94,7 +94,7 @@ class Tactile:
 
 @dataclass(frozen=True, slots=True)
 class Battery:
-    """Charge [%] and where it goes."""
+    """Charge [%], and whether the battery is plugged in and charging."""
 
     time: float
     percentage: int
@@ -108,14 +108,14 @@ Reading = Image | NumericReading
 
 @dataclass(frozen=True, slots=True)
 class Perform:
-    """Play this motion; it is the value itself, so that a reload can't change it while it runs."""
+    """Play this motion. It holds the motion itself, so that a reload can't change it while it runs."""
 
     motion: MotionDefinition
 
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """Move these joints towards angles [rad] at most at `speed` (a fraction of their greatest): NAOqi's `setAngles`."""
+    """Move these joints towards angles [rad], at most at `speed` (a fraction of the greatest): NAOqi's `setAngles`."""
 
     angles: Mapping[str, float]
     speed: float = 0.3
@@ -134,11 +134,11 @@ RobotCommand = MotorCommand | Say | Perform | Aim | Record
 
 
 class Robot(Protocol):
-    """A body. Nothing here blocks, and nothing here raises for what the robot can't do: that is an answer.
+    """A robot. No method blocks. If the robot can't do something, no method raises: an event says so.
 
     `start` is answered through `poll` by `done.command.ID`, `error.command.ID` (data: `{"reason": …}`) or
     `cancelled.command.ID`; `Aim` is not answered. `poll` also returns what the robot noticed by itself
-    (`ROBOT_EVENTS`), each with `at` [s] on the robot's clock.
+    (`ROBOT_EVENTS`), each event with `at` [s] on the robot's clock.
     """
 
     def start(self, id: str, command: RobotCommand) -> None: ...
@@ -148,18 +148,18 @@ class Robot(Protocol):
     def poll(self) -> Sequence[Event]: ...
 
     def begun(self) -> Sequence[str]:
-        """The ids of the commands that began since the last call; the others that were started wait."""
+        """The ids of the commands that began since the last call; other started commands still wait."""
         ...
 
     def read(self, sense: Sense) -> Reading | None:
-        """The newest reading of a sense, None where the robot lacks it."""
+        """The newest reading of a sense, None if the robot does not have it."""
         ...
 
     def close(self) -> None: ...
 
 
 class Sole(NamedTuple):
-    """Where a foot stands in the world [m], and what it bears [N]."""
+    """The position of a foot in the world [m], and the load on it [N]."""
 
     x: float
     y: float
@@ -167,11 +167,11 @@ class Sole(NamedTuple):
 
 
 class Strain(NamedTuple):
-    """How a body fares at one moment.
+    """The mechanical state of a robot at one moment.
 
-    `played` is how far along its motion it is [s], `tilt` how far the torso leans [rad]. `touching` are pairs of its
-    own links that press into each other; `exhausted` the joints whose motors give all they can; `behind` is how far
-    joints are from where they are wanted [rad].
+    `played` is the time within its motion [s], `tilt` the angle of the torso from the vertical [rad]. `touching` are
+    pairs of its own links that collide, `exhausted` the joints whose motors are at their limit, `behind` the distance
+    of joints from their targets [rad].
     """
 
     played: float
@@ -186,7 +186,7 @@ class Subject(Robot, Protocol):
     """A simulated robot that can be examined while it moves."""
 
     def advance(self, dt: float) -> None:
-        """Live `dt` [s]."""
+        """Simulate `dt` [s]."""
         ...
 
     def strain(self) -> Strain: ...
@@ -196,11 +196,11 @@ class Hall(Protocol):
     """What a story may do to a simulated world."""
 
     def place(self, visitor: Visitor | None) -> None:
-        """Put a visitor there, move them, or (None) take them away."""
+        """Place or move a visitor, or (None) remove them."""
         ...
 
     def face(self) -> tuple[float, float] | None:
-        """Where the visitor's face stands in the top camera's image now [px], None where it can't be seen."""
+        """The position of the visitor's face in the top camera's image now [px], None if it can't be seen."""
         ...
 
     def touch(self, sensor: str, pressed: bool) -> None:
@@ -208,7 +208,7 @@ class Hall(Protocol):
         ...
 
     def plug(self, plugged: bool) -> None:
-        """Put the charger into the robot, or take it out."""
+        """Plug the charger in, or unplug it."""
         ...
 
 
@@ -220,12 +220,12 @@ class Clock(Protocol):
         ...
 
     def wait(self, until: float) -> None:
-        """Return when `now()` has reached `until`; a simulated world lives through the time in between."""
+        """Return when `now()` has reached `until`; a simulated clock simulates the time in between."""
         ...
 
 
 class Message(NamedTuple):
-    """What a subscriber is handed; `body` is JSON data."""
+    """A message as a subscriber receives it; `body` is JSON data."""
 
     key: str
     body: Any
@@ -240,19 +240,19 @@ class Bus(Protocol):
     """Messages by topic: `*` in a pattern stands for one word of the key, `#` for any number."""
 
     def carry(self, routes: Mapping[str, Route]) -> None:
-        """Carry what goes and comes under these keys as their routes say, from now on; other keys as telemetry."""
+        """From now on, carry messages with these keys as their routes say, and all others as telemetry."""
         ...
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        """Make ready for `carry` and for subscribing to the routes that come in, so that neither has to wait then.
+        """Prepare `carry`, and subscribing to the incoming routes, so that neither has to wait later.
 
-        This may wait for the network: it is for a thread that nobody waits for. From then on subscribing waits for
-        nothing. Raises BusError where the broker refuses one of the routes.
+        This may wait for the network, so call it on a background thread. Afterwards subscribing does not wait.
+        Raises BusError if the broker refuses one of the routes.
         """
         ...
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
-        """Hand every matching message to `handler`, one at a time, in the order published; returns the undoing.
+        """Call `handler` with each matching message, one by one, in the order published; the result ends it.
 
         An exception in a handler is logged and ends neither the bus nor the publisher.
         """
@@ -261,21 +261,32 @@ class Bus(Protocol):
     def publish(
         self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
     ) -> None:
-        """Send a body (JSON data); safe from any thread. Raises BusError once closed, or for what is not JSON data.
+        """Send a body (JSON data); safe from any thread. Raises BusError after `close`, or if it is not JSON data.
 
-        It never waits for a handler that runs on another thread, nor for the network. Where the bus has no thread of
-        its own (`memory://`), who finds nobody delivering delivers: a handler may run inside `publish`, so it should
-        do no more than enqueue.
+        It never waits for a handler on another thread, nor for the network. A bus without its own thread (`memory://`)
+        may run handlers inside `publish`, if no other thread is delivering; so a handler should only enqueue.
         """
         ...
 
     def reply(self, message: Message, body: Any) -> None:
-        """Answer to where a message wants its answer, under its `correlation_id`; nothing where it wants none.
+        """Send an answer to the message's `reply_to`, with its `correlation_id`; does nothing without a `reply_to`.
 
-        `reply_to` is a key (`avatar…`, `lumen…`) or, on a broker, the name of a queue, as modules of 2015 use it.
+        `reply_to` is a key (`avatar…`, `lumen…`) or, on a broker, the name of a queue, as in the modules of 2015.
         """
         ...
 
     def close(self) -> None:
-        """Deliver what was published and end; harmless when repeated."""
+        """Deliver the published messages and end; a second call does nothing."""
+        ...
+
+
+@runtime_checkable
+class ReturningBus(Protocol):
+    """A bus between processes that can say whether a published message has a receiver."""
+
+    def returns(self, handler: Callable[[str], None]) -> None:
+        """From now on, call `handler` with the key of each published message that has no receiver.
+
+        The call may come on any thread; for messages published before `close`, it comes before `close` returns.
+        """
         ...

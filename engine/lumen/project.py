@@ -12,9 +12,9 @@ __all__ = ["Project", "load"]
 
 
 def load(path: str | Path | None = None) -> Project:
-    """The project in that folder; without a path the one here or above, else the shipped one.
+    """The project in that folder; without a path the one here or above, otherwise the shipped one.
 
-    Raises ProjectError, carrying the diagnostics, where its files have errors, and UsageError where there is no folder.
+    Raises ProjectError with the diagnostics if its files have errors, and UsageError if the folder does not exist.
     """
     root = find_project(path)
     project, diagnostics = check_files(root, read_files(root))

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 else:
     from typing import TypeVar
 
-    C = TypeVar("C", bound=Clock)  # a default is for who checks types: Python has it from 3.13 on
+    C = TypeVar("C", bound=Clock)  # only type checkers need the default: Python has it from 3.13 on
 
 __all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock", "due", "initial", "step"]
 
@@ -46,9 +46,9 @@ class Machine(machines.MachineDefinition):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The machine in a file; behaviours that it invokes stand beside it, words files in `words/`.
+        """The machine in a file; behaviours that it invokes are beside it, words files in `words/`.
 
-        Raises UsageError where a file can't be read, ProjectError for what they say.
+        Raises UsageError if a file can't be read, ProjectError if the files have mistakes.
         """
         return cls._derived(machine_from_file(need_path(path)), {})
 
@@ -60,9 +60,9 @@ class Machine(machines.MachineDefinition):
         behaviors: Mapping[str, Mapping[str, Any]] | None = None,
         words: Mapping[str, Mapping[str, Any]] | None = None,
     ) -> Self:
-        """The machine that a dict of the file's shape describes; raises ProjectError.
+        """The machine in a dict with the structure of a file; raises ProjectError if it has mistakes.
 
-        `behaviors` are those that it may invoke, each a dict of its own, by their names; `words` the words files.
+        `behaviors` are those that it may invoke, by name, each a dict like `data`; `words` are the words files.
         """
         need_text(name, "the name of a machine")
         need_map(data, "the data of a machine")
@@ -73,7 +73,7 @@ class Machine(machines.MachineDefinition):
 
     @classmethod
     def _derived(cls, machine: machines.MachineDefinition, known: dict[str, Self]) -> Self:
-        """The same machine in this class, and those that it invokes, each of which is made once."""
+        """The same machine as an object of this class, with the machines that it invokes; each is made once."""
         for name, other in machine.invoked.items():
             if name not in known:
                 known[name] = cls._derived(other, known)
@@ -81,10 +81,10 @@ class Machine(machines.MachineDefinition):
 
 
 class Interpreter(Generic[C]):
-    """A machine that runs on a clock, whose type `clock` has: `Interpreter` alone is one on a virtual clock.
+    """A machine that runs on a clock. The type parameter is the type of `clock`; the default is a virtual clock.
 
-    `observe` is shown every step in the order taken; it may `send`. With a virtual clock (the default) everything
-    happens within `start`, `send` and `clock.advance`; with another clock call `wake` when `next_due` has come.
+    `observe` is called with every step, in order; it may `send`. With a virtual clock everything
+    happens within `start`, `send` and `clock.advance`; with another clock call `wake` at the time `next_due`.
     The other options are those of `initial`.
     """
 
@@ -180,11 +180,11 @@ class Interpreter(Generic[C]):
         *,
         observe: Callable[[Step], None] = lambda _: None,
     ) -> "Interpreter[Any]":
-        """The interpreter that gave this `snapshot()`, going on; raises SnapshotError where it was of another machine.
+        """An interpreter that continues from a `snapshot()`; raises SnapshotError if that is from another machine.
 
-        Without a clock, time goes on where it stood. `timers` keep their `deadline`, for a clock that goes on counting
-        as the old one did (what is past comes at once); the time `remaining` to them when the snapshot was taken; or
-        `restart` with their whole delay.
+        Without a clock, time continues from the snapshot. `timers` says when running timers end: `deadline` at their
+        old time, for a clock that continues the old one (overdue timers end at once); `remaining` after the time that
+        they had left at the snapshot; `restart` after their whole delay.
         """
         if timers not in ("deadline", "remaining", "restart"):
             raise UsageError(f"timers can't be `{timers}`: write `deadline`, `remaining` or `restart`")
@@ -196,7 +196,7 @@ class Interpreter(Generic[C]):
         return it
 
     def start(self) -> Step:
-        """Enter the initial states. Raises UsageError when repeated, or where `input` does not fit."""
+        """Enter the initial states. Raises UsageError if called twice, or if `input` does not fit."""
         if self._snapshot is not None:
             raise UsageError("the interpreter has been started already")
         self._options["input"] = plain(self._options["input"], "input")
@@ -205,9 +205,9 @@ class Interpreter(Generic[C]):
         return first
 
     def send(self, event: str | Event, data: Any = None) -> Step:
-        """Let an event happen now, after everything that is due; the step it made.
+        """Process an event now, after everything that is due; returns its step.
 
-        Raises UsageError where `data` is no JSON data: a snapshot could not hold it.
+        Raises UsageError if `data` is not JSON data, because a snapshot could not hold it.
         """
         need(event, (str, Event), "an event", "its name, or an Event")
         name, data, _, sendid = Event(event, data) if isinstance(event, str) else event
@@ -219,7 +219,7 @@ class Interpreter(Generic[C]):
         return taken
 
     def wake(self) -> None:
-        """Let everything happen that is due."""
+        """Process everything that is due."""
         for taken in elapse(self.machine, lambda: self._now, self.clock.now()):
             self._take(taken)
 
@@ -230,28 +230,28 @@ class Interpreter(Generic[C]):
 
     @property
     def done(self) -> bool:
-        """Whether the machine has come to its end: it hears nothing any more."""
+        """Whether the machine has ended: it takes no more events."""
         return finished(self.machine, self._now)
 
     @property
     def output(self) -> Any:
-        """The output of the final state in which the machine has come to its end; None before, or without one."""
+        """The output of the final state in which the machine has ended; None before that, or without an output."""
         return deepcopy(self._now.output)
 
     @property
     def configuration(self) -> frozenset[str]:
-        """The active states but the root, by alias where there is one, else by path."""
+        """The active states except the root, each by its alias if it has one, otherwise by its path."""
         return self._now.configuration
 
     @property
     def context(self) -> dict[str, Any]:
-        """What the machine remembers: a copy, which is the caller's."""
+        """What the machine remembers: a copy, which the caller may change."""
         return deepcopy(dict(self._now.context))
 
     def snapshot(self) -> dict[str, Any]:
-        """Everything needed to go on elsewhere, as JSON data; its time `at` [s] is the clock's now.
+        """Everything needed to continue elsewhere, as JSON data; its time `at` [s] is the clock's present time.
 
-        Raises SnapshotError where an event brought something into the context that JSON can't hold.
+        Raises SnapshotError if the context holds something from an event that JSON can't express.
         """
         now = self._now
         return serialize(self.machine, now._replace(at=max(now.at, self.clock.now())))

@@ -251,7 +251,7 @@ def test_a_start_without_a_broker_and_with_a_main_file_that_can_not_be_read(
     assert body["text"].endswith("it could not start, or go on: no broker listens at 127.0.0.1:1")
     (hall.folder / "lumen.yaml").write_text("alerts: [")
     assert main(["run", str(hall.folder), "--robot", "recording"]) == 1
-    assert hall.web.told("start", 2)[1]["text"].endswith("first lumen.yaml:2:1 yaml-syntax")
+    assert hall.web.told("start", 2)[1]["text"].endswith("first lumen.yaml:1:9 yaml-syntax")
     capsys.readouterr()
 
 

@@ -1,5 +1,50 @@
-"""The shipped project and copies of it, for the command line's tests."""
+"""The shipped project, copies of it and exhibitions of those, for the command line's tests."""
 
+import io
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.bus import Bus, connect
 from tests.tour.conftest import copy, project
 
 __all__ = ["copy", "project"]
+
+
+class Terminal(io.StringIO):
+    """A person who types this."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture
+def bus(copy: Path) -> Iterator[Bus]:
+    """A bus that other terminals reach, and nobody on it."""
+    bus, directory = connect("memory://"), RunDirectory(copy)
+    directory.open(bus, "memory://", lumen.load(copy))
+    yield bus
+    directory.close(forget=True)
+    bus.close()
+
+
+@pytest.fixture
+def exhibition(copy: Path, bus: Bus) -> Iterator[Exhibition]:
+    """One that runs in a thread."""
+    ending = threading.Event()
+    with lumen.open(copy, bus=bus) as one:
+
+        def live() -> None:
+            while not ending.wait(0.001):
+                one.tick()
+
+        thread = threading.Thread(target=live)
+        thread.start()
+        yield one
+        ending.set()
+        thread.join()

@@ -3,9 +3,12 @@
 from pathlib import Path
 
 import pytest
+import yaml
 
 import lumen
 from lumen.cli.main import main
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.mark.slow
@@ -15,6 +18,32 @@ def test_a_new_project_is_whole_and_clean(tmp_path: Path, capsys: pytest.Capture
     assert "lumen lint" in capsys.readouterr().out
     assert lumen.check(folder) == []
     assert main(["run", str(folder), "--robot", "recording", "--speed", "max", "--story", "silence"]) == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("words", "story"), [(["--minimal"], "visitor"), (["--like", "museum"], "visit")])
+def test_a_project_like_another_is_whole_and_clean(
+    words: list[str], story: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "mine"
+    assert main(["new", str(folder), *words, "--action", "me/lumen@0123"]) == 0
+    assert f"lumen run --story {story} " in capsys.readouterr().out
+    assert lumen.check(folder) == []
+    assert main(["test", str(folder), story]) == 0
+    for file in folder.rglob("*.yaml"):
+        schema = file.read_text("utf-8").partition("$schema=")[2].partition("\n")[0]
+        assert (file.parent / schema).is_file()
+    workflow = yaml.safe_load((folder / ".github/workflows/exhibition.yml").read_text("utf-8"))
+    steps = workflow["jobs"]["check"]["steps"]
+    assert [step.get("uses", step.get("run")) for step in steps][1:] == ["me/lumen@0123", "lumen test"]
+    assert set(steps[1]["with"]) <= set(yaml.safe_load((ROOT / "action.yml").read_text("utf-8"))["inputs"])
+    assert ".lumen/" in (folder / ".gitignore").read_text("utf-8").splitlines()
+    assert f"lumen run --story {story} " in (folder / "README.md").read_text("utf-8")
+
+
+def test_the_minimal_project_is_short() -> None:
+    files = (ROOT / "examples" / "minimal").rglob("*.yaml")
+    assert sum(len(file.read_text("utf-8").splitlines()) for file in files) <= 55
 
 
 def test_nothing_is_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

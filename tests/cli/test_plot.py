@@ -104,7 +104,7 @@ def test_the_image_is_there_and_not_blank(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["plot", str(Path(lumen.__file__).parents[2] / HEAD)]) == 0
-    assert capsys.readouterr().out == "wrote head.png\n"
+    assert capsys.readouterr().out == f"wrote {tmp_path / 'head.png'}\n"
     pixels = np.asarray(Image.open("head.png").convert("L"))
     assert pixels.std() > 10
     assert pixels.shape[0] > 300

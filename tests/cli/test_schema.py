@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given, strategies
 from jsonschema import Draft202012Validator
 
+from lumen.cli.jsonc import added, plain
 from lumen.cli.main import main
-from lumen.cli.schema import FILES, merged, settings
+from lumen.cli.schema import FILES, settings
 from lumen.loading.schema import FILE_KINDS, load_schema
 
 ROOT = Path(__file__).parents[2]
@@ -88,10 +90,61 @@ def test_settings_join_those_that_are_there(tmp_path: Path, monkeypatch: pytest.
     )
     assert main(["schema", "--vscode", "-o", str(file)]) == 0
     again = json.loads(file.read_text())
-    assert again == merged(json.loads(file.read_text()), settings(ROOT))
     assert again["editor.tabSize"] == 2
     assert again["yaml.schemas"] == {"x.json": ["*.x"], **first["yaml.schemas"]}
     assert again["json.schemas"] == [{"url": "y"}, *first["json.schemas"]]
+
+
+MINE = """{
+  // how wide a tab is
+  "editor.tabSize": 2, /* not "4", */
+  "files.associations": {"*.yaml": "yaml",},
+  "yaml.schemas": {
+    // of somebody else
+    "x.json": ["*.x"], // http://x
+  },
+  "json.schemas": []
+  // the end
+}
+"""
+
+
+def test_comments_in_settings_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also commas behind which nothing comes; and a second time changes nothing."""
+    monkeypatch.chdir(ROOT)
+    file = tmp_path / "settings.json"
+    file.write_text(MINE)
+    assert main(["schema", "--vscode", "-o", str(file)]) == 0
+    text = file.read_text()
+    assert [line for line in MINE.splitlines() if line.strip() not in ('"json.schemas": []', "}", "},")] == [
+        line for line in text.splitlines() if line in MINE.splitlines() and line.strip() not in ("}", "},")
+    ]
+    data, ours = json.loads(plain(text)), settings(ROOT)
+    assert data["yaml.schemas"] == {"x.json": ["*.x"], **ours["yaml.schemas"]}
+    assert data["json.schemas"] == ours["json.schemas"]
+    assert data["editor.tabSize"] == 2
+    assert main(["schema", "--vscode", "-o", str(file)]) == 0
+    assert file.read_text() == text
+
+
+@given(
+    strategies.dictionaries(
+        strategies.text('ab,/*"{', max_size=3),
+        strategies.integers() | strategies.lists(strategies.text("/,*]", max_size=2), max_size=2),
+        max_size=3,
+    ),
+    strategies.dictionaries(
+        strategies.text('ab,/*"{', max_size=3), strategies.integers() | strategies.just({"x": 1}), max_size=3
+    ),
+    strategies.sampled_from(["", "// a, {\n", '/* "b" */']),
+    strategies.sampled_from([None, 2]),
+)
+def test_what_is_added_to_settings_is_in_them(
+    there: dict[str, Any], more: dict[str, Any], comment: str, indent: int | None
+) -> None:
+    text = comment + json.dumps(there, indent=indent)[:-1] + comment + "}" + comment
+    assert json.loads(plain(added(text, more))) == {**there, **more}
+    assert not comment or added(text, more).count(comment) == 3
 
 
 def test_a_project_without_schemas_uses_those_of_lumen(tmp_path: Path) -> None:
@@ -99,7 +152,7 @@ def test_a_project_without_schemas_uses_those_of_lumen(tmp_path: Path) -> None:
         assert schema.startswith("file://")
 
 
-@pytest.mark.parametrize("text", ["// mine\n{}", "[1]"])
+@pytest.mark.parametrize("text", ["{,}", "[1]", "{ // mine", "/* {}"])
 def test_settings_that_can_not_be_read_stay(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "settings.json"
     file.write_text(text)

@@ -1,54 +1,17 @@
 """`lumen stop` and `lumen resume`, to an exhibition that runs and to one whose robot is not there."""
 
 import io
-import threading
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-import lumen
 from lumen.app.exhibition import Exhibition
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.bus import Bus, connect
+from lumen.bus import Bus
 from lumen.cli import stop
 from lumen.cli.main import main
 from lumen.cli.person import person
+from tests.cli.conftest import Terminal
 from tests.waiting import until
-
-
-class Terminal(io.StringIO):
-    """A person who types this."""
-
-    def isatty(self) -> bool:
-        return True
-
-
-@pytest.fixture
-def bus(copy: Path) -> Iterator[Bus]:
-    """A bus that other terminals reach, and nobody on it."""
-    bus, directory = connect("memory://"), RunDirectory(copy)
-    directory.open(bus, "memory://", lumen.load(copy))
-    yield bus
-    directory.close(forget=True)
-    bus.close()
-
-
-@pytest.fixture
-def exhibition(copy: Path, bus: Bus) -> Iterator[Exhibition]:
-    """One that runs in a thread."""
-    ending = threading.Event()
-    with lumen.open(copy, bus=bus) as one:
-
-        def live() -> None:
-            while not ending.wait(0.001):
-                one.tick()
-
-        thread = threading.Thread(target=live)
-        thread.start()
-        yield one
-        ending.set()
-        thread.join()
 
 
 @pytest.mark.slow

@@ -27,6 +27,7 @@ class Exhibition:
         self.options, self._bus, self._ending = options, bus, threading.Event()
         for key in ("avatar.NAO.command", "avatar.NAO.stop"):
             bus.subscribe(key, lambda message: bus.reply(message, "command finished"))
+        bus.subscribe("lumen.deaf", lambda _: None)
         self._thread = threading.Thread(target=self._run)
         self._thread.start()
 
@@ -120,8 +121,16 @@ def _topics(run: Run, *words: str) -> list[dict[str, Any]]:
 def test_pub_sends_what_fits_its_route_and_prints_the_answer(run: Run) -> None:
     rest = '{"type": "motion", "method": "rest"}'
     assert run("topic", "pub", "command", rest, "--wait", "10s") == (0, "command finished\n", "")
-    assert run("topic", "pub", "lumen.elsewhere", "a text")[0] == 0
-    assert run("topic", "pub", "lumen.elsewhere", "a text", "--wait", "50ms")[0] == 1
+    code, out, err = run("topic", "pub", "lumen.elsewhere", "a text")
+    assert (code, out, err.count("\n")) == (1, "", 1)
+    assert err.startswith("lumen topic: nobody listens to `lumen.elsewhere`: an exhibition listens to `avatar.NAO.aim`")
+    assert "`avatar.NAO.comand`: did you mean `avatar.NAO.command`?" in run("topic", "pub", "avatar.NAO.comand", "x")[2]
+    assert "nobody listens" in run("topic", "pub", "lumen.elsewhere", "a text", "--wait", "50ms")[2]
+    assert run("topic", "pub", "lumen.deaf", "a text", "--wait", "50ms")[::2] == (
+        1,
+        "lumen topic: no answer within 0.05 s\n",
+    )
+    assert run("topic", "pub", "lumen.deaf", "a text") == (0, "", "")
     code, _, err = run("topic", "pub", "face", '{"x": "left", "y": 1}')
     assert (code, err.count("\n")) == (2, 1)
     assert "x: 'left' is not of type 'integer'" in err
@@ -172,8 +181,8 @@ def test_who_may_not_send_is_told_so_in_one_line(broker: RabbitMQ, capsys: pytes
     said = capsys.readouterr()
     assert "refuses to let us send `avatar.NAO.command`: ACCESS_REFUSED" in said.err
     assert said.err.count("\n") == 1
-    assert main([*words, "face", '{"x": 160, "y": 120}']) == 0
-    assert capsys.readouterr().err == ""
+    assert main([*words, "face", '{"x": 160, "y": 120}']) == 1
+    assert "nobody listens to `lumen.visual.face.detection`: does an exhibition run there?" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

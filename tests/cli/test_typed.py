@@ -7,6 +7,7 @@ from unittest.mock import Mock
 import pytest
 
 from lumen.cli.typed import MAX_LINE_CHARACTERS, MAX_WAITING_LINES, TypedVisitorPart
+from lumen.cli.typed_commands import TypedCommands
 from tests.waiting import until
 
 
@@ -39,3 +40,51 @@ def test_a_line_without_end_fills_no_memory_and_holds_up_no_tick(monkeypatch: py
     assert not part.over
     part.tick(7.0, ())
     assert part.over
+
+
+class Hall:
+    """Feels hands."""
+
+    def __init__(self) -> None:
+        self.sensors, self.felt = ("FrontTactil", "LeftBumper"), list[tuple[str, bool]]()
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        self.felt.append((sensor, pressed))
+
+
+def test_a_hand_stays_as_long_as_was_typed() -> None:
+    visitor: Any = Hall()
+    commands = TypedCommands(visitor, Mock())
+    commands.do("/touch head", 0.0)
+    commands.do("/touch left bumper 2s", 0.0)
+    commands.do("/touch LEFTBUMPER 3s", 0.0)
+    assert visitor.felt == [("FrontTactil", True), ("LeftBumper", True)]
+    commands.tick(0.4)
+    assert len(visitor.felt) == 2
+    commands.tick(0.5)
+    assert visitor.felt[2:] == [("FrontTactil", False)]
+    commands.tick(2.9)
+    commands.tick(3.0)
+    assert visitor.felt[3:] == [("LeftBumper", False)]
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("/tuch head", "`/tuch` is nothing that can be done: did you mean `touch`?"),
+        ("/", "there are `help`, `touch`"),
+        ("/touch", "write where, as in `/touch head`"),
+        (
+            "/touch heda 2s",
+            "the robot has no `heda` to be touched: did you mean `head`? there are `head`, `left bumper`",
+        ),
+        ("/touch chest", "the robot has no `chest` to be touched"),
+        ("/help", "/touch head       a hand on its head; also left bumper"),
+    ],
+)
+def test_what_can_be_typed_is_said(line: str, says: str) -> None:
+    visitor: Any = Hall()
+    narrator = Mock()
+    TypedCommands(visitor, narrator).do(line, 0.0)
+    assert says in narrator.note.call_args.args[0]
+    assert visitor.felt == []

@@ -44,7 +44,7 @@ DIFFERENT: dict[str, list[tuple[str, object, object]]] = {
         ("has(context.m['y'])", True, ERROR),
         ("has(context.l[0])", True, ERROR),
     ],
-    "`null < 1`, `[1] < [2]` are errors when they run, and found by lint": [
+    "`null < 1`, `[1] < [2]` are errors at run time, and found by lint": [
         ("null < 1", ERROR, ERROR),
         ("[1] < [2]", ERROR, ERROR),
     ],

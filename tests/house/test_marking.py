@@ -74,3 +74,9 @@ def test_marks_come_from_what_is_named(name: str, expected: str) -> None:
 def test_and_not_from_strings(name: str, request: pytest.FixtureRequest) -> None:
     """Or this one would need a broker."""
     assert {mark.name for mark in request.node.iter_markers()} == {"parametrize"}
+
+
+@pytest.mark.xdist_group("one")
+def test_workers_are_told_of_groups(request: pytest.FixtureRequest) -> None:
+    """Or each worker starts every broker: a pytest whose ids plugins can't change does so in silence."""
+    assert request.node.nodeid.endswith("@one") == request.config.getoption("loadgroup", False)

@@ -255,14 +255,6 @@ def test_explain_lists_what_a_word_stands_for(capsys: pytest.CaptureFixture[str]
     assert all(row.startswith("  unknown-") for row in rows(capsys.readouterr().out))
 
 
-def test_the_shipped_project_is_not_repaired_from_elsewhere(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert main(["lint", "--fix"]) == 2
-    assert "no project here" in capsys.readouterr().err
-
-
 def test_explain_for_programs(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain", "tab", "--format", "json"]) == 0
     found = json.loads(capsys.readouterr().out)

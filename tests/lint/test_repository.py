@@ -1,8 +1,10 @@
 """What a repository uses lint by: the hook of pre-commit, and the GitHub action."""
 
+import json
 import re
 import shutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,14 +23,29 @@ ACTION: dict[str, Any] = yaml.safe_load((ROOT / "action.yml").read_text())
 @pytest.fixture
 def repository(tmp_path: Path) -> Path:
     """A git repository with a project in a folder of it, `lumen` on its PATH."""
-    shutil.copytree(BASE, tmp_path / "repository" / "stand")
-    bin_folder = tmp_path / "bin"
+    return made(tmp_path, "stand")
+
+
+def made(home: Path, *projects: str) -> Path:
+    """A git repository with projects in these folders of it, all staged; `lumen` and `pre-commit` on its PATH."""
+    repository = home / "repository"
+    for folder in projects:
+        shutil.copytree(BASE, repository / folder, dirs_exist_ok=True)
+    bin_folder = home / "bin"
     bin_folder.mkdir()
-    lumen = bin_folder / "lumen"
-    lumen.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT / "engine"}" exec "{sys.executable}" -m lumen "$@"\n')
-    lumen.chmod(0o755)
-    run_guarded(["git", "init", "-q", tmp_path / "repository"], check=True)
-    return tmp_path / "repository"
+    for name, module in (("lumen", "lumen"), ("pre-commit", "pre_commit")):
+        program = bin_folder / name
+        program.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT / "engine"}" exec "{sys.executable}" -m {module} "$@"\n')
+        program.chmod(0o755)
+    git(repository, "init", "-q")
+    git(repository, "add", ".")
+    return repository
+
+
+def git(folder: Path, *words: str) -> str:
+    who = ("-c", "user.name=Ada", "-c", "user.email=ada@example.org")
+    done = run_guarded(["git", *who, *words], cwd=folder, check=True, capture_output=True, text=True)
+    return str(done.stdout).strip()
 
 
 def spoil(folder: Path) -> None:
@@ -56,32 +73,161 @@ def test_the_hook_runs_for_every_file_of_a_project_and_no_other() -> None:
     assert not [file for file in ("README.md", "engine/lumen/bus.py", "docs/yaml.md", "a.yaml") if files.search(file)]
 
 
-@pytest.mark.slow
-def test_the_hook_passes_and_fails(repository: Path) -> None:
-    project = repository / "stand"
-    assert shell(HOOK["entry"], project).returncode == 0
-    spoil(project)
-    done = shell(HOOK["entry"], project)
-    assert done.returncode == 1
-    assert "behaviors/tour.yaml:28:14" in done.stdout
-    assert "unknown-state" in done.stdout
+@pytest.fixture(scope="module")
+def hooks(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A repository that has our hook, as pre-commit clones it, and its commit."""
+    folder = tmp_path_factory.mktemp("hooks")
+    shutil.copy(ROOT / ".pre-commit-hooks.yaml", folder)
+    git(folder, "init", "-q")
+    git(folder, "add", ".")
+    git(folder, "commit", "-q", "-m", "Adds a hook")
+    return folder, git(folder, "rev-parse", "HEAD")
+
+
+@pytest.fixture
+def commit(hooks: tuple[Path, str], tmp_path: Path) -> Callable[[Path], CompletedProcess[str]]:
+    """What pre-commit says of all that is staged. `language: system` keeps it from installing what is installed."""
+    source, revision = hooks
+
+    def commit(repository: Path) -> CompletedProcess[str]:
+        hook = {"id": "lumen-lint", "language": "system"}
+        config = {"repos": [{"repo": source.as_uri(), "rev": revision, "hooks": [hook]}]}
+        (repository / ".pre-commit-config.yaml").write_text(yaml.safe_dump(config))
+        git(repository, "add", ".")
+        return shell("pre-commit run", repository, PRE_COMMIT_HOME=str(tmp_path / "cache"), HOME=str(tmp_path))
+
+    return commit
 
 
 @pytest.mark.slow
-def test_the_action_annotates_at_the_word(repository: Path) -> None:
-    steps = ACTION["runs"]["steps"]
+@pytest.mark.parametrize("folders", [["."], ["stand"], ["halls/first", "halls/second"]])
+def test_pre_commit_stops_what_breaks_any_project_of_a_repository(
+    folders: list[str], tmp_path: Path, commit: Callable[[Path], CompletedProcess[str]]
+) -> None:
+    repository = made(tmp_path, *folders)
+    assert "Passed" in (sound := commit(repository)).stdout, sound
+    for folder in folders:
+        spoil(repository / folder)
+    broken = commit(repository)
+    assert broken.returncode == 1
+    for folder in folders:
+        assert f"{Path(folder, 'behaviors/tour.yaml')}:28:14: error[unknown-state]" in broken.stdout
+
+
+@pytest.mark.slow
+def test_pre_commit_judges_what_a_file_breaks_in_others(
+    repository: Path, commit: Callable[[Path], CompletedProcess[str]]
+) -> None:
+    """The file that is committed has nothing wrong in it: the one that names it has."""
+    git(repository, "commit", "-q", "-m", "Adds a project")
+    (repository / "stand/motions/wave.yaml").rename(repository / "stand/motions/waving.yaml")
+    broken = commit(repository)
+    assert broken.returncode == 1
+    assert "stand/behaviors/tour.yaml" in broken.stdout
+
+
+@pytest.mark.slow
+def test_pre_commit_lets_no_file_pass_that_belongs_to_no_project(
+    repository: Path, commit: Callable[[Path], CompletedProcess[str]]
+) -> None:
+    (repository / "stand/lumen.yaml").unlink()
+    refused = commit(repository)
+    assert refused.returncode == 1
+    assert "belongs to no project: there is no lumen.yaml beside it or above" in refused.stdout
+
+
+STEPS: dict[str, dict[str, Any]] = {step.get("id", step.get("name", "")): step for step in ACTION["runs"]["steps"]}
+
+
+def perform(step: str, repository: Path, **environment: str) -> tuple[CompletedProcess[str], dict[str, str]]:
+    """What a step of the action does in a repository, as GitHub's runner would have it, and its outputs."""
+    runner = repository.parent / "runner"
+    runner.mkdir(exist_ok=True)
+    outputs = runner / "outputs"
+    outputs.write_text("")
+    given = {"RUNNER_TEMP": runner, "RUNNER_OS": "Linux", "RUNNER_ARCH": "X64", "GITHUB_OUTPUT": outputs, "LUMEN": ROOT}
+    assert STEPS[step]["shell"] == "bash"
+    wanted = STEPS[step]["env"].keys() - {"LUMEN"}
+    assert wanted == environment.keys()
+    script = f"set -e -o pipefail\n{STEPS[step]['run']}"  # as the runner calls bash
+    done = shell(script, repository, **environment, **{name: str(value) for name, value in given.items()})
+    return done, dict(line.split("=", 1) for line in outputs.read_text().splitlines())
+
+
+@pytest.fixture
+def installed(repository: Path) -> str:
+    """An environment in place of the one that the action makes, in which nothing has to be installed."""
+    folder = repository.parent / "environment" / "bin"
+    folder.mkdir(parents=True)
+    (folder / "python").write_text("#!/bin/sh\n[ \"$1 $2 $3\" = '-m pip install' ]\n")
+    (folder / "python").chmod(0o755)
+    return str(folder.parent)
+
+
+@pytest.mark.slow
+def test_the_action_annotates_at_the_word(repository: Path, installed: str) -> None:
     assert ACTION["runs"]["using"] == "composite"
-    assert all("shell" in step for step in steps if "run" in step)
-    assert set(ACTION["inputs"]) == {"project", "arguments", "python-version"}
-    lint = steps[-1]["run"]
-    assert shell(lint, repository, PROJECT="stand", ARGUMENTS="--strict").returncode == 0
+    inputs = {"PROJECT": "stand", "ARGUMENTS": "--strict", "SARIF": "false", "ENVIRONMENT": installed}
+    assert perform("lint", repository, **inputs)[0].returncode == 0
     spoil(repository / "stand")
-    done = shell(lint, repository, PROJECT="stand", ARGUMENTS="--strict")
+    done, outputs = perform("lint", repository, **inputs)
     assert done.returncode == 1
+    assert outputs == {}
     notes = [line for line in done.stdout.splitlines() if line.startswith("::error ")]
     assert len(notes) == 1
     for part in ("file=stand/behaviors/tour.yaml", "line=28", "col=14", "idel"):
         assert part in notes[0]
+
+
+@pytest.mark.slow
+def test_the_action_hands_its_findings_to_code_scanning_on_wish(repository: Path, installed: str) -> None:
+    spoil(repository / "stand")
+    inputs = {"PROJECT": "stand", "ARGUMENTS": "", "SARIF": "true", "ENVIRONMENT": installed}
+    done, outputs = perform("lint", repository, **inputs)
+    assert done.returncode == 1
+    [run] = json.loads(Path(outputs["sarif"]).read_text())["runs"]
+    assert [result["ruleId"] for result in run["results"]] == ["unknown-state"]
+    upload = STEPS["Hand the findings to code scanning"]
+    assert upload["with"]["sarif_file"] == "${{ steps.lint.outputs.sarif }}"
+    assert upload["if"] == "always() && steps.lint.outputs.sarif != ''"
+
+
+@pytest.mark.slow
+def test_the_action_does_not_pass_where_there_is_no_project(repository: Path, installed: str) -> None:
+    inputs = {"PROJECT": ".", "ARGUMENTS": "", "SARIF": "true", "ENVIRONMENT": installed}
+    done, outputs = perform("lint", repository, **inputs)
+    assert done.returncode != 0
+    assert outputs == {}
+    assert "name one of the projects below: `stand`" in done.stderr
+
+
+def test_the_action_keeps_what_it_installed_until_a_package_changes(repository: Path) -> None:
+    core = perform("place", repository, SIMULATION="false", VERSION="3.12.4")[1]
+    assert core["requirements"] == "requirements-core.txt"
+    assert re.fullmatch(r"lumen-Linux-X64-3\.12\.4-requirements-core\.txt-[0-9a-f]{20}", core["key"])
+    whole = perform("place", repository, SIMULATION="true", VERSION="3.12.4")[1]
+    assert whole["requirements"] == "requirements.txt"
+    assert whole["key"] != core["key"]
+    cache = STEPS["cache"]["with"]
+    assert cache == {"path": "${{ steps.place.outputs.environment }}", "key": "${{ steps.place.outputs.key }}"}
+    assert STEPS["Install the packages of Lumen"]["if"] == "steps.cache.outputs.cache-hit != 'true'"
+
+
+def test_the_action_leaves_the_job_its_python() -> None:
+    assert STEPS["python"]["with"]["update-environment"] is False
+    assert not [step for step in STEPS.values() if "GITHUB_PATH" in step.get("run", "")]
+
+
+@pytest.mark.soak
+def test_the_action_installs_what_is_pinned_and_lints_with_it(repository: Path) -> None:
+    """From the index that this machine's pip asks: the packages by their hashes, and Lumen of this checkout."""
+    place = perform("place", repository, SIMULATION="false", VERSION="3")[1]
+    where = {"ENVIRONMENT": place["environment"]}
+    needs = {"PYTHON": sys.executable, "REQUIREMENTS": place["requirements"]}
+    assert perform("Install the packages of Lumen", repository, **where, **needs)[0].returncode == 0
+    inputs = {"PROJECT": "stand", "ARGUMENTS": "", "SARIF": "false", **where}
+    assert "nothing wrong" in perform("lint", repository, **inputs)[0].stdout
+    assert (Path(place["environment"]) / "bin" / "lumen").is_file()
 
 
 def test_the_action_takes_nothing_from_outside_into_its_commands() -> None:

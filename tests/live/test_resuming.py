@@ -128,6 +128,24 @@ def test_what_is_too_old_or_damaged_is_begun_anew(copy: Path) -> None:
     assert found.away == pytest.approx(1.0, abs=0.5)
     home.write(SNAPSHOT_FILE, json.dumps({**data, "bundle": "0" * 64}).encode())
     assert "its files were not kept" in str(resumed(copy))
+
+
+@pytest.mark.slow
+def test_what_another_lumen_has_left_is_told_and_begun_anew(copy: Path) -> None:
+    one = Live(copy)
+    crashed(one)
+    home = Home(home_of(copy))
+    data = json.loads(home.read(SNAPSHOT_FILE) or b"")
+    home.write(SNAPSHOT_FILE, json.dumps({**data, "version": 7, "rests": True}).encode())
+    found = resumed(copy)
+    assert isinstance(found, FreshStart)
+    assert found.rests
+    assert "its snapshot is of version 7, this one reads 1" in found.why
+    assert "start that Lumen instead" in found.why
+    files = {**read_files(copy), "lumen.yaml": b"lumen: 9\n" + (copy / "lumen.yaml").read_bytes()}
+    bundle = SnapshotStore(home).store(files)
+    home.write(SNAPSHOT_FILE, json.dumps({**data, "bundle": bundle}).encode())
+    assert "this is written for vocabulary 9" in str(resumed(copy))
     home.write(SNAPSHOT_FILE, json.dumps({**data, "snapshot": {"version": 1}}).encode())
     assert "can't be gone on with" in str(resumed(copy))
     for damaged in (b"", b"{", b"[]", b'{"version": 1}', b"\xff"):

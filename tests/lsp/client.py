@@ -29,6 +29,7 @@ class Client:
         self._messages: Queue[dict[str, Any] | None] = Queue()
         self._kept: list[dict[str, Any]] = []
         self._number = 0
+        self._unwanted: set[int] = set()
         threading.Thread(target=self._read, daemon=True).start()
         self.capabilities = self.request(
             "initialize",
@@ -73,6 +74,14 @@ class Client:
             if params["uri"] == self.uri(file):
                 return list(params["diagnostics"])
 
+    def message(self) -> str:
+        """The next message that is to be shown to a person."""
+        return str(self.notified("window/showMessage")["message"])
+
+    def notified(self, method: str) -> dict[str, Any]:
+        """What the next notification of a method says."""
+        return dict(self._take(lambda m: m.get("method") == method)["params"])
+
     def request(self, method: str, **params: Any) -> Any:
         """The answer; an error as a map with `code` and `message`."""
         self._number += 1
@@ -80,6 +89,12 @@ class Client:
         self._send({"id": number, "method": method, "params": params})
         answer = self._take(lambda m: m.get("id") == number and "method" not in m)
         return answer.get("result") if "error" not in answer else answer["error"]
+
+    def ask_later(self, method: str, **params: Any) -> None:
+        """A request whose answer nobody waits for."""
+        self._number += 1
+        self._unwanted.add(self._number)
+        self._send({"id": self._number, "method": method, "params": params})
 
     def notify(self, method: str, **params: Any) -> None:
         self._send({"method": method, "params": params})
@@ -102,7 +117,7 @@ class Client:
                 self._send({"id": message["id"], "result": [None for _ in items] or None})
             elif wanted(message):
                 return message
-            else:
+            elif message.get("id") not in self._unwanted:
                 self._kept.append(message)
 
     def _read(self) -> None:

@@ -50,7 +50,10 @@ def shown(text: str, span: dict[str, Any]) -> str:
 def test_what_it_can_do(client: Client) -> None:
     able = client.capabilities
     assert able["positionEncoding"] == "utf-16"
-    for service in ("hover", "definition", "references", "documentSymbol", "completion", "rename", "codeAction"):
+    for service in (
+        "hover", "definition", "references", "documentSymbol", "completion", "rename", "codeAction", "codeLens",
+        "inlayHint", "signatureHelp", "foldingRange", "documentLink", "documentHighlight", "workspaceSymbol",
+    ):  # fmt: skip
         assert able[f"{service}Provider"], service
 
 
@@ -114,6 +117,52 @@ def test_rename_of_a_motion_moves_its_file(client: Client) -> None:
     refused = client.ask("rename", TOUR, line, character, newName="sing")
     assert "there is a motion `sing` already" in refused["message"]
     assert client.ask("prepareRename", TOUR, *at(text, "# What the ro|bot remembers")) is None
+
+
+def test_a_refused_rename_leaves_no_traceback(project: Path) -> None:
+    with Client(project) as client:
+        text = client.open(TOUR)
+        refused = client.ask("rename", TOUR, *at(text, "play: dan|ce"), newName="sing")
+        assert "there is a motion `sing` already" in refused["message"]
+    assert client.process.stderr
+    assert client.process.stderr.read() == b""
+
+
+def test_lenses_hints_signatures_folds_links_highlights_and_symbols(client: Client) -> None:
+    text = client.open(TOUR)
+    document = {"uri": client.uri(TOUR)}
+    lenses = client.request("textDocument/codeLens", textDocument=document)
+    dance = next(e for e in lenses if e["range"]["start"]["line"] == at(text, "          dan|ce:")[0])
+    assert dance["command"]["title"] == "2 transitions lead here"
+    uri, start, places = dance["command"]["arguments"]
+    assert (uri, start["line"], len(places)) == (client.uri(TOUR), dance["range"]["start"]["line"], 2)
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": 900, "character": 0}}
+    hints = client.request("textDocument/inlayHint", textDocument=document, range=whole)
+    assert {"28 s after its do", "after entering"} <= {hint["label"] for hint in hints}
+    help = client.ask("signatureHelp", TOUR, *at(text, "heard(event.data.result, 'engl|ish')"))
+    assert (help["signatures"][0]["label"][:6], help["activeParameter"]) == ("heard(", 1)
+    assert client.request("textDocument/foldingRange", textDocument=document)
+    links = client.request("textDocument/documentLink", textDocument=document)
+    assert client.uri("motions/dance.yaml") in {link["target"] for link in links}
+    marks = client.ask("documentHighlight", TOUR, *at(text, "context.name_|tries <"))
+    assert {shown(text, mark["range"]) for mark in marks} == {"name_tries"}
+    assert {mark["kind"] for mark in marks} == {2, 3}
+    found = client.request("workspace/symbol", query="danc")
+    assert client.uri("motions/dance.yaml") in {symbol["location"]["uri"] for symbol in found}
+
+
+def test_a_story_is_run_by_its_lens(client: Client) -> None:
+    """A client that has no command of that name leaves it to the server, which says how the story ended."""
+    story = "behaviors/stories/unknown_visitor.yaml"
+    client.open(story)
+    (lens,) = client.request("textDocument/codeLens", textDocument={"uri": client.uri(story)})
+    assert lens["command"]["title"] == "run this story"
+    command = {key: lens["command"][key] for key in ("command", "arguments")}
+    assert client.request("workspace/executeCommand", **command) is True
+    assert "unknown_visitor" in client.message()
+    command["arguments"][1] = "nobody"
+    assert client.request("workspace/executeCommand", **command) is False
+    assert "nobody" in client.message()
 
 
 def test_a_fix_is_offered(client: Client) -> None:

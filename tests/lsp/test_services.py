@@ -46,7 +46,7 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
         (TOUR, "onDone: offer", "onDone: #|", ['"#goodbye"', '"#idle"'], []),
         (TOUR, "onDone: offer", 'onDone: "#|"', ["#goodbye"], ['"#goodbye"']),
         (TOUR, "    initial: idle", "    initial: |", ["idle", "paused"], ["greet"]),
-        (TOUR, "{posture: Stand}", "{posture: S|", ["Stand", "Crouch"], ["dance"]),
+        (TOUR, "{posture: Stand}", "{posture: S|", ["Stand", "Sit"], ["dance", "Crouch"]),
         (TOUR, "{posture: Stand}", "{play: |}", ["dance", "sing"], ["Stand"]),
         (TOUR, "{posture: Stand}", "{publish: {route: |", ["command", "journal"], ["tour"]),
         (TOUR, "{posture: Stand}", "{publish: {route: command, body: {|", ["method: ", "parameter: "], ["x: "]),

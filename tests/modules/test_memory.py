@@ -177,6 +177,20 @@ def test_a_locked_database_is_one_line_and_nothing_is_lost(stand: Make, tmp_path
     assert len(entries(here)) == 10
 
 
+def test_a_file_of_a_newer_lumen_is_left_as_it_is(stand: Make, tmp_path: Path) -> None:
+    file = tmp_path / "memory.db"
+    with sqlite3.connect(file) as db:
+        db.execute("PRAGMA user_version = 99")
+    db.close()
+    before = file.read_bytes()
+    here = stand()
+    remembering(here, file)
+    talk(here.bus, "Ani")
+    until(lambda: here.told)
+    assert "was written by a newer Lumen: use that one, or move the file away" in here.told[0]
+    assert file.read_bytes() == before
+
+
 @pytest.mark.parametrize(
     ("content", "said"),
     [(b"what is this?" * 100, "is no SQLite database, or is damaged"), (None, "is a database of something else")],

@@ -24,7 +24,7 @@ def connected(project: Project, url: str) -> NaoqiRobot:
 
 def test_without_qi_the_error_says_how_to_get_it(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "qi", None)
-    with pytest.raises(RobotError, match=r"pip install lumen-robot\[naoqi\]"):
+    with pytest.raises(RobotError, match=r"pip install 'lumen-robot\[naoqi\]'"):
         connected(project, "nao.local")
 
 

@@ -33,7 +33,7 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
     "duplicate id": ("states: {a: {id: x}, b: {id: x}}", "duplicate-id", "x}}", ""),
     "id like a path": ("states: {a: , b: {id: a}}", "duplicate-id", "a}}", ""),
     "after": ("states: {a: {after: {20: a}}}", "bad-duration", "20", "20s"),
-    "wait": ("states: {a: {do: {wait: 2 sec}}}", "bad-duration", "2 sec", "500ms"),
+    "wait": ("states: {a: {do: {wait: 2 sec}}}", "bad-duration", "2 sec", "`2s`"),
     "delay": ("states: {a: {entry: {send: {event: x, delay: soon}}}}", "bad-duration", "soon", ""),
     "wait outside do": ("states: {a: {entry: {wait: 2s}}}", "only-in-do", "wait", "`send`"),
     "parallel outside do": ("states: {a: {exit: [{parallel: [{say: x}]}]}}", "only-in-do", "parallel", "`do`"),

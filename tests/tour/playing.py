@@ -1,6 +1,6 @@
 """Plays a story in virtual time, on the recording robot or another, and keeps what happened."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -68,11 +68,16 @@ class Log(Observer):
 
 
 def play(
-    project: Project, story: Story, performer: Performer | None = None, *, part: Callable[[float], None] | None = None
+    project: Project,
+    story: Story,
+    performer: Performer | None = None,
+    *,
+    part: Callable[[float], None] | None = None,
+    observers: Sequence[Observer] = (),
 ) -> Run:
-    """The story played to its end, or to its failure; `part` lives with it."""
+    """The story played to its end, or to its failure; `part` lives with it, `observers` watch it."""
     run = Run()
     chosen = Setup(performer, SimulatedClock(performer.advance), performer) if performer else None
-    rehearsal = rehearse(project, story, chosen, observers=[Log(run)], hooks=[part] if part else [])
+    rehearsal = rehearse(project, story, chosen, observers=[Log(run), *observers], hooks=[part] if part else [])
     run.time, run.failure = rehearsal.time, str(rehearsal.failed or "")
     return run

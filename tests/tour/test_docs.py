@@ -48,10 +48,10 @@ def test_lint_says_what_the_tutorial_quotes(
     copy: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     change(copy, f"{BLOCKS[0]}            onDone: offer\n", f"{BLOCKS[0]}            onDone: ofer\n")
-    (quoted,) = re.findall(r"```text\n(behaviors/.*?)```", CHANGE, re.S)
+    (quoted,) = re.findall(r"```console\n\$ lumen lint\n(behaviors/.*?)```", CHANGE, re.S)
     monkeypatch.chdir(copy)
     assert main(["lint"]) == 1
-    assert re.sub(r"\d+ files", "67 files", capsys.readouterr().out) == quoted
+    assert re.sub(r"\d+ files", "78 files", capsys.readouterr().out) == quoted
 
 
 @pytest.mark.parametrize("kind", ["behavior", "story", "motion", "controller", "lumen"])

@@ -6,7 +6,6 @@ from itertools import pairwise
 import pytest
 
 from lumen.app.exploring import explored
-from lumen.app.rehearsal import rehearse
 from lumen.language.projects import Project
 from lumen.loading.schedules import read_schedule
 from lumen.runtime.coverage import Coverage
@@ -17,12 +16,18 @@ STORIES = sorted(path.stem for path in (ROOT / "behaviors" / "stories").glob("*.
 
 
 @pytest.fixture(scope="module")
-def run(project: Project):  # type: ignore[no-untyped-def]
+def coverage(project: Project) -> Coverage:
+    """Of what `run` has played."""
+    return Coverage(project)
+
+
+@pytest.fixture(scope="module")
+def run(project: Project, coverage: Coverage):  # type: ignore[no-untyped-def]
     """Plays a story once, however many tests ask for it."""
 
     @cache
     def played(name: str) -> Run:
-        return play(project, project.stories[name])
+        return play(project, project.stories[name], observers=[coverage.of(project.behavior)])
 
     return played
 
@@ -36,10 +41,11 @@ def test_the_story_ends_well(run, project: Project, name: str) -> None:  # type:
 
 
 @pytest.mark.slow
-def test_the_stories_together_enter_every_state_and_take_every_transition(project: Project) -> None:
-    coverage = Coverage(project)
-    for story in project.stories.values():
-        rehearse(project, story, observers=[coverage.of(project.behavior)])
+def test_the_stories_together_enter_every_state_and_take_every_transition(  # type: ignore[no-untyped-def]
+    run, coverage: Coverage
+) -> None:
+    for name in STORIES:
+        run(name)
     assert [str(gap) for gap in coverage.gaps()] == []
     assert coverage.entered["tour"] >= {*GUIDE, *SAFETY, "paused", "interrupted"}
 

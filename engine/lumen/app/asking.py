@@ -8,6 +8,8 @@ from typing import Any
 from lumen.errors import BusUnreachableError
 from lumen.ports import Bus
 
+OPERATOR_KEY, OPERATOR_ANSWERS = "lumen.operator.request", "lumen.operator.answer"
+"""Where operators ask a running exhibition, and where its answers come."""
 FIRST_ANSWER_TIMEOUT = 10.0
 """How long the first answer may take [s]: files are loaded for it."""
 

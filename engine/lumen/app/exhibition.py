@@ -10,6 +10,7 @@ from lumen.app.narrator import Narrator
 from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
 from lumen.app.parts.kept_hold import keep_hold
+from lumen.app.parts.operating import OperatorPart
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.alerting import RefusalPart
 from lumen.app.reload.records import RunRecords
@@ -73,6 +74,15 @@ class Exhibition:
             taken_by = directory.reloader if directory else Reloader
             self.reloader = taken_by(behavior, self.node.narrator, mode=reload)
             self.node.add(ReloadPart(self.reloader))
+        self._operator = OperatorPart(
+            behavior,
+            self.node.narrator,
+            stopped=lambda: self.node.robot.server.hold.stopped,
+            realtime=lambda: self.node.pace.realtime,
+            reloaded=lambda: self.reloader.last_reload if self.reloader else None,
+            record=directory.records.write if directory else lambda _: None,
+        )
+        self.node.add(self._operator)
         watch = self._alert(alerts, opened, directory) if alerts else None
         if directory:
             fresh = fresh or story is not None
@@ -167,6 +177,10 @@ class Exhibition:
         Where the behaviour knows no such event the robot stands up.
         """
         self.node.robot.server.resume(PROGRAM)
+
+    def status(self) -> dict[str, Any]:
+        """How it is, as `lumen status --format json` prints it."""
+        return self._operator.status()
 
     def observe(self, handler: Callable[[Step], None]) -> None:
         """Call this with each step from now on, in the order taken."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from lumen.errors import RobotFailedError
 from lumen.modules.audio_track import AudioTrack
 from lumen.modules.sound import save
+from lumen.upkeep.private_folder import private_folder
 
 
 def add_sound(film: Path, track: AudioTrack, length: float) -> None:
@@ -15,6 +16,7 @@ def add_sound(film: Path, track: AudioTrack, length: float) -> None:
     import imageio_ffmpeg
 
     with tempfile.TemporaryDirectory(dir=film.parent, prefix=".lumen-film-") as folder:
+        private_folder(Path(folder))
         heard, whole = Path(folder, "heard.wav"), Path(folder, "whole.mp4")
         save(heard, track.mixed(length))
         command = [imageio_ffmpeg.get_ffmpeg_exe(), "-v", "error", "-y", "-i", str(film), "-i", str(heard)]

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from lumen.app.causes import innermost, reason_of, why
+from lumen.app.ignoring import IgnoredEvents
 from lumen.interpreters.statechart import Step, finished
 from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.language.commands import BodyCommand, Command, Log, Publish, Say, Start
@@ -16,8 +17,11 @@ from lumen.runtime.loop import Observer
 class Narrator(Observer):
     """Tells what happens, a line each, and counts it; who shows the lines overrides `line` and `note`.
 
-    `now` is asked for the time [s], `machine` for the one that runs.
+    `now` is asked for the time [s], `machine` for the one that runs. Where it `explains`, it tells of what changed
+    nothing, and why.
     """
+
+    explains = False
 
     def __init__(self, now: Callable[[], float], machine: Callable[[], MachineDefinition]) -> None:
         self._now, self._machine = now, machine
@@ -25,6 +29,7 @@ class Narrator(Observer):
         self.states: set[str] = set()
         self.said = 0
         self.played: dict[str, int] = {}
+        self._ignored = IgnoredEvents()
 
     def line(self, who: str, text: str) -> None:
         """One line: who it is about, and what happens now."""
@@ -48,6 +53,8 @@ class Narrator(Observer):
         if step.entered and finished(self._machine(), step.snapshot):
             output = step.snapshot.output
             self.line("state", "the behaviour is over" + ("" if output is None else f", and gives {output}"))
+        if self.explains and (ignored := self._ignored.line(self._machine(), step)):
+            self.line("ignored", ignored)
 
     def performing(self, command: Command, now: float) -> None:
         match command:

@@ -56,6 +56,11 @@ def _running(root: Path) -> dict[str, Any] | None:
     return None
 
 
+def runs_here(root: Path) -> bool:
+    """Whether an exhibition of the project in that folder runs on this machine."""
+    return _running(root) is not None
+
+
 def _said(home: Home) -> dict[str, Any] | None:
     found = home.read_json(ADDRESS_FILE)
     return found if isinstance(found, dict) else None

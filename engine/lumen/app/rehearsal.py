@@ -44,6 +44,8 @@ class Rehearsal:
 class RehearsalTrace(Narrator):
     """Keeps the last lines of what happens, None for all of them: each time [s], who, and what."""
 
+    explains = True
+
     def __init__(
         self, now: Callable[[], float], machine: Callable[[], MachineDefinition], remembered: int | None = REMEMBERED
     ) -> None:

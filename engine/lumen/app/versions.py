@@ -9,7 +9,7 @@ from lumen.errors import ProjectError, UsageError
 from lumen.interpreters.statechart import Snapshot, deserialize
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
-from lumen.loading.packaged import find_project
+from lumen.loading.own_project import own_project
 from lumen.loading.revisions import files_at
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
@@ -33,15 +33,13 @@ def version(name: str | None, here: Path | None = None) -> Version:
     Without a name it is that project as it stands. Raises UsageError where there is none, and where its files have
     errors.
     """
-    root = here or find_project()
+    folder = name is not None and name != LIVE and os.path.exists(name)
+    root = own_project(name) if folder else here or own_project()
     kept: StoredSnapshot | None = None
-    if name is None:
+    if name is None or folder:
         files: Mapping[str, bytes] = read_files(root)
     elif name == LIVE:
         kept, files = _running(root)
-    elif os.path.exists(name):
-        root = find_project(name)
-        files = read_files(root)
     else:
         files = _revision(root, name)
     project, diagnostics = check_files(root, files)

@@ -119,6 +119,10 @@ class AmqpBus:
             OutgoingMessage(EXCHANGE, key, data, JSON, reply_to, correlation_id, deadline, keep=keep, id=id)
         )
 
+    def returns(self, handler: Callable[[str], None]) -> None:
+        for transport in self._transports():
+            transport.publisher.returned = handler
+
     def reply(self, message: Message, body: Any) -> None:
         """A text goes to a queue as it is, as modules of 2015 expect `command finished`; everything else as JSON."""
         if not message.reply_to:

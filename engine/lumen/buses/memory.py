@@ -183,6 +183,10 @@ class MemoryBus:
                 hub.shed()
             hub.deliver()
 
+    def heard(self, key: str) -> bool:
+        """Whether anybody has subscribed to what is published under this key."""
+        return bool(self._hub.find(key))
+
     def reply(self, message: Message, body: Any) -> None:
         if message.reply_to:
             self.publish(message.reply_to, body, correlation_id=message.correlation_id)

@@ -34,7 +34,8 @@ class Publisher(BrokerConnection):
 
     At most `MAX_UNCONFIRMED_MESSAGES` are sent without the broker's confirmation. When the connection is lost, those of
     them that must arrive are the next again. What nobody takes is logged with the nearest of the `known` keys.
-    `journals` are the queues that keep what goes out until a module reads it.
+    `journals` are the queues that keep what goes out until a module reads it. `returned` is called with each key whose
+    message nobody takes; without it only those come back that must arrive.
     """
 
     def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
@@ -42,6 +43,7 @@ class Publisher(BrokerConnection):
         self.outbox = Outbox(self._awaken)
         self.known: tuple[str, ...] = ()
         self.journals: Mapping[str, Queue] = {}
+        self.returned: Callable[[str], None] | None = None
         self._declared: set[str] = set()
         self._refused: set[str] = set()
         self._window: dict[int, OutgoingMessage] = {}
@@ -123,9 +125,8 @@ class Publisher(BrokerConnection):
             headers=message.headers,
         )
         try:
-            self.channel.basic_publish(
-                message.exchange, message.key, message.body, properties, mandatory=bool(message.id)
-            )
+            wanted = bool(message.id or (self.returned and message.exchange))
+            self.channel.basic_publish(message.exchange, message.key, message.body, properties, mandatory=wanted)
         except (AMQPChannelError, AMQPConnectionError, OSError):
             raise
         except Exception as error:  # it can't be written down: sent again, it would end the connection again
@@ -147,9 +148,13 @@ class Publisher(BrokerConnection):
             self.outbox.put_back([message for message in messages if message.id])
 
     def _returned(self, _: Any, method: Any, properties: Any, body: bytes) -> None:
-        """Nobody is there for a message that must arrive: it is put where somebody can find it."""
+        """Nobody is there for a message; one that must arrive is put where somebody can find it."""
         key = method.routing_key
         if method.exchange == UNROUTED:
+            return
+        if self.returned:
+            self.returned(key)
+        if not properties.message_id:
             return
         self.warn_once(key)
         if self.has_side_queues:

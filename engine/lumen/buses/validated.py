@@ -51,6 +51,11 @@ class ValidatedBus:
         counts: Mapping[str, int] = getattr(self._bus, "dropped", {})
         return counts
 
+    def heard(self, key: str) -> bool:
+        """Whether anybody takes what is published under this key, where the bus knows."""
+        known: Callable[[str], bool] = getattr(self._bus, "heard", lambda _: True)
+        return known(key)
+
     def use(self, project: Project) -> None:
         """Check against the routes and schemas of this project from now on."""
         routes = by_key(project)

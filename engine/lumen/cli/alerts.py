@@ -6,23 +6,23 @@ import json
 from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
 from lumen.errors import UsageError
-from lumen.loading.packaged import find_project
+from lumen.loading.own_project import own_project
 from lumen.loading.project import main_settings
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("what", choices=("test",), help="tell each of those in `alerts:` of lumen.yaml something, whatever the hour")
-    add("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above, else the shipped one")
+    add("project", nargs="?", metavar="PROJECT", help="its folder; default: the one here or above")
     add("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
     """0 where all were reached; raises UsageError where nobody is to be told."""
-    root = find_project(options.project)
+    root = own_project(options.project)
     settings = main_settings(root)
     if settings is None or not settings.alerts.to:
-        raise UsageError(f"nobody is to be told: there is no `alerts:` in {root / 'lumen.yaml'} that names somebody")
+        raise UsageError(f"no recipient: there is no `alerts:` in {root / 'lumen.yaml'} with somebody under `to`")
     desk = AlertDesk(settings.alerts, Origin(settings.name or root.name, settings.robot), root, lambda _: None)
     told = []
     for whom, why in desk.test():

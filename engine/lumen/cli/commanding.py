@@ -4,11 +4,11 @@ import argparse
 import sys
 from typing import Any
 
-from lumen.app.asking import ask
+from lumen.app.asking import OPERATOR_ANSWERS, ask
+from lumen.cli.formats import print_object
 from lumen.cli.reach import reach
 from lumen.ports import Bus
 
-ANSWERS = "lumen.operator.answer"
 COMMAND_TIMEOUT = 30.0
 
 
@@ -19,18 +19,21 @@ def command(options: argparse.Namespace, body: Any, done: str) -> int:
         answer = answered(reached.bus, reached.command, body, COMMAND_TIMEOUT)
     finally:
         reached.bus.close()
-    return told(options.verb, answer, done)
+    return told(options, answer, done)
 
 
 def answered(bus: Bus, key: str, body: Any, timeout: float) -> Any:
     """What the robot says to it. Raises BusError where it says nothing within the timeout [s]."""
-    return next(ask(bus, key, body, ANSWERS, first=timeout))
+    return next(ask(bus, key, body, OPERATOR_ANSWERS, first=timeout))
 
 
-def told(verb: str, answer: Any, done: str) -> int:
+def told(options: argparse.Namespace, answer: Any, done: str) -> int:
     """Print that it is `done`, or the answer that says why not; the exit code."""
-    if answer == "command finished":
+    well = answer == "command finished"
+    if options.format == "json":
+        print_object({"ok": well, "answer": done if well else answer})
+    elif well:
         print(done)
-        return 0
-    print(f"lumen {verb}: {answer}", file=sys.stderr)
-    return 1
+    else:
+        print(f"lumen {options.verb}: {answer}", file=sys.stderr)
+    return int(not well)

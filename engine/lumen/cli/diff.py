@@ -2,11 +2,11 @@
 
 import argparse
 import json
-import sys
 from typing import Any
 
 from lumen.app.reload.migration_preview import MigrationOutcome, MigrationPreview, outcome_of, preview
 from lumen.app.versions import LIVE, Version, version
+from lumen.cli.progress import progress
 from lumen.cli.terminal import coloured, paint
 from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
 
@@ -40,16 +40,11 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _fates(old: Version, new: Version, bound: int) -> MigrationPreview:
-    terminal = sys.stderr.isatty()
-
-    def tell(walked: int, waiting: int) -> None:
-        if terminal and walked % 50 == 0:
-            print(f"\r{walked:,} configurations, {waiting:,} in sight ", end="", file=sys.stderr, flush=True)
-
-    found = preview(old.project, live(old.project, new.project), bound, tell)
-    if terminal:
-        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
-    return found
+    with progress(at_most=True) as tell:
+        return preview(
+            old.project, live(old.project, new.project), bound,
+            lambda walked, waiting: tell(walked, bound, f"configurations, {waiting:,} in sight"),
+        )  # fmt: skip
 
 
 def _text(

@@ -20,7 +20,7 @@ from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
 from lumen.loading.files import read_files
-from lumen.loading.packaged import find_project
+from lumen.loading.own_project import own_project
 from lumen.ports import Bus
 from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
 from lumen.rules import check_files
@@ -52,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0 all well, 1 something is wrong; raises BusError where there is nothing to look at."""
-    root = find_project(options.project)
+    root = own_project(options.project)
     project = check_files(root, read_files(root))[0]
     url = options.bus or os.environ.get("LUMEN_BUS") or (project.bus if project else "memory://")
     findings = list(_broker(url, project) if url.startswith(("amqp:", "amqps:")) else _embedded(options, url, project))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import lumen
 from lumen.app.lint.findings import Findings
+from lumen.cli.projects import shown_project
 from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
@@ -22,7 +23,6 @@ from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.loading.document import Document
-from lumen.loading.packaged import find_project
 from lumen.loading.yaml_reader import parse
 
 Writer = Callable[[MachineDefinition, PlaceOfPath], tuple[str, list[Diagnostic]]]
@@ -52,26 +52,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0 where everything could be said, 1 where something is left out."""
-    project = lumen.load(options.project)
+    root = shown_project(options.project)
+    project = lumen.load(root)
     if options.target == "asyncapi":
         write_result(write_asyncapi(project), options.output)
         return 0
     if options.target == "fll":
-        return _written(*_controller(project, options), options)
+        return _written(*_controller(root, project, options), options)
     name = options.behavior or project.behavior
     if name not in project.behaviors:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
-    document = _document(find_project(options.project), f"behaviors/{name}.yaml")
+    document = _document(root, f"behaviors/{name}.yaml")
     return _written(*WRITERS[options.target](project.behaviors[name], document.place), document, options)
 
 
-def _controller(project: Project, options: argparse.Namespace) -> tuple[str, list[Diagnostic], Document]:
+def _controller(root: Path, project: Project, options: argparse.Namespace) -> tuple[str, list[Diagnostic], Document]:
     """The text of a controller, and what it leaves out."""
     name = options.behavior or (next(iter(project.controllers)) if len(project.controllers) == 1 else "")
     if name not in project.controllers:
         hint = did_you_mean(name, project.controllers, "fuzzy/ has")
         raise UsageError(f"no controller `{name}`: {hint}" if name else f"which controller? {hint}")
-    document = _document(find_project(options.project), f"fuzzy/{name}.yaml")
+    document = _document(root, f"fuzzy/{name}.yaml")
     return *write_fll(project.controllers[name], document.place), document
 
 

@@ -1,18 +1,33 @@
-"""`lumen graph`: a behaviour as a Mermaid diagram."""
+"""`lumen graph`: a behaviour as a picture, or as text for Mermaid or Graphviz."""
 
 import argparse
+import shutil
+import subprocess
 from pathlib import Path
 
 import lumen
 from lumen.errors import UsageError
+from lumen.formats.diagrams import dot_text, neighbourhood, overview, region, svg
+from lumen.formats.diagrams.diagram import Diagram
 from lumen.formats.mermaid import mermaid
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.machines import MachineDefinition
+
+PICTURES = (".svg", ".png")
+LAYOUTS = ("auto", "own", "dot")
+DRAWING = 60.0
+"""How long Graphviz may draw [s]."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("behavior", nargs="?", help="a behaviour's name; default: the one that runs")
-    parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
-    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="write it there instead of printing it")
+    add = parser.add_argument
+    add("behavior", nargs="?", help="a behaviour's name; default: the one that runs")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--region", metavar="NAME", help="only what is within this state, with what leads on")
+    which.add_argument("--state", metavar="NAME", help="only this state, what leads there, and where it leads")
+    add("--project", metavar="DIR", help="default: here or above, else the shipped one")
+    add("-o", "--output", metavar="FILE", type=Path, help=".svg or .png: a picture; .dot: for Graphviz; else Mermaid")
+    add("--layout", choices=LAYOUTS, default="auto", help="who lays a picture out: Graphviz's dot where it is, or we")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -20,13 +35,52 @@ def run(options: argparse.Namespace) -> int:
     name = options.behavior or project.behavior
     if name not in project.behaviors:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
-    diagram = mermaid(project.behaviors[name])
-    if options.output is None:
-        print(diagram)
+    output: Path | None = options.output
+    content = _content(options, project.behaviors[name], output.suffix.lower() if output else "")
+    if output is None:
+        print(content.decode(), end="")
         return 0
     try:
-        options.output.write_text(diagram + "\n", encoding="utf-8")
+        output.write_bytes(content)
     except OSError as error:
-        raise UsageError(f"can't write {options.output}: {error.strerror}") from None
-    print(f"wrote {options.output}")
+        raise UsageError(f"can't write {output}: {error.strerror}") from None
+    print(f"wrote {output}")
     return 0
+
+
+def _content(options: argparse.Namespace, machine: MachineDefinition, ending: str) -> bytes:
+    if ending not in (*PICTURES, ".dot"):
+        if options.state or options.region:
+            raise UsageError("Mermaid shows the whole: write a part into a picture, with -o FILE.svg")
+        return (mermaid(machine) + "\n").encode()
+    diagram = _diagram(options, machine)
+    if ending == ".dot":
+        return dot_text(diagram).encode()
+    dot = shutil.which("dot") if options.layout != "own" else None
+    if dot:
+        return _by_graphviz(dot, diagram, ending)
+    if options.layout == "dot":
+        raise UsageError("Graphviz's `dot` is not on this machine: leave out --layout dot")
+    if ending == ".png":
+        raise UsageError(
+            "a PNG takes Graphviz's `dot`, which is not used here: write an .svg, which every browser shows"
+        )
+    return svg(diagram).encode()
+
+
+def _diagram(options: argparse.Namespace, machine: MachineDefinition) -> Diagram:
+    if options.state:
+        return neighbourhood(machine, options.state)
+    return region(machine, options.region) if options.region else overview(machine)
+
+
+def _by_graphviz(dot: str, diagram: Diagram, ending: str) -> bytes:
+    command = [dot, f"-T{ending[1:]}"]
+    try:
+        drawn = subprocess.run(command, input=dot_text(diagram).encode(), capture_output=True, timeout=DRAWING)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise UsageError(f"{dot} does not draw: {error}; --layout own does without") from None
+    if drawn.returncode:
+        said = drawn.stderr.decode(errors="replace").strip().splitlines()
+        raise UsageError(f"{dot} does not draw: {said[0] if said else 'it failed'}; --layout own does without")
+    return drawn.stdout

@@ -12,6 +12,7 @@ import lumen
 from lumen.app.garbage import gc_paused
 from lumen.app.lint.findings import Findings
 from lumen.cli.foreign import foreign_content, one_line
+from lumen.cli.progress import progress
 from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
@@ -37,6 +38,8 @@ Reader = Callable[[str, bytes, str], tuple[dict[str, Any], list[Diagnostic]]]
 
 CHARTS: Mapping[str, Reader] = {".scxml": read_scxml, ".xml": read_scxml, ".json": read_xstate}
 CONTROLLERS: Mapping[str, Reader] = {".fll": read_fll, ".fcl": read_fcl, ".fis": read_fis}
+READ, WRITTEN = 20, 50
+"""How much of the time [%] a large chart takes until it is read, and from there until it is written."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -67,14 +70,17 @@ def run(options: argparse.Namespace) -> int:
     fuzzy = CONTROLLERS.get(options.file.suffix.lower())
     kind = "motion" if body else "controller" if fuzzy else "behavior"
     read = partial(_gesture, body, options.timeline) if body else fuzzy or _chart(options.file, content)
-    with gc_paused():  # else it looks through a large chart again and again
+    with progress() as tell, gc_paused():  # else it looks through a large chart again and again
+        tell(0, 100, f"% of {options.file}: reading")
         try:
             data, diagnostics = read(str(options.file), content, title)
         except ForeignFileError as error:
             raise UsageError(one_line(error.diagnostic)) from None
         except RecursionError:
             raise UsageError(f"{options.file} nests too deeply to be read: use fewer levels") from None
+        tell(READ, 100, f"% of {options.file}: writing")
         text = document_yaml(data, kind)
+        tell(READ + WRITTEN, 100, f"% of {options.file}: reading again")
         faults = _faults(str(options.output or "the result"), text, kind, body)
         if refused := next((fault for fault in faults if fault.severity is Severity.ERROR), None):
             raise UsageError(_refusal(options.file, text, refused, diagnostics))

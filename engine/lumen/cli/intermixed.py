@@ -6,6 +6,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from lumen.cli.suggesting import Suggesting
+
 
 class Help(argparse.HelpFormatter):
     """Python's help, without `shutil` for the width of the terminal: it takes as long as reading ten files."""
@@ -25,8 +27,11 @@ def _columns() -> int:
         return 80
 
 
-class Intermixed(argparse.ArgumentParser):
-    """Reads the options first. Python's parser takes `[NAME]` for missing where an option stands before it."""
+class Intermixed(Suggesting):
+    """Reads the options first. Python's parser takes `[NAME]` for missing where an option stands before it.
+
+    Its help ends with examples.
+    """
 
     _mixing = False
 
@@ -40,3 +45,9 @@ class Intermixed(argparse.ArgumentParser):
             return self.parse_known_intermixed_args(args, namespace)
         finally:
             self._mixing = False
+
+    def format_help(self) -> str:
+        from lumen.cli.pages import page  # only who asks for help waits for it
+
+        shown = "\n".join(f"  {one.command}\n      {one.says}" for one in page(self.prog.split()[-1]).examples)
+        return super().format_help() + (f"\nexamples:\n{shown}\n" if shown else "")

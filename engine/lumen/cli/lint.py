@@ -3,7 +3,6 @@
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from lumen.app.garbage import gc_paused
 from lumen.app.lint.findings import Findings
@@ -13,7 +12,6 @@ from lumen.cli.render import FORMATS, render
 from lumen.cli.terminal import coloured
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.packaged import shipped_root
 from lumen.rules.selection import selected
 
 
@@ -34,6 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--fix", action="store_true", help="repair what can be repaired without asking")
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
     add("--watch", action="store_true", help="lint again whenever a file is saved, until Ctrl-C")
+    add("--whole", action="store_true", help="of files that are named, judge their whole projects")
     add("--stdin-filename", metavar="FILE", help="with `-`: the file whose new content is read from standard input")
 
 
@@ -41,9 +40,7 @@ def run(options: argparse.Namespace) -> int:
     """0 where nothing is wrong, 1 where something is, or where --diff would change something."""
     wanted = _wanted(options)
     _consistent(options)
-    projects = lint_targets(options.paths, options.stdin_filename)
-    if options.fix and not options.paths and projects[0].root == shipped_root() and not _here(projects[0]):
-        raise UsageError("there is no project here or above to repair: name its folder")
+    projects = lint_targets(options.paths, options.stdin_filename, whole=options.whole)
     judge = _judge(options.against, wanted)
     if options.watch:
         from lumen.cli.watching import watch
@@ -69,7 +66,7 @@ def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namesp
     with progress() as tell:
         both = [played(each, wanted, robots, tell) for each in found]
     for _, rehearsals in both if options.format == "text" else ():
-        print(summary(rehearsals) or "no motion was played: there is none, or there are errors", file=sys.stderr)
+        print(summary(rehearsals) or "no motion was played: there are none, or the files have errors", file=sys.stderr)
     return [each for each, _ in both]
 
 
@@ -97,11 +94,6 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         return (chosen is None or diagnostic.code in chosen) and diagnostic.code not in left_out
 
     return wanted
-
-
-def _here(project: LintTarget) -> bool:
-    """Whether one stands in the project."""
-    return Path.cwd().is_relative_to(project.root.resolve())
 
 
 def _consistent(options: argparse.Namespace) -> None:

@@ -1,17 +1,17 @@
 """The command line: one module for each verb, imported when it is called."""
 
-import argparse
 import importlib
 import logging
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from io import TextIOWrapper
 
 import lumen
 from lumen.app.garbage import gc_paused
 from lumen.cli.intermixed import Help, Intermixed
+from lumen.cli.suggesting import Suggesting, parse
 from lumen.errors import LumenError, ProjectError
 
 STARTED = time.monotonic()
@@ -28,35 +28,35 @@ VERBS = {
     "say": "let the robot of a running exhibition say something",
     "stop": "let the robot of a running exhibition rest, at once",
     "resume": "let a robot that somebody stopped move again",
-    "reload": "have a running exhibition take its files, or say how it stands with them",
+    "status": "say what a running exhibition is doing",
+    "goto": "let a running exhibition enter a state",
+    "reload": "let a running exhibition read its files again, or say which files run",
     "diff": "say what differs between two versions of a project, and where a reload would lead",
     "topic": "list, print, measure and send the messages of a running exhibition",
-    "doctor": "say whether an exhibition's bus can be used, and what is missing on it",
-    "alerts": "try whether those are reached who are told of what goes wrong",
+    "doctor": "check an exhibition's bus, and say what is missing on it",
+    "alerts": "send a test alert to everybody who is told of trouble",
     "lint": "say what is wrong in a project, and where",
     "explain": "say what a code of lint means, and show an example",
+    "completion": "print the completion script for bash, zsh or fish",
     "lsp": "answer an editor (Language Server Protocol)",
+    "language": "begin another language, and say what is missing in one",
     "schema": "print the JSON Schema of a kind of file, for editors",
-    "test": "play the stories, and say which of them end badly",
+    "upgrade": "rewrite a project's files for the vocabulary that this Lumen reads",
+    "test": "play the stories, and say which of them fail",
     "play": "show a motion on the simulated robot",
-    "memory": "list who and what the robot remembers, and forget somebody",
+    "memory": "list the people and things that the robot remembers, and forget somebody",
     "graph": "draw a behaviour (Mermaid)",
-    "plot": "draw a controller, what it says of some inputs, or a motion",
-    "import": "turn a statechart or a motion of another tool into a file of ours",
+    "plot": "draw a controller, its output for some inputs, or a motion",
+    "import": "turn a file of another tool into a file of Lumen: a statechart, a motion, a controller",
     "export": "write a behaviour as SCXML, for XState, or as a diagram; the routes as AsyncAPI",
 }
 MODULES = {"import": "importing", "export": "exporting"}
 """Modules of verbs that are words of Python."""
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run `lumen` with these arguments: 0 all well, 1 findings or a failed story, 2 could not run."""
-    logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.WARNING)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="replace")
-    arguments = sys.argv[1:] if argv is None else list(argv)
-    parser = argparse.ArgumentParser(
+def command_line(wanted: Collection[str]) -> Suggesting:
+    """What reads the command line. Only the verbs that are wanted know their options: each is imported for that."""
+    parser = Suggesting(
         prog="lumen",
         description="Give a humanoid robot its behaviour in YAML.",
         epilog="lumen VERB --help says more.",
@@ -68,12 +68,22 @@ def main(argv: Sequence[str] | None = None) -> int:
         command = verbs.add_parser(
             verb, help=summary, description=summary[0].upper() + summary[1:] + ".", formatter_class=Help
         )
-        if verb in arguments[:1]:
+        if verb in wanted:
             with gc_paused():
                 module = importlib.import_module(f"lumen.cli.{MODULES.get(verb, verb)}")
             module.configure(command)
             command.set_defaults(run=module.run)
-    options = parser.parse_args(arguments)
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run `lumen` with these arguments: 0 all well, 1 findings or a failed story, 2 could not run."""
+    logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.WARNING)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
+    arguments = sys.argv[1:] if argv is None else list(argv)
+    options = parse(command_line(arguments[:1]), arguments)
     try:
         return int(options.run(options))
     except ProjectError as error:

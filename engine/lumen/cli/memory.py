@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from datetime import datetime
 from pathlib import Path
 
-from lumen.app.asking import ask
+from lumen.app.asking import OPERATOR_ANSWERS, ask
 from lumen.app.forgetting.files import forget_in
 from lumen.app.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
 from lumen.cli.reach import reach
@@ -22,7 +22,6 @@ from lumen.modules.memory.memory import DATABASE_FILE
 from lumen.ports import Bus
 from lumen.runtime.home import home_of
 
-ANSWERS = "lumen.operator.answer"
 ANSWER_TIMEOUT = 2.0
 """How long the memory of a running exhibition has to answer [s]; where none answers, all others are told."""
 
@@ -107,7 +106,7 @@ def _ask(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
     """The memory, which tells all others; without one that is done here."""
     try:
         answer = next(
-            ask(bus, _key(settings, "fact"), {"method": "forget", "name": name}, ANSWERS, first=ANSWER_TIMEOUT)
+            ask(bus, _key(settings, "fact"), {"method": "forget", "name": name}, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT)
         )
     except BusUnreachableError:
         bus.publish(_key(settings, "forgotten"), {"name": name})

@@ -1,33 +1,47 @@
-"""`lumen new DIR`: the shipped project, to be made one's own."""
+"""`lumen new DIR`: a project to be made one's own."""
 
 import argparse
-import shutil
 from pathlib import Path
 
+from lumen.app.starting import STARTERS, start_project
 from lumen.errors import UsageError
-from lumen.loading.files import PROJECT_FOLDERS
-from lumen.loading.packaged import MAIN_FILE, shipped_root
+from lumen.loading.project import main_settings
+
+ACTION = "OWNER/lumen@COMMIT"
+"""Stands where the address of this repository and a commit of it are to be."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", metavar="DIR", type=Path, help="where to put it; must not exist, or be empty")
+    which = parser.add_mutually_exclusive_group()
+    summary = "; ".join(f"{name}: {what}" for name, what in STARTERS.items())
+    which.add_argument(
+        "--like", choices=STARTERS, default="tour", help=f"what to begin with (default: tour); {summary}"
+    )
+    which.add_argument(
+        "--minimal", dest="like", action="store_const", const="minimal", help="the same as --like minimal"
+    )
+    parser.add_argument(
+        "--action",
+        metavar=ACTION,
+        default=ACTION,
+        help="where its file for GitHub finds Lumen's action: the repository, and the 40 digits of a commit",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
     folder: Path = options.folder
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise UsageError(f"{folder} is there already and not empty: name a new folder")
-    source = shipped_root()
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        shutil.copy(source / MAIN_FILE, folder)
-        for name in PROJECT_FOLDERS:
-            shutil.copytree(source / name, folder / name, dirs_exist_ok=True)
+        start_project(folder, options.like, options.action)
     except OSError as error:
         raise UsageError(f"can't write {error.filename or folder}: {error.strerror}") from None
-    print(f"{folder} holds a whole exhibition now. Next:")
+    settings = main_settings(folder)
+    behavior, story = (settings.behavior, settings.story) if settings else ("", "")
+    print(f"{folder} holds a whole exhibition now; its README.md says what is where. Next:")
     print(f"  cd {folder}")
-    print("  lumen run --story visitor    a scripted visitor meets the robot")
+    print(f"  {f'lumen run --story {story}':<29}a scripted visitor meets the robot")
     print("  lumen lint                   after every change: what is wrong, and where")
-    print("  behaviors/tour.yaml          what the robot does and says; change it while it runs")
+    print(f"  {f'behaviors/{behavior}.yaml':<29}what the robot does and says; change it while it runs")
     return 0

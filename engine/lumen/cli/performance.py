@@ -10,6 +10,7 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
+from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, WELL, RunVerdict
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.real import RealClock
@@ -17,7 +18,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Leave, VisitorAction
 from lumen.loading.packaged import shipped_root
 
-GREETING = "You are the visitor: type what you say. Ctrl-D walks away; Ctrl-C rests the robot, twice ends.\n"
+GREETING = "You are the visitor: type what you say, or /help. Ctrl-D walks away; Ctrl-C rests the robot, twice ends.\n"
 
 
 class Performance:
@@ -50,8 +51,8 @@ class Performance:
         self._lived = exhibition.run(period)
         self._took = time.monotonic() - began
 
-    def summary(self, exhibition: Exhibition, video: Path | None) -> int:
-        """Say how it went; the exit code."""
+    def summary(self, exhibition: Exhibition, video: Path | None) -> RunVerdict:
+        """Say how it went, and return it."""
         player = exhibition.node.player
         failure = player.failure if player else ""
         early = player is not None and not player.finished
@@ -61,16 +62,19 @@ class Performance:
         print(f"\n{ended}: {clock_time(self._lived)} of {'simulated ' * bool(pace)}time{pace}.")
         if failure:
             print(f"  {failure}")
-        print(f"  {self.transcript.counted()}")
+        lines = [self.transcript.counted()]
         if self.transcript.distance is not None:
-            print(f"  the visitor's face ended {self.transcript.distance:.0f} px from the centre of the camera's image")
-        for line in [*exhibition.node.robot.summary(), *exhibition.node.losses()]:
+            lines.append(
+                f"the visitor's face ended {self.transcript.distance:.0f} px from the centre of the camera's image"
+            )
+        lines += [*exhibition.node.robot.summary(), *exhibition.node.losses()]
+        film = str(video.absolute()) if video else ""
+        for line in [*lines, *([f"the film is {film}"] if film else [])]:
             print(f"  {line}")
-        if video:
-            print(f"  the film is {video}")
         print(f"Next: change a sentence in behaviors/{exhibition.project.behavior}.yaml while it runs,")
         print("      `lumen run` to be the visitor yourself, `lumen lint` after every change, `lumen graph` to see it.")
-        return 1 if failure or (early and not exhibition.node.interrupted) else 0
+        how = INTERRUPTED if exhibition.node.interrupted else EARLY if early else WELL
+        return RunVerdict(FAILED if failure else how, self._lived, self._took, failure, tuple(lines), film)
 
     def _look_back(self, exhibition: Exhibition) -> float | None:
         """How far from the centre of the image the face of the visitor is who leaves [px]."""

@@ -3,11 +3,15 @@
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
 import lumen
 from lumen.app.setup import SPEEDS, set_up
 from lumen.cli.film_path import film_path
 from lumen.cli.foreign import foreign_content, one_line
+from lumen.cli.formats import configure_format, one_object
+from lumen.cli.progress import ProgressListener, progress
+from lumen.cli.projects import shown_project
 from lumen.errors import ProjectError, UsageError
 from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.gestures import GESTURE_ENDINGS, read_gesture
@@ -32,25 +36,38 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--project", metavar="DIR", help="default: here or above, else the shipped one")
     parser.add_argument("--speed", choices=SPEEDS, default="max", help="simulated time, times real time (default: max)")
     parser.add_argument("--video", metavar="FILE.mp4", type=Path, help="write a film of it (needs OpenGL)")
+    configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    project = lumen.load(options.project)
+    project = lumen.load(shown_project(options.project))
     motion = _motion(project, options.motion, options.timeline)
     video = film_path(options.video, "simulation")
-    player = _Player(project, options.speed, video)
-    print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {options.speed} × real time")
-    for late in _slowed(motion, project.body):
-        print(late, file=sys.stderr)
+    with one_object(options.format) as say:
+        say(_played(project, motion, options.speed, video))
+    return 0
+
+
+def _played(project: Project, motion: MotionDefinition, speed: str, video: Path | None) -> dict[str, Any]:
+    """How it went. Raises UsageError where the robot can't, or falls."""
+    player = _Player(project, speed, video)
+    print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {speed} × real time")
+    late = _slowed(motion, project.body)
+    for line in late:
+        print(line, file=sys.stderr)
     try:
-        player.perform(Posture(motion.start or "Stand", 1.0))
-        player.perform(Perform(motion))
+        with progress() as tell:
+            player.perform(Posture(motion.start or "Stand", 1.0), tell)
+            player.perform(Perform(motion), tell, motion.duration)
     finally:
         player.close()
-    print(f"finished, on its feet; its torso leaned {player.robot.greatest_tilt:.1f} deg at most")
-    if video:
-        print(f"wrote {video}")
-    return 0
+    lean = player.robot.greatest_tilt
+    film = str(video.absolute()) if video else None
+    print(f"finished, on its feet; its torso leaned {lean:.1f} deg at most")
+    if film:
+        print(f"wrote {film}")
+    duration = round(motion.duration, 3)
+    return {"motion": motion.name, "duration": duration, "lean": round(lean, 2), "late": late, "film": film}
 
 
 class _Player:
@@ -65,11 +82,13 @@ class _Player:
         self.robot, self._clock = chosen.robot, chosen.clock
         self._film = Film(video, self.robot, "close") if video else None
 
-    def perform(self, command: RobotCommand) -> None:
-        """Raises UsageError where the robot can't, with its reason."""
+    def perform(self, command: RobotCommand, tell: ProgressListener, duration: float = 0.0) -> None:
+        """To its end, which is `duration` [s] ahead. Raises UsageError where the robot can't, with its reason."""
         self.robot.start("play", command)
+        began = self._clock.now()
         while True:
             self._clock.wait(self._clock.now() + TICK_PERIOD)
+            tell(min(self._clock.now() - began, duration), duration, "s played")
             if self._film:
                 self._film.tick(self._clock.now())
             for event in self.robot.poll():

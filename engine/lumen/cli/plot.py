@@ -4,11 +4,11 @@ import argparse
 from pathlib import Path
 
 import lumen
+from lumen.cli.projects import shown_project
 from lumen.errors import UsageError
 from lumen.formats.plots import PLOT_ENDINGS, PlotSheet, controller_sheet, draw, explained_sheet, motion_sheet
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import did_you_mean
-from lumen.loading.packaged import find_project
 from lumen.motion import Motion
 
 
@@ -35,16 +35,17 @@ def run(options: argparse.Namespace) -> int:
         output.write_bytes(content)
     except OSError as error:
         raise UsageError(f"can't write {output}: {(error.strerror or str(error)).lower()}") from None
-    print(f"wrote {output}")
+    print(f"wrote {output.absolute()}")
     return 0
 
 
 def _found(name: str) -> Path:
     """The file, here or in the project around us."""
-    root = find_project()
-    for path in (Path(name), root / name):
-        if path.is_file():
-            return path
+    if Path(name).is_file():
+        return Path(name)
+    root = shown_project(None)
+    if (root / name).is_file():
+        return root / name
     there = [
         str(p.relative_to(root)) for folder in ("fuzzy", "motions") for p in sorted((root / folder).glob("*.yaml"))
     ]

@@ -1,4 +1,4 @@
-"""`lumen reload`: have a running exhibition take its files, or say how it stands with them."""
+"""`lumen reload`: let a running exhibition read its files again, or say which files run."""
 
 import argparse
 import json
@@ -9,7 +9,7 @@ from lumen.app.reload.requests import COMMAND, STATUS
 from lumen.cli.reach import configure_reach, reach
 
 REQUESTS = {
-    "status": "say which files run, what is staged, and what came of the last ones",
+    "status": "say which files run, what is staged, and what happened to the last ones",
     "apply": "activate what is staged",
     "rollback": "go back to the files that ran before",
     "dry-run": "only say what the saved files would change",

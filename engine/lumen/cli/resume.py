@@ -5,6 +5,7 @@ import sys
 from typing import Any
 
 from lumen.cli.commanding import answered, told
+from lumen.cli.formats import configure_format
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import UsageError
@@ -15,10 +16,13 @@ RESUME_TIMEOUT = 10.0
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-y", "--yes", action="store_true", help="do not ask whether there is room around the robot")
     configure_reach(parser)
+    configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """0 once it may move, 1 where it could not or nobody wants it."""
+    if options.format == "json" and not options.yes:
+        raise UsageError("--format json is for programs, which can't be asked: say --yes as well")
     reached = reach(options)
     try:
         ask = {"type": "motion", "method": "stopped"}
@@ -30,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
         answer = answered(reached.bus, reached.stop, resume, RESUME_TIMEOUT)
     finally:
         reached.bus.close()
-    return told(options.verb, answer, "the robot may move again")
+    return told(options, answer, "the robot may move again")
 
 
 def _sure(stopped: Any) -> bool:
@@ -38,5 +42,5 @@ def _sure(stopped: Any) -> bool:
     by, since = (stopped.get(key) for key in ("stopped_by", "since")) if isinstance(stopped, dict) else ("", "")
     print(f"{by} stopped the robot at {since}." if by else "Nobody has stopped the robot.")
     if not sys.stdin.isatty():
-        raise UsageError("nobody is here to be asked: say --yes where there is room around the robot")
+        raise UsageError("resume asks first, but this is not a terminal: say --yes if there is room around the robot")
     return input("It may stand up at once. Is there room around it? [y/N] ").strip().lower() in ("y", "yes", "ya")

@@ -26,9 +26,11 @@ from lumen.app.stories import home_of, stories_of
 from lumen.bus import connect
 from lumen.buses.validated import validated
 from lumen.cli.film_path import film_path
+from lumen.cli.formats import configure_format, one_object
 from lumen.cli.main import ready
 from lumen.cli.performance import Performance
 from lumen.cli.printing import clock_time
+from lumen.cli.run_verdict import FAILED, INTERRUPTED, WELL, RunVerdict
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.following import FollowingClock
@@ -73,6 +75,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--reload", choices=MODES, default="auto", help="take saved files while it runs, or wait for `lumen reload`")
     add("--last-good", action="store_true", help="where the files have errors, start with the last that had none")
     add("--fresh", action="store_true", help="begin anew, even where the last run ended without notice")
+    configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -83,8 +86,10 @@ def run(options: argparse.Namespace) -> int:
     run_directory = RunDirectory(root, guest=bool(parts) and "brain" not in parts)
     told = nullcontext() if options.story else failures_told(root, run_directory, parts or WHOLE, _warn)
     try:
-        with told, nullcontext() if options.speed == "max" else _going_first():
-            return _run(options, root, run_directory, parts)
+        with told, one_object(options.format) as say, nullcontext() if options.speed == "max" else _going_first():
+            verdict = _run(options, root, run_directory, parts)
+            say(verdict.to_json(str(root.absolute()), options.story))
+            return verdict.code
     except (BusError, RobotError, ModuleError):
         run_directory.records.annul()
         raise
@@ -92,7 +97,7 @@ def run(options: argparse.Namespace) -> int:
         run_directory.close(forget=False)
 
 
-def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, parts: tuple[str, ...]) -> int:
+def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, parts: tuple[str, ...]) -> RunVerdict:
     project = startup_project(root, run_directory, last_good=options.last_good, warn=_warn)
     story = _story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
@@ -114,7 +119,7 @@ def _whole(
     run_directory: RunDirectory,
     period: float | None,
     language: str,
-) -> int:
+) -> RunVerdict:
     """Run a whole exhibition in this process."""
     video = film_path(options.video, options.robot)
     setup = set_up(options.robot, project, options.speed, story, options.robot_url)
@@ -158,7 +163,7 @@ def _processes(
     run_directory: RunDirectory,
     period: float | None,
     language: str,
-) -> int:
+) -> RunVerdict:
     """Run these parts of an exhibition. Raises UsageError for options that do not go with that."""
     _check_processes(options, story, parts, url)
     setup = set_up(options.robot, project, options.speed, story, options.robot_url) if ROBOT_PART in parts else None
@@ -171,7 +176,7 @@ def _processes(
     node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts)
     visitor = next((part for part in node.parts if isinstance(part, VisitorPart)), None)
     if visitor and story is None:
-        greeting = "You are the visitor: type what you say. Ctrl-D walks away, Ctrl-C ends.\n"
+        greeting = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
         node.parts.append(TypedVisitorPart(visitor, transcript, greeting))
     place, what = url.rpartition("@")[2], ", ".join(parts)
     node.claimed = lambda: print(f"{project.name}: {what} of {project.robot}, on {place}, ready after {ready():.1f} s.")
@@ -184,12 +189,14 @@ def _processes(
     finally:
         node.close()
     print(f"\n{'The story failed' if node.failed else 'Ended'}: {clock_time(lived)}.")
-    for line in node.summary():
+    summary = tuple(node.summary())
+    for line in summary:
         print(f"  {line}")
     if BRAIN in parts:
         run_directory.ended(node.project)
         run_directory.close(forget=not node.leaving)
-    return 1 if node.failed and not node.interrupted else 0
+    ended = INTERRUPTED if node.interrupted else FAILED if node.failed else WELL
+    return RunVerdict(ended, lived, summary=summary)
 
 
 def _alerts(project: Project, parts: Sequence[str], narrator: Narrator, story: Story | None) -> AlertDesk | None:

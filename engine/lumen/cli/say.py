@@ -3,6 +3,7 @@
 import argparse
 
 from lumen.cli.commanding import command
+from lumen.cli.formats import configure_format
 from lumen.cli.reach import configure_reach
 
 
@@ -10,6 +11,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("text", metavar="TEXT", help="what it says")
     parser.add_argument("--language", metavar="LANG", default="", help="in which language (default: the one it speaks)")
     configure_reach(parser)
+    configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:

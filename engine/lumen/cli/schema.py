@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from lumen.cli.formats import configure_format
+from lumen.cli.jsonc import added
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
 from lumen.loading.files import MAX_FILE_BYTES
@@ -36,6 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help=f"one of {', '.join(FILE_KINDS)}; default: list them",
     )
     add("--vscode", action="store_true", help="print the settings of VS Code that give each file its schema")
+    configure_format(parser)
     add("-o", "--output", metavar="FILE", type=Path, help="write it there; settings that stand there already stay")
 
 
@@ -44,17 +47,29 @@ def run(options: argparse.Namespace) -> int:
     if options.vscode and options.kind:
         raise UsageError("--vscode is for all kinds: leave out the kind")
     if options.vscode:
-        there = _settings(options.output) if options.output else {}
-        write_result(_json(merged(there, settings(find_project()))), options.output, folders=True)
+        ours = settings(find_project())
+        text = _added(options.output, ours) if options.output else _json(ours)
+        write_result(text, options.output, folders=True)
     elif options.kind:
         write_result(_json(load_schema(options.kind)), options.output)
     else:
-        wide = max(map(len, FILE_KINDS))
-        lines = [
-            f"{kind:{wide}}  {', '.join(FILES.get(kind, ())):40} {load_schema(kind)['title']}" for kind in FILE_KINDS
-        ]
-        write_result("\n".join(lines) + "\n", options.output)
+        write_result(_json(_kinds()) if options.format == "json" else _list(), options.output)
     return 0
+
+
+def _kinds() -> dict[str, Any]:
+    return {
+        "kinds": [
+            {"kind": kind, "files": list(FILES.get(kind, ())), "title": load_schema(kind)["title"]}
+            for kind in FILE_KINDS
+        ]
+    }
+
+
+def _list() -> str:
+    wide = max(map(len, FILE_KINDS))
+    lines = [f"{kind:{wide}}  {', '.join(FILES.get(kind, ())):40} {load_schema(kind)['title']}" for kind in FILE_KINDS]
+    return "\n".join(lines) + "\n"
 
 
 def settings(root: Path) -> dict[str, Any]:
@@ -70,31 +85,16 @@ def settings(root: Path) -> dict[str, Any]:
     return found
 
 
-def merged(there: dict[str, Any], ours: Mapping[str, Any]) -> dict[str, Any]:
-    """Settings with ours among them; of what is about other files nothing is lost."""
-    result = dict(there)
-    for key, value in ours.items():
-        old = result.get(key)
-        if isinstance(value, dict):
-            result[key] = {**(old if isinstance(old, dict) else {}), **value}
-        else:
-            kept = [row for row in (old if isinstance(old, list) else []) if row not in value]
-            result[key] = [*kept, *value]
-    return result
-
-
-def _settings(file: Path) -> dict[str, Any]:
-    """The settings in a file, none where there is none. Raises UsageError where they can't be read."""
+def _added(file: Path, ours: dict[str, Any]) -> str:
+    """What stands in a file, with ours in it and its comments kept. Raises UsageError where it can't be read."""
     try:
-        found = json.loads(read_regular(file, MAX_FILE_BYTES))
+        there = read_regular(file, MAX_FILE_BYTES).decode("utf-8-sig")
+        return added(there, ours)
     except FileNotFoundError:
-        return {}
+        return _json(ours)
     except (OSError, ValueError, RecursionError) as error:
-        reason = getattr(error, "strerror", None) or f"it is not plain JSON ({error})"
+        reason = getattr(error, "strerror", None) or f"it is no JSON, even with comments ({error})"
         raise UsageError(f"can't add to {file}: {reason}; leave out -o and copy what is printed") from None
-    if not isinstance(found, dict):
-        raise UsageError(f"can't add to {file}: it holds no settings")
-    return found
 
 
 def _json(data: Any) -> str:

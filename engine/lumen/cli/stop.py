@@ -4,6 +4,7 @@ import argparse
 
 from lumen.app.reload.requests import COMMAND
 from lumen.cli.commanding import answered, told
+from lumen.cli.formats import configure_format
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import BusError, BusUnreachableError
@@ -14,6 +15,7 @@ STOP_TIMEOUT = 10.0
 
 def configure(parser: argparse.ArgumentParser) -> None:
     configure_reach(parser)
+    configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -29,4 +31,4 @@ def run(options: argparse.Namespace) -> int:
         ) from None
     finally:
         reached.bus.close()
-    return told(options.verb, answer, "the robot rests; hold its head, or `lumen resume`, to let it go on")
+    return told(options, answer, "the robot rests; hold its head, or `lumen resume`, to let it go on")

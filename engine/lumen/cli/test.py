@@ -3,12 +3,14 @@
 import argparse
 import sys
 import time
+from contextlib import nullcontext
 from pathlib import Path
 
 import lumen
 from lumen.app.exploring import Explored, explored
 from lumen.app.rehearsal import Rehearsal, rehearse
 from lumen.app.stories import home_of, stories_of
+from lumen.cli.progress import progress
 from lumen.cli.terminal import coloured
 from lumen.cli.verdict import Verdict
 from lumen.cli.verdicts import FORMATS, text
@@ -17,6 +19,7 @@ from lumen.interpreters.exploration import MAX_CONFIGURATIONS
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
+from lumen.loading.own_project import own_project
 from lumen.loading.packaged import MAIN_FILE
 from lumen.runtime.coverage import Coverage
 
@@ -51,19 +54,22 @@ def run(options: argparse.Namespace) -> int:
     """0 where all is well, 1 where a story failed or something was found."""
     folder, names = _words(options.words)
     _check(options)
-    project = lumen.load(folder)
+    project = lumen.load(own_project(folder))
     began = time.perf_counter()
     live = options.format == "text" and options.output is None
     rehearsals: list[Rehearsal] = []
     coverage = Coverage(project) if options.coverage or options.fail_under is not None else None
     if names or coverage or not options.explore:
-        for story in _stories(project, names):
-            observers = [coverage.of(story.behavior or project.behavior)] if coverage else []
-            rehearsals.append(rehearse(project, story, observers=observers, whole=options.verbose))
-            if live:
-                _print(text.story(rehearsals[-1], coloured=coloured()))
-            if options.exitfirst and rehearsals[-1].failed:
-                break
+        stories = _stories(project, names)
+        with nullcontext(_untold) if live else progress() as tell:  # people see each story as it ends
+            for story in stories:
+                tell(len(rehearsals), len(stories), f"stories, {story.name}")
+                observers = [coverage.of(story.behavior or project.behavior)] if coverage else []
+                rehearsals.append(rehearse(project, story, observers=observers, whole=options.verbose))
+                if live:
+                    _print(text.story(rehearsals[-1], coloured=coloured()))
+                if options.exitfirst and rehearsals[-1].failed:
+                    break
     walked = _explore(project, options) if options.explore else None
     took = time.perf_counter() - began
     verdict = Verdict(project.name, tuple(rehearsals), coverage, options.fail_under or 0.0, walked, took)
@@ -104,16 +110,15 @@ def _explore(project: Project, options: argparse.Namespace) -> Explored:
     names = [state.name for state in project.behaviors[behavior].states.values() if state.path]
     if options.home and options.home not in names:
         raise UsageError(f"no state `{options.home}` in `{behavior}`: {did_you_mean(options.home, names, 'it has')}")
-    tell = _progress if sys.stderr.isatty() else None
-    return explored(project, behavior, bound=options.bound, home=options.home or "", tell=tell)
+    with progress(at_most=True) as tell:
+        return explored(
+            project, behavior, bound=options.bound, home=options.home or "",
+            tell=lambda walked, waiting: tell(walked, options.bound, f"configurations explored, {waiting:,} in sight"),
+        )  # fmt: skip
 
 
-def _progress(walked: int, waiting: int) -> None:
-    """Now and then, on a terminal, how far exploring is; at its end nothing is left of that line."""
-    if not waiting:
-        print(f"\r{'':60}\r", end="", file=sys.stderr)
-    elif walked % 200 == 0:
-        print(f"\r{f'explored {walked:,} configurations, {waiting:,} in sight':60}", end="", file=sys.stderr)
+def _untold(done: float, whole: float, name: str) -> None:
+    """Nobody is told how far it is."""
 
 
 def _print(shown: str) -> None:

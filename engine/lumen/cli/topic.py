@@ -5,22 +5,25 @@ import json
 import queue
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from lumen.app.asking import OPERATOR_ANSWERS
 from lumen.buses.bodies import encode
 from lumen.buses.validated import by_key, validated
+from lumen.cli.progress import progress
 from lumen.cli.reach import reach
 from lumen.cli.tables import table
 from lumen.errors import BusClosedError, BusRefusedError, UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
+from lumen.language.routes import Direction
 from lumen.loading.files import read_files
 from lumen.loading.packaged import find_project
 from lumen.loading.units import seconds
-from lumen.ports import Bus, Message
+from lumen.ports import Bus, Message, ReturningBus
 from lumen.rules import check_files
 
 TOPIC_VERBS = {
@@ -32,7 +35,6 @@ TOPIC_VERBS = {
 }
 """A PATTERN is a key (`*` is one word, `#` any number of them) or a route's name."""
 LISTENING = 3.0
-ANSWERS = "lumen.operator.answer"
 SHOWN = 200
 LOOK = 0.5
 
@@ -59,7 +61,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0, or for `pub --wait` 1 where no answer came."""
+    """0, or for `pub` 1 where nobody listens, or with `--wait` no answer came."""
     _check_words(options)
     project = _project(options)
     reached = reach(options)
@@ -90,7 +92,7 @@ def _check_right(broker: str, key: str) -> None:
 def _list(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
     counts: dict[str, int] = {}
     span = _span(options)
-    for heard in _listen(bus, "#", span):
+    for heard in _measure(bus, "#", span):
         counts[heard.message.key] = counts.get(heard.message.key, 0) + 1
     routes = by_key(project) if project else {}
     rows = []
@@ -128,26 +130,47 @@ def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
         body = options.words[1]
     patience = _seconds(options.wait, "--wait") if options.wait else 0.0
     key, answers = _key(options.words[0], project), queue.SimpleQueue[Any]()
+    reached, returned = bus, list[str]()
+    if isinstance(bus, ReturningBus):
+        bus.returns(returned.append)
     if project:
         bus = validated(bus, project)
     if patience:
-        bus.subscribe(ANSWERS, lambda message: answers.put(message.body))
-    bus.publish(key, body, reply_to=ANSWERS if patience else "")
+        bus.subscribe(OPERATOR_ANSWERS, lambda message: answers.put(message.body))
+    bus.publish(key, body, reply_to=OPERATOR_ANSWERS if patience else "")
+    came = _within(answers, patience) if patience else []
+    reached.close()  # from then on it is known whether anybody took it
+    if key in returned:
+        print(f"lumen topic: nobody listens to `{key}`: {_listeners(key, project)}", file=sys.stderr)
+        return 1
     if not patience:
         return 0
-    try:
-        answer = answers.get(timeout=patience)
-    except queue.Empty:
+    if not came:
         print(f"lumen topic: no answer within {patience:g} s", file=sys.stderr)
         return 1
-    print(json.dumps(answer, ensure_ascii=False) if options.format == "json" else _short(answer))
+    print(json.dumps(came[0], ensure_ascii=False) if options.format == "json" else _short(came[0]))
     return 0
+
+
+def _within(answers: queue.SimpleQueue[Any], patience: float) -> list[Any]:
+    """The first answer that comes within so long [s], if any does."""
+    try:
+        return [answers.get(timeout=patience)]
+    except queue.Empty:
+        return []
+
+
+def _listeners(key: str, project: Project | None) -> str:
+    """Where somebody might listen: what an exhibition hears, the nearest first."""
+    routes = by_key(project) if project else {}
+    heard = [each for each, route in routes.items() if route.direction is Direction.IN]
+    return "does an exhibition run there?" if key in heard else did_you_mean(key, heard, "an exhibition listens to")
 
 
 def _hz(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
     times: dict[str, list[float]] = {}
     span = _span(options)
-    for heard in _listen(bus, _key(options.words[0], project), span):
+    for heard in _measure(bus, _key(options.words[0], project), span):
         times.setdefault(heard.message.key, []).append(heard.at)
     rows = []
     for key, at in sorted(times.items()):
@@ -161,7 +184,7 @@ def _hz(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
 def _bw(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
     sizes: dict[str, list[int]] = {}
     span = _span(options)
-    for heard in _listen(bus, _key(options.words[0], project), span):
+    for heard in _measure(bus, _key(options.words[0], project), span):
         sizes.setdefault(heard.message.key, []).append(len(encode(heard.message.body)))
     rows = []
     for key, size in sorted(sizes.items()):
@@ -180,14 +203,24 @@ def _rows(options: argparse.Namespace, span: float, rows: list[dict[str, Any]], 
     return 0
 
 
-def _listen(bus: Bus, pattern: str, span: float | None) -> Iterator[Heard]:
+def _measure(bus: Bus, pattern: str, span: float) -> Iterator[Heard]:
+    """What comes in so long; a terminal sees how long it still takes."""
+    with progress() as tell:
+        yield from _listen(bus, pattern, span, lambda waited: tell(waited, span, "s listened"))
+
+
+def _listen(
+    bus: Bus, pattern: str, span: float | None, tell: Callable[[float], None] = lambda waited: None
+) -> Iterator[Heard]:
     """What comes, until the time is over, somebody presses Ctrl-C, or the exhibition is gone."""
     came: queue.SimpleQueue[Heard] = queue.SimpleQueue()
     undo = bus.subscribe(pattern, lambda message: came.put(Heard(message, time.monotonic())))
-    end = None if span is None else time.monotonic() + span
+    began = time.monotonic()
+    end = None if span is None else began + span
     gone = getattr(bus, "gone", None)
     try:
         while end is None or time.monotonic() < end:
+            tell(time.monotonic() - began)
             try:
                 yield came.get(timeout=LOOK if end is None else max(0.0, min(LOOK, end - time.monotonic())))
             except queue.Empty:

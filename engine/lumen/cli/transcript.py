@@ -18,6 +18,8 @@ WHO = {"visitor": "yellow", "robot": "cyan", "state": "green", "reload": "magent
 class Transcript(Narrator):
     """Prints what happens, a line each, with simulated time."""
 
+    explains = True
+
     def __init__(
         self, now: Callable[[], float], machine: Callable[[], MachineDefinition], stream: TextIO | None = None
     ) -> None:

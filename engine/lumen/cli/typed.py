@@ -1,4 +1,4 @@
-"""What is typed on the terminal is what the visitor says."""
+"""What is typed on the terminal is what the visitor says, and after a `/` what they do."""
 
 import queue
 import sys
@@ -8,6 +8,7 @@ from io import TextIOWrapper
 from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
 from lumen.app.parts.visitor import VisitorPart
+from lumen.cli.typed_commands import TypedCommands
 from lumen.language.events import Event
 from lumen.language.stories import Arrive, Leave, Speak, Visitor
 from lumen.upkeep.threads import WatchedThread
@@ -30,6 +31,7 @@ class TypedVisitorPart(Part):
     def __init__(self, visitor: VisitorPart, narrator: Narrator, greeting: str) -> None:
         self.needs = visitor.needs
         self._visitor, self._narrator, self._greeting = visitor.actor, narrator, greeting
+        self._commands = TypedCommands(visitor.actor, narrator)
         self._lines: queue.Queue[str | None] = queue.Queue(MAX_WAITING_LINES)
         self._gone: float | None = None
         self._now = 0.0
@@ -54,9 +56,12 @@ class TypedVisitorPart(Part):
                 self._narrator.visitor_action(Leave())
                 self._visitor.leave()
                 self._gone = now
+            elif line.startswith("/"):
+                self._commands.do(line, now)
             elif line:
                 self._narrator.visitor_action(Speak(line))
                 self._visitor.speak(line)
+        self._commands.tick(now)
 
     def _read(self) -> None:
         if isinstance(sys.stdin, TextIOWrapper):

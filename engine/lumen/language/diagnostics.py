@@ -1,5 +1,6 @@
 """What is wrong in somebody's file, where, and what would be right."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -137,19 +138,21 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def gathered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """The findings sorted by file and line; of those with the same cause only the first, the others related to it.
+    """The findings sorted by file and line; of those with the same code and cause the first, the others related to it.
 
     A story tells of what a behaviour has: what is wrong in both is wrong in the behaviour. And where at least
     MIN_FINDINGS_FOR_ROOT have the same root, or one of them has it for its cause, the root is wrong, and not each.
     """
     several = list(dict.fromkeys(diagnostics))
-    causes, roots = {d.cause for d in several}, Counter(d.root for d in several)
-    found: dict[str, list[Diagnostic]] = {}
+    causes = {(d.code, d.cause) for d in several}
+    roots = Counter((d.code, d.root) for d in several)
+    found: dict[tuple[str, str], list[Diagnostic]] = {}
     for diagnostic in several:
-        rooted = diagnostic.root if diagnostic.root in causes or roots[diagnostic.root] >= MIN_FINDINGS_FOR_ROOT else ""
-        found.setdefault(rooted or diagnostic.cause or f"{len(found)}:", []).append(diagnostic)
+        code, root = diagnostic.code, diagnostic.root
+        rooted = root if (code, root) in causes or roots[code, root] >= MIN_FINDINGS_FOR_ROOT else ""
+        found.setdefault((code, rooted or diagnostic.cause or f"{len(found)}:"), []).append(diagnostic)
     return sorted(
-        (_joined(group, cause, len(group) >= MIN_FINDINGS_FOR_ROOT) for cause, group in found.items()), key=_order
+        (_joined(group, cause, len(group) >= MIN_FINDINGS_FOR_ROOT) for (_, cause), group in found.items()), key=_order
     )
 
 
@@ -158,7 +161,7 @@ def _order(diagnostic: Diagnostic) -> tuple[Place, str, str]:
 
 
 def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
-    """The first, as bad as the worst of them, the others as places related to it; those beyond MAX_RELATED counted."""
+    """The first, the others as places related to it; those beyond MAX_RELATED counted."""
     if len(findings) == 1:
         return findings[0]
     first, *others = sorted(findings, key=lambda d: (d.cause != cause, "/stories/" in d.place.file, _order(d)))
@@ -167,15 +170,19 @@ def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
         shown[-1] = Related(shown[-1].place, f"and here, and in {left} more")
     if many and first.cause != cause == first.root:
         first = replace(first, hint=f"look first at {cause}: it is in the way in {len(findings)} places")
-    severity = min((d.severity for d in findings), key=list(Severity).index)
-    return replace(first, severity=severity, related=(*first.related, *shown))
+    return replace(first, related=(*first.related, *shown))
 
 
 def nearest(word: object, candidates: Iterable[str]) -> str:
     """The candidate that was probably meant, empty where none is near."""
     lowered = {name.lower(): name for name in sorted(_alike(str(word), set(candidates)))}
     near = get_close_matches(str(word).lower(), lowered, n=1, cutoff=0.6)
-    return lowered[near[0]] if near else next((n for n in lowered.values() if sorted(n) == sorted(str(word))), "")
+    if near:
+        return lowered[near[0]]
+    if anagram := next((n for n in lowered.values() if sorted(n) == sorted(str(word))), ""):
+        return anagram
+    parts = [part for part in re.split(r"[\W_]+", str(word).lower()) if len(part) > 3]
+    return next((lowered[part] for part in parts if part in lowered), "")
 
 
 def _alike(word: str, names: set[str]) -> set[str]:

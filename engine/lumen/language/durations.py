@@ -10,6 +10,37 @@ _DURATION = re.compile(r"(\d+(?:\.\d+)?) ?(ms|s|min|h)")
 _SECONDS: Mapping[str, float] = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
 
 
+_WORDS: Mapping[str, str] = {
+    word: unit
+    for unit, words in {
+        "ms": "ms msec millis milliseconds",
+        "s": "s sec secs sek second seconds sekunde sekunden detik",
+        "min": "m min mins minute minutes minuten menit",
+        "h": "h hr std hour hours stunde stunden jam",
+    }.items()
+    for word in words.split()
+} | {"": "s"}
+_LIKE_DURATION = re.compile(r"(\d+)(?:[.,](\d+))? ?([A-Za-z]*)\.?")
+
+
+def meant_duration(text: object) -> str:
+    """The duration that was probably meant by `30`, `4 Sekunden` or `1,5s`; empty where nothing is like it."""
+    match = _LIKE_DURATION.fullmatch(f"{text:g}" if isinstance(text, float) else str(text).strip())
+    if match is None or (unit := _WORDS.get(match[3].lower())) is None:
+        return ""
+    return f"{match[1]}.{match[2]}{unit}" if match[2] else f"{match[1]}{unit}"
+
+
+def duration_hint(text: object) -> str:
+    """What to write in place of what is no duration."""
+    if meant := meant_duration(text):
+        short = f", or `{meant[:-1]}ms`" if str(text).strip().isdecimal() else ""
+        return (
+            f"write the unit too: `{meant}`{short}" if not str(text).strip(" .")[-1:].isalpha() else f"write `{meant}`"
+        )
+    return "write a number and its unit, such as `500ms`, `20s` or `2min`"
+
+
 def seconds(text: object) -> float | None:
     """The duration in [s] of `500ms`, `20s`, `1.5s`, `2min` or `1h`; None where it is not one, or longer than any."""
     match = _DURATION.fullmatch(text) if isinstance(text, str) else None

@@ -47,8 +47,8 @@ SHARED_ROUTES = frozenset((
 ))  # fmt: skip
 """Where modules and behaviours speak with each other: any route may send under their keys, whatever its name."""
 
-INTERNAL_KEYS = ("lumen.config.command", "lumen.config.status", "lumen.operator.answer")
-"""Keys of ours that have no route: orders to reload, what comes of them, and answers to who typed a command."""
+INTERNAL_KEYS = ("lumen.config.command", "lumen.config.status", "lumen.operator.request", "lumen.operator.answer")
+"""Keys of ours that have no route: orders to reload, what comes of them, what operators ask, and the answers."""
 
 
 def default_key(route: str, robot: str) -> str:

@@ -21,16 +21,14 @@ from lumen.language.actions import (
 )
 from lumen.language.commands import VerbCommand
 from lumen.language.diagnostics import ERROR, Code, NodePath
+from lumen.language.durations import duration_hint
 from lumen.language.verbs import Quantity, Verb, verb_named
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
 from lumen.loading.numbers import finite
 from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS, seconds
 
-ONLY_IN_DO = Code("only-in-do", "statecharts", ERROR, "a verb that waits stands outside `do`")
-
-
-DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
+ONLY_IN_DO = Code("only-in-do", "statecharts", ERROR, "a verb that waits is used outside `do`")
 
 
 class Actions:
@@ -67,7 +65,7 @@ class Actions:
     def duration(self, text: Any, where: NodePath, *, key: bool = False) -> float | None:
         """[s], None (and reported) where the text is no duration."""
         if (length := seconds(text)) is None:
-            self.report(BAD_DURATION, where, f"`{text}` is not a duration", hint=DURATION_HINT, key=key)
+            self.report(BAD_DURATION, where, f"`{text}` is not a duration", hint=duration_hint(text), key=key)
         return length
 
     def delay(self, text: Any, where: NodePath, *, key: bool = False) -> float | Template | None:

@@ -21,7 +21,7 @@ from lumen.loading.rounds import NOTHING_YET, Rounds, unrolled
 from lumen.loading.shapes import check_shapes
 from lumen.loading.transitions import TransitionReader
 
-NOT_WITHIN = Code("not-within", "statecharts", ERROR, "a state is named that does not lie in the one meant")
+NOT_WITHIN = Code("not-within", "statecharts", ERROR, "a state is not inside the state that is meant")
 
 
 CONTEXT_PREFIX = "context"

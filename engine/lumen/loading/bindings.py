@@ -11,7 +11,7 @@ from lumen.loading.rulebook import UNKNOWN_VARIABLE
 from lumen.loading.signal_bindings import UNBOUND_OUTPUT, build_signal, signal_fault
 from lumen.loading.units import ANGLES
 
-UNBOUND_INPUT = Code("unbound-input", "controllers", ERROR, "an input of a bound controller has nothing to come from")
+UNBOUND_INPUT = Code("unbound-input", "controllers", ERROR, "an input of a bound controller has no source")
 
 
 class Bindings:

@@ -16,9 +16,9 @@ from lumen.loading.units import ANGLES, LENGTHS
 
 UNKNOWN_MODEL = Code("unknown-model", "references", ERROR, "a robot's body is named that is not in models/")
 INCOMPLETE_POSTURE = Code("incomplete-posture", "robot", ERROR, "a posture leaves out a joint")
-JOINT_IN_TWO_PARTS = Code("joint-in-two-parts", "robot", ERROR, "a joint stands in two parts of the body")
-JOINT_WITHOUT_PART = Code("joint-without-part", "robot", ERROR, "a joint stands in no part of the body")
-UNSORTED_ROWS = Code("unsorted-rows", "robot", ERROR, "the rows of a table do not rise")
+JOINT_IN_TWO_PARTS = Code("joint-in-two-parts", "robot", ERROR, "a joint belongs to two parts of the body")
+JOINT_WITHOUT_PART = Code("joint-without-part", "robot", ERROR, "a joint belongs to no part of the body")
+UNSORTED_ROWS = Code("unsorted-rows", "robot", ERROR, "the rows of a table are not in rising order")
 
 
 COMMON_POSTURES = ("Stand", "Crouch")
@@ -52,7 +52,7 @@ def build_likes(
         if data["like"] in bodies:
             found[name] = _Builder({"joints": {}, **data}, report).like(bodies[data["like"]], name)
         elif data["like"] not in names or "like" in (sources.get(data["like"], ((), None))[0] or ()):
-            hint = did_you_mean(data["like"], bodies, "there are") if bodies else "there is none that says all itself"
+            hint = did_you_mean(data["like"], bodies, "there are") if bodies else "no other model is complete"
             report(UNKNOWN_MODEL, ("like",), f"there is no model `{data['like']}` to be like", hint=hint)
     return found
 

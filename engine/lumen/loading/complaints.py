@@ -1,5 +1,6 @@
 """Errors of a JSON Schema validator in a student's words."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,10 +10,10 @@ from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, near
 from lumen.loading.schema_messages import Error, describe, node, wording
 
 MISSING_KEY = Code("missing-key", "shape", ERROR, "a key that is needed is not there")
-ONE_VERB = Code("one-verb", "shape", ERROR, "an item says nothing, or two things at once")
-UNKNOWN_KEY = Code("unknown-key", "shape", ERROR, "a key that means nothing here")
+ONE_VERB = Code("one-verb", "shape", ERROR, "an item has no verb, or more than one")
+UNKNOWN_KEY = Code("unknown-key", "shape", ERROR, "a key is not known here")
 WRONG_KEY = Code("wrong-key", "shape", ERROR, "a name has a form that is not allowed")
-WRONG_TYPE = Code("wrong-type", "shape", ERROR, "a text, a number, a list or a map stands where another is wanted")
+WRONG_TYPE = Code("wrong-type", "shape", ERROR, "a value has the wrong type: text, number, list or map")
 WRONG_VALUE = Code("wrong-value", "shape", ERROR, "a value is not one of those allowed")
 
 
@@ -94,8 +95,14 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
         yield Complaint(UNKNOWN_KEY, here, message, "", path, here, True)
     for key in unknown[:MAX_UNKNOWN_KEYS]:
         meant = also if (also := _ALSO.get(key, "")) in free else nearest(key, free)
+        first, _, rest = key.partition(" ")
+        if rest and first in known and key not in known:
+            meant = first
         hint = f"did you mean `{meant}`?" if meant else did_you_mean(key, free, "allowed here:")
-        if key == "<<":
+        if rest and meant == first:
+            value = rest if error.instance[key] is None else f"{rest}: …"
+            hint = f"`{first}` has no colon behind it: write `{first}: {value}`"
+        elif key == "<<":
             hint = "YAML 1.2 has no merge keys: write the keys themselves"
         elif key.isdecimal() and not meant:
             hint = "put a list into brackets, and write a number with a point, as in `0.5`"
@@ -109,6 +116,8 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
 _ALSO = {
     "next": "onDone", "goto": "target", "to": "target", "transitions": "on", "events": "on", "timeout": "after",
     "onEntry": "entry", "onExit": "exit", "enter": "entry", "cond": "guard", "if": "guard", "when": "guard",
+    "speak": "say", "tell": "say", "talk": "say", "text": "say", "sleep": "wait", "pause": "wait", "delay": "wait",
+    "move": "play", "motion": "play", "gesture": "play", "animation": "play", "led": "leds", "lights": "leds",
     "time": "at", "angles": "joints", "pin": "key", "topic": "key", "exchange": "key",
 }  # fmt: skip
 """What other tools call our keys."""
@@ -121,12 +130,24 @@ def _owner(key: str, root: Any) -> str:
     return f"an {owner}" if owner[:1] in tuple("aeiou") else f"a {owner}" if owner else ""
 
 
+_LANGUAGES = {
+    "english": "en", "englisch": "en", "inggris": "en", "german": "de", "deutsch": "de", "jerman": "de",
+    "indonesian": "id", "indonesisch": "id", "indonesia": "id", "french": "fr", "spanish": "es", "italian": "it",
+    "dutch": "nl", "polish": "pl", "turkish": "tr", "chinese": "zh", "japanese": "ja", "korean": "ko",
+}  # fmt: skip
+"""Languages by their names, as people write them in place of the letters of ISO 639."""
+
+
 def _bad_key(error: Error, path: NodePath) -> Complaint:
     here = (*path, error.instance)
     if error.validator == "enum":
         hint = did_you_mean(error.instance, map(str, error.validator_value), "allowed here:")
         return Complaint(UNKNOWN_KEY, here, f"`{error.instance}` can't stand in {node(path)}", hint, path, here, True)
     hint = describe(error.schema) or "use letters, digits and `_`"
+    if path[-1:] in (("say",), ("value",)) and re.search(r"\w \w", error.instance):
+        hint = "put quotes around the whole text, if this belongs to one: a comma ends a text within braces"
+    if code := _LANGUAGES.get(error.instance.lower(), ""):
+        hint = f"a language is written by its letters: `{code}`"
     return Complaint(WRONG_KEY, here, f"`{error.instance}` can't be a key of {node(path)}", hint, path, here, True)
 
 

@@ -24,6 +24,7 @@ from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.known_words import KnownWords
 from lumen.loading.numbers import finite
+from lumen.loading.remembered_findings import Check, RememberedFindings
 from lumen.loading.rounds import Rounds
 from lumen.loading.scalars import within
 
@@ -39,12 +40,13 @@ class Expressions:
     ) -> None:
         self.report, self.rounds = report, rounds
         self.keys = frozenset(data.get("context") or ())
-        self.names: dict[str, Any] = {
+        names: dict[str, Any] = {
             "context": {key: {} for key in self.keys},
             **{key: tuple(table) if words.whole else None for key, table in words.tables.items()},
             "lists": {key: {} for key in words.tables["lists"]} if words.whole else None,
             "states": tuple(states),
         }
+        self.findings = RememberedFindings(("expressions", report.document.file), names)
 
     def expression(self, source: str, where: NodePath) -> Expression | None:
         """The expression, None (and reported) where it can't be read."""
@@ -56,8 +58,7 @@ class Expressions:
 
     def _read(self, source: str, where: NodePath, *, localized: bool) -> Expression | None:
         variables = self.rounds.variables(where)
-        findings = check_expression(source, **self.names, variables={name: {} for name in variables})
-        if not self._sound(findings, source, where):
+        if not self._sound(check_expression, source, where, variables):
             return None
         meant = substituted(source, variables, localized=localized)
         return Expression(meant, where, source if meant != source else "")
@@ -65,8 +66,7 @@ class Expressions:
     def template(self, text: str, where: NodePath) -> Template | None:
         """The text with its `{{ expressions }}`, None (and reported) where one can't be read."""
         variables = self.rounds.variables(where)
-        findings = check_template(text, **self.names, variables={name: {} for name in variables})
-        if not self._sound(findings, text, where):
+        if not self._sound(check_template, text, where, variables):
             return None
         meant = substituted_template(text, variables)
         return Template(meant, where, text if meant != text else "")
@@ -99,8 +99,10 @@ class Expressions:
         self.report(UNKNOWN_CONTEXT_KEY, where, message, hint=hint, key=True, cause=cause)
         return False
 
-    def _sound(self, findings: Iterable[ExpressionFinding], source: str, where: NodePath) -> bool:
+    def _sound(self, check: Check, source: str, where: NodePath, variables: Iterable[str]) -> bool:
         """Whether nothing was found but fields that may be missing: those depend on who calls."""
+        names = tuple(variables)
+        findings = self.findings.of(check, source, names, lambda: {"variables": {name: {} for name in names}})
         found = [finding for finding in findings if finding.code != UNGUARDED_FIELD]
         for finding in map(self._explained, found):
             place = place_within(self.report.document, where, source, finding.offset, finding.length)

@@ -11,7 +11,7 @@ from lumen.loading.words import WORDS_FOLDER, tables
 
 UNKNOWN_WORDS = Code("unknown-words", "references", ERROR, "a words file is named that is not in behaviors/words/")
 DUPLICATE_WORDS = Code(
-    "duplicate-words", "references", ERROR, "a name is given twice: in two words files, or in one and the behaviour"
+    "duplicate-words", "references", ERROR, "two words files, or one and the behaviour, define the same name"
 )
 
 WordFiles = Mapping[str, BuiltFile[Words]]

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from lumen.language.diagnostics import ERROR, Code
 from lumen.loading.document_report import DocumentReport
 
-MISPLACED_FILE = Code("misplaced-file", "text", ERROR, "a file stands in the folder of another kind")
+MISPLACED_FILE = Code("misplaced-file", "text", ERROR, "a file is in the folder of another kind of file")
 
 
 class _Kind(NamedTuple):

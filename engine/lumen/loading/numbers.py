@@ -9,8 +9,8 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.pruning import prune
 
 EXTREME_NUMBER = Code("extreme-number", "shape", ERROR, "a number is too large or too small to count with")
-NOT_A_NUMBER = Code("not-a-number", "shape", ERROR, "a number is infinite or none")
-EMPTY_RANGE = Code("empty-range", "shape", ERROR, "a range holds nothing")
+NOT_A_NUMBER = Code("not-a-number", "shape", ERROR, "a number is infinite, or not a number")
+EMPTY_RANGE = Code("empty-range", "shape", ERROR, "a range is empty")
 NOT_FINITE = Code("not-finite", "controllers", ERROR, "a number is infinite where it can't be")
 
 

@@ -107,11 +107,24 @@ class BehaviorOutline:
         key = target.lstrip("#.")
         if key in source.children:
             return f"a child is written `.{key}`"
+        if loop := self._loop(source, key):
+            name = loop.path.rpartition(".")[2]
+            return f"it is within the `for` of `{name}`: go to `#{loop.name}`, which takes an entry"
         if self._by_id(key):
             return f"a state elsewhere in the tree is written `#{key}`"
         if deeper := [e for e in self.entries.values() if e.path.rpartition(".")[2] == key]:
             return f"a state elsewhere in the tree is written `#{deeper[0].name}`"
         return did_you_mean(target, known)
+
+    def _loop(self, source: OutlinedState, key: str) -> OutlinedState | None:
+        """The outermost state with a `for` around the state of that key, where the source is not in it."""
+        inner = [e for e in self.entries.values() if e.path.rpartition(".")[2] == key]
+        state, found = (inner[0].parent if inner else None), None
+        while state is not None:
+            inside = source.path == state.path or source.path.startswith(f"{state.path}.")
+            found = state if "for" in state.data and not inside else found
+            state = state.parent
+        return found
 
     def _by_id(self, name: str) -> OutlinedState | None:
         if found := self.aliases.get(name) or (self.entries.get(name) if name else None):
@@ -141,6 +154,10 @@ class BehaviorOutline:
         else:
             message = f"the id `{alias}` of `{entry.path}` already belongs to {first.title}"
             hint = "give each state an id of its own"
+            if first.alias == alias and entry.path.rpartition(".")[2] == alias != first.path.rpartition(".")[2]:
+                self.aliases[alias] = entry  # it is called so itself: the first one took its id
+                first, entry = entry, first
+                message = f"the id `{alias}` of `{entry.path}` belongs to {first.title}"
             before = [((*first.where, "id") if first.alias == alias else first.where, "it belongs to this one")]
             self.report(DUPLICATE_ID, (*entry.where, "id"), message, hint=hint, related=before)
             self.report.lost |= {alias, *entry.path.split(".")}

@@ -21,13 +21,17 @@ def schema_folder() -> Path:
     return shipped_root() / "schemas"
 
 
+def project_above(here: Path) -> Path | None:
+    """This folder or its nearest parent with a lumen.yaml; None where there is none."""
+    return next((folder for folder in (here, *here.parents) if (folder / MAIN_FILE).is_file()), None)
+
+
 def find_project(path: str | Path | None = None) -> Path:
     """The folder of a project: `path`, else the working directory or the nearest parent with a lumen.yaml, else the
     shipped one. `path` may name the folder or its lumen.yaml. Raises UsageError where there is no such folder.
     """
     if path is None:
-        here = Path.cwd()
-        return next((folder for folder in (here, *here.parents) if (folder / MAIN_FILE).is_file()), shipped_root())
+        return project_above(Path.cwd()) or shipped_root()
     folder = Path(path)
     try:
         if folder.name == MAIN_FILE and folder.is_file():

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import isfinite, pi
+from math import degrees, isfinite, pi
 from typing import Any
 
 from lumen.interpreters.choreography import mirrored_joint
@@ -123,6 +123,8 @@ class PoseReader:
             return True
         low, high = (round(limit / self.factor, 4) for limit in (joint.minimum, joint.maximum))
         hint = f"it goes from {low:g} to {high:g} {self.unit}"
+        if self.unit == "deg" and abs(value) < 3.2 and self._fits(name, value):
+            hint = f"this file counts in degrees: write {degrees(value):.4g}; {hint}"
         cause, root = "", f"the range of `{name}` in models/"
         if self.unit == "rad" and self._fits(name, value * ANGLES["deg"]):
             root = f"`units` in {self.report.document.file}"

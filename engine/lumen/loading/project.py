@@ -22,7 +22,7 @@ from lumen.loading.linking import link
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
 from lumen.loading.motions import build_motions
 from lumen.loading.packaged import MAIN_FILE
-from lumen.loading.settings import Settings, build_settings
+from lumen.loading.settings import Settings, build_settings, other_vocabulary
 from lumen.loading.stories import build_story
 from lumen.loading.words import WORDS_FOLDER, build_words
 
@@ -51,6 +51,8 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     if (content := files.get(MAIN_FILE)) is None:
         found.say(MISSING_FILE, MAIN_FILE, "there is no lumen.yaml", "`lumen new DIR` makes a project with one")
     elif main := _read(found, MAIN_FILE, content, "lumen", lambda data, report, name: build_settings(data, report)):
+        if main.built and (other := other_vocabulary(main.built, main.report)):
+            return ProjectDraft(files, loose=[other])
         found.settings = main.built
     models, behaviors = _each(found, MODELS, build_body), _behaviors(found)
     if found.settings:

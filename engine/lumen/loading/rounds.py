@@ -16,7 +16,7 @@ from lumen.language.machines import ForEach, State, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 
-BAD_FOR = Code("bad-for", "statecharts", ERROR, "a `for` stands where it can't run through its list")
+BAD_FOR = Code("bad-for", "statecharts", ERROR, "a `for` can't run through its list here")
 
 NOTHING_YET: Mapping[str, Any] = {"entry": {}, "left": []}
 """What the key of a `for` holds before the state is entered."""

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
+from lumen.language.durations import duration_hint
 from lumen.language.routes import COMMAND, STOP, Carried, Direction, Route, Size
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.units import BAD_DURATION, seconds
 
-DURATION_HINT = "write a number and its unit, such as `500ms`, `20s` or `2min`"
 DEFAULT_LATENCY = 0.15
 """How old a body without a `time` is taken to be [s], where its route does not say."""
 
@@ -63,7 +63,7 @@ def duration(
         return None
     length = seconds(data[key])
     if length is None:
-        report(BAD_DURATION, (*where, key), f"`{data[key]}` is not a duration", hint=DURATION_HINT)
+        report(BAD_DURATION, (*where, key), f"`{data[key]}` is not a duration", hint=duration_hint(data[key]))
     elif positive and length <= 0.0:
         report(BAD_DURATION, (*where, key), f"`{key}` has to be longer than nothing", hint="leave it out, or raise it")
         return None

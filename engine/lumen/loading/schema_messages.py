@@ -1,10 +1,11 @@
 """What a schema's validator has to say of a value, in a student's words."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
+from lumen.language.durations import duration_hint
 from lumen.loading.units import seconds
 from lumen.loading.yaml_scalars import resolve
 
@@ -64,7 +65,8 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
             ) or hint
         case "enum" | "const":
             allowed = [str(v) for v in (bound if error.validator == "enum" else [bound])]
-            return f"{name} can't be `{_short(value)}`", did_you_mean(_short(value), allowed, "it is one of")
+            hint = _colour(value, allowed) or did_you_mean(_short(value), allowed, "it is one of")
+            return f"{name} can't be `{_short(value)}`", hint
         case "pattern":
             return f"{name} can't be `{_short(value)}`", hint
         case "minimum":
@@ -118,9 +120,17 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
             return f"leave out the quotes: {value}"
         if number := _NUMBER.fullmatch(value):
             return f"write {number[1].replace(',', '.').replace('_', '')}" + _unit(number[2])
+    if "object" in wanted and isinstance(value, str):
+        verb, _, rest = value.partition(" ")
+        if verb in schema.get("properties", {}):
+            return f"`{verb}` has no colon behind it: write `{verb}: {_short(rest)}`"
+    listed = isinstance(value, str) and re.fullmatch(r"[\w.-]+( *, *[\w.-]+)*", value)
+    if wanted == ["array"] and (listed or type(value) in (int, float)):
+        parts = re.split(r" *(?:,|(?<=\d)-) *", value) if isinstance(value, str) else [str(value)]
+        return f"write it in brackets: `[{', '.join(parts)}]`"
     if "string" in wanted and isinstance(value, bool | int | float):
         if any(seconds(example) is not None for example in schema.get("examples", ())):
-            return "write the unit too, as in `500ms`, `20s` or `2min`"
+            return duration_hint(value)
         if any(str(example).endswith("/s") for example in schema.get("examples", ())) and not isinstance(value, bool):
             return f"write the unit too: `{value:g}/s` or `{value:g}/min`"
         written = str(value).lower() if isinstance(value, bool) else f"{value}"
@@ -128,6 +138,23 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
     if "string" in wanted and isinstance(value, dict) and [type(v) for v in value.values()] == [str]:
         return f'a text that holds a colon and a blank needs quotes: "{_short(_flow(value)[1:-1])}"'
     return ""
+
+
+_COLOURS = {
+    "rot": "red", "grün": "green", "gruen": "green", "blau": "blue", "gelb": "yellow", "weiß": "white",
+    "schwarz": "black", "lila": "purple", "rosa": "pink", "türkis": "turquoise", "merah": "red", "hijau": "green",
+    "biru": "blue", "kuning": "yellow", "putih": "white", "hitam": "black", "ungu": "purple", "aus": "off",
+}  # fmt: skip
+"""Colours in the languages of those who wrote the first exhibitions; CSS has English names."""
+
+
+def _colour(value: Any, allowed: Collection[str]) -> str:
+    """What to write in place of a colour that has no name of CSS."""
+    if "turquoise" not in allowed or not isinstance(value, str):
+        return ""
+    if re.fullmatch(r"[0-9a-fA-F]{6}", value):
+        return f'write `"#{value}"`: a colour by its numbers begins with `#`, in quotes'
+    return f"did you mean `{meant}`?" if (meant := _COLOURS.get(value.lower())) else ""
 
 
 def _unit(unit: str) -> str:

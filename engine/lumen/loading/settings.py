@@ -9,12 +9,13 @@ from zoneinfo import available_timezones
 from lumen.errors import UsageError
 from lumen.interpreters.wall_clock import zone
 from lumen.language.alerts import Alerts
-from lumen.language.diagnostics import ERROR, Code, nearest
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.modules import SHOW, ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
 from lumen.language.show import Show
+from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
 from lumen.loading.alerts import build_alerts
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.numbers import finite
@@ -22,14 +23,16 @@ from lumen.loading.routes import build_routes, duration
 from lumen.loading.show import build_show
 from lumen.loading.units import ANGLES, LENGTHS
 
+OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the stage does not hold the place where the robot starts")
-UNKNOWN_TIMEZONE = Code("unknown-timezone", "robot", ERROR, "`timezone` names none")
+UNKNOWN_TIMEZONE = Code("unknown-timezone", "robot", ERROR, "`timezone` is not the name of a time zone")
 
 
 @dataclass(frozen=True)
 class Settings:
     """What lumen.yaml says; a text is empty where the file lacks it or what stood there was refused."""
 
+    vocabulary: int = FIRST_VOCABULARY
     name: str = ""
     robot: str = "NAO"
     model: str = ""
@@ -54,6 +57,7 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         return Settings()
     robot, modules = data.get("robot", {}), data.get("modules", {})
     return Settings(
+        vocabulary=data.get(VOCABULARY_KEY, FIRST_VOCABULARY),
         name=data.get("name", ""),
         robot=robot.get("name", Settings.robot),
         model=robot.get("model", ""),
@@ -73,6 +77,18 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
     )
 
 
+def other_vocabulary(settings: Settings, report: DocumentReport) -> Diagnostic | None:
+    """What to do about files that this Lumen would misread, None where it reads them; else nothing more can be said."""
+    place, said = report.document.place((VOCABULARY_KEY,)), settings.vocabulary
+    if said > VOCABULARY:
+        hint = f"install a newer Lumen; where nothing newer is used, write `{VOCABULARY_KEY}: {VOCABULARY}`"
+        return OTHER_VOCABULARY.at(place, f"this is written for vocabulary {said}; this Lumen reads {VOCABULARY}", hint)
+    if said < VOCABULARY:
+        message = f"this is written for vocabulary {said}; this Lumen reads {VOCABULARY}, in which words have changed"
+        return OTHER_VOCABULARY.at(place, message, "`lumen upgrade` rewrites the files and says what it changed")
+    return None
+
+
 def _module(name: str, row: Mapping[str, Any]) -> ModuleSettings:
     """What is said of the show is in `Settings.show`, and counts while it runs."""
     options = {} if name == SHOW else {key: value for key, value in row.items() if key != "here"}
@@ -90,7 +106,9 @@ def _timezone(data: Mapping[str, Any], report: DocumentReport) -> str:
         zone(name)
     except UsageError:
         near = nearest(name, sorted(available_timezones()))
-        hint = f"did you mean `{near}`?" if near else "write an IANA name such as `Europe/Berlin`"
+        hint = (
+            f"did you mean `{near}`?" if "/" in near or near == "UTC" else "write an IANA name such as `Europe/Berlin`"
+        )
         report(UNKNOWN_TIMEZONE, ("timezone",), f"there is no time zone `{name}`", hint=hint)
         return ""
     return name

@@ -5,9 +5,9 @@ from lumen.language.machines import StateKind
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 
-MISPLACED_KEY = Code("misplaced-key", "statecharts", ERROR, "a key stands in a kind of state that does not have it")
+MISPLACED_KEY = Code("misplaced-key", "statecharts", ERROR, "a kind of state does not have this key")
 NO_STATES = Code("no-states", "statecharts", ERROR, "a compound or parallel state has no states")
-NEVER_DONE = Code("never-done", "statecharts", ERROR, "an `onDone` stands in a state that has no `do`")
+NEVER_DONE = Code("never-done", "statecharts", ERROR, "a state has `onDone` and no `do`")
 
 
 _COMMON = {"id", "description", "type"}
@@ -37,6 +37,8 @@ def check_shapes(outline: BehaviorOutline, report: DocumentReport) -> None:
 
 
 def _check_keys(entry: OutlinedState, report: DocumentReport) -> None:
+    if report.broken((*entry.where, "type")):
+        return
     allowed = _ALLOWED[entry.kind]
     for key in entry.data:
         if key in allowed:

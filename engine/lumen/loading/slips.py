@@ -1,92 +1,285 @@
-"""Slips of the keyboard and of word processors that keep a file from being YAML, looked for near where it fails."""
+"""Slips of the keyboard and of word processors in one line, each with the line as it was meant."""
 
+import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-MAX_LINES_BACK = 3
-"""Lines before the one that failed in which the slip may be: YAML notices late."""
+from lumen.loading.line_marks import LineMarks, Mark, closers, marks_of
 
 _KEY = r"[A-Za-z_][\w.]*"
 
 
-_KEYED = re.compile(f" *{_KEY}:(?: |$)")
-_ITEM = re.compile(r" *- ")
-
-
 class Slip(NamedTuple):
-    """Where (from 1) and how long it is, what it is, and what to write."""
+    """Where (from 1) and how long it is, what it is, what to write; `meant` are lines by index, as they should be.
+
+    It is told `only_whole`, where it makes the file YAML, or also where a reader gets further with it.
+    """
 
     line: int
     column: int
     length: int
     message: str
     hint: str
+    meant: Mapping[int, str]
+    only_whole: bool = False
 
 
-_SLIPS = (
+NOT_CLOSED = (
+    "a quoted text begins here and is not closed where it should be",
+    "close it with the same sign; a quote inside the text needs the other kind of quotes around it",
+)
+NO_COMMA = "between two entries in brackets stands a comma", "write `,` here"
+COLON_IN_TEXT = "a text that holds a colon and a blank needs quotes"
+BARE_BRACES = "`{{` begins a map here, not a value to fill in"
+QUOTE_BRACES = 'put quotes around the text: "{{ … }}"'
+
+_SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
     (
         re.compile("^[ ]*(?P<slip>[\u00a0\u2007\u202f\u3000\u200b\ufeff]+)"),
+        " ",
         "this looks like a blank in the indentation, and is another character",
         "delete it, and type spaces",
     ),
     (
-        re.compile(f"^ *(?:- )?{_KEY}(?P<slip>：)"),
+        re.compile(f"^ *(?:- )?{_KEY}(?P<slip>： ?)"),
+        ": ",
         "this colon is a wide one, of Chinese or Japanese text",
         "write `:` and a blank",
     ),
     (
         re.compile(f"^ *(?:- )?{_KEY}:(?P<slip>[\u00a0\u2007\u202f\u3000\u200b]+)"),
+        " ",
         "this looks like a blank, and is another character",
         "delete it, and type a space",
     ),
     (
         re.compile("^ *(?P<slip>[–—•*]) +\\w"),
+        "-",
         "an item of a list begins with a hyphen",
         "write `- `",
     ),
     (
         re.compile(f"^ *(?P<slip>-)(?={_KEY}:(?: |$))"),
+        "- ",
         "between the hyphen of an item and its text stands a blank",
         "write `- `",
     ),
     (
         re.compile(f"^ *(?:- )?{_KEY}(?P<slip>:)(?=[A-Za-z\"'\\[{{][^ ]*$)(?!//)"),
+        ": ",
         "between a colon and its value stands a blank",
         "write `: `",
     ),
     (
         re.compile(f"^ *(?:- )?{_KEY}(?P<slip> ?=) ?(?=[^=>])"),
+        ": ",
         "between a key and its value stands a colon",
         "write `: `",
+    ),
+    (
+        re.compile(f"^ *(?:- )?{_KEY}(?P<slip> *;)(?: |$)"),
+        ":",
+        "a semicolon stands where a colon should",
+        "write `: `",
+    ),
+    (
+        re.compile(f"^ *(?:- )?{_KEY}(?P<slip>::)(?: |$)"),
+        ":",
+        "two colons stand behind a key",
+        "write one: `: `",
     ),
 )
 
 
-def slip_near(lines: Sequence[str], index: int) -> Slip | None:
-    """The slip that is nearest before the line of that index, or in it; None where there is none that is known."""
-    for i in range(min(index, len(lines) - 1), max(index - MAX_LINES_BACK, 0) - 1, -1):
-        for pattern, message, hint in _SLIPS:
-            if found := pattern.search(lines[i]):
-                start, end = found.span("slip")
-                return Slip(i + 1, start + 1, end - start, message, hint)
-    return _odd_item(lines, index)
+class _Line(NamedTuple):
+    """A line that may have slipped, and its index in the file."""
+
+    text: str
+    row: int
+
+    def slip(self, column: int, length: int, words: tuple[str, str], start: int, end: int, meant: str) -> Slip:
+        """A slip of that length at that column; from `start` to `end` should stand what was meant (all from 0)."""
+        right = self.text[:start] + meant + self.text[end:]
+        return Slip(self.row + 1, column + 1, length, *words, {self.row: right})
+
+    def quoted(self, start: int, end: int, message: str, hint: str = "") -> Slip:
+        """A text that should stand in quotes."""
+        value = self.text[start:end]
+        plain = '"' not in value and "\\" not in value
+        meant = f'"{value}"' if plain else "'" + value.replace("'", "''") + "'"
+        words = message, hint or f"put quotes around it: {_short(meant)}"
+        return self.slip(start, end - start, words, start, end, meant)
 
 
-def _odd_item(lines: Sequence[str], index: int) -> Slip | None:
-    """An item among keys, or a key among items, in the line of that index: the line before it tells which."""
-    here = lines[index] if index < len(lines) else ""
-    above = next((line for line in reversed(lines[:index]) if _indent(line) <= _indent(here) and line.strip()), "")
-    column = _indent(here) + 1
-    if column != _indent(above) + 1:
-        return None
-    if _ITEM.match(here) and _KEYED.match(above):
-        return Slip(index + 1, column, 1, "an item of a list stands among keys", "delete the `- ` before it")
-    if _KEYED.match(here) and _ITEM.match(above):
-        hint = "write `- ` before it too, or delete the one above"
-        return Slip(index + 1, column, len(here) - column + 1, "a key stands among the items of a list", hint)
-    return None
+def signs(text: str, index: int) -> Iterator[Slip]:
+    """Signs that stand for others, and blanks that are missing."""
+    line = _Line(text, index)
+    for pattern, meant, message, hint in _SIGNS:
+        if found := pattern.search(text):
+            start, end = found.span("slip")
+            right = meant * (end - start) if meant == " " else meant
+            yield line.slip(start, end - start, (message, hint), start, end, right)
+    if found := re.search("[“”„«»‘’]", text):
+        straight = re.sub("[“”„«»]", '"', re.sub("[‘’]", "'", text))
+        words = f"{found[0]} is no quote for YAML, which knows only straight ones", "write straight quotes: \" or '"
+        yield line.slip(found.start(), 1, words, 0, len(text), straight)
 
 
-def _indent(line: str) -> int:
-    return len(line) - len(line.lstrip(" "))
+def quotes(text: str, index: int) -> Iterator[Slip]:
+    """A quoted text that is not closed, or that is closed too early."""
+    line, marks = _Line(text, index), marks_of(text)
+    if marks.quote:
+        sign, column = marks.quote
+        for end in _ends(text, column):
+            yield line.slip(column, 1, NOT_CLOSED, end, end, sign)
+    if found := re.search(
+        rf"(?:{_KEY}: +|- +)(?P<text>[^\s\"'\[{{|>&*!][^\"']*)(?P<sign>[\"'])(?= *(?:[,\]}}]|$))", text
+    ):
+        start, sign = found.start("text"), found["sign"]
+        words = (
+            f"the quote in column {found.start('sign') + 1} closes a text that none opens",
+            f"write `{sign}` before it",
+        )
+        yield line.slip(start, 1, words, start, start, sign)
+    if marks.ended:
+        yield from _early(line, marks, *marks.ended)
+
+
+def _early(line: _Line, marks: LineMarks, first: Mark, last: Mark) -> Iterator[Slip]:
+    """A quoted text with something behind it."""
+    (sign, start), text = first, line.text
+    rest = text[last.column + 1 :]
+    if found := re.search(rf"(?P<end>,) *(?:{_KEY}: +)?$", text[start : last.column]):  # it opens the next one
+        yield line.slip(start, 1, NOT_CLOSED, start + found.start(), start + found.start(), sign)
+    if re.match(rf" +(?:{_KEY}|['\"\[{{])", rest):
+        yield line.slip(last.column + 1, 1, NO_COMMA, last.column + 1, last.column + 1, ",")
+    again = text.rfind(sign, last.column + 1)
+    end = again + 1 if again > 0 else marks.stop
+    inner = text[start + 1 : again] if again > 0 else text[start + 1 : end].replace(sign, "")
+    if sign == "'" and rest[:1].isalpha():
+        message = "the apostrophe here ends the text that begins with the same sign"
+        words = message, "put double quotes around a text with an apostrophe in it"
+    elif again > 0:
+        message = "the quote here ends the text that begins with the same sign"
+        words = message, "put single quotes around a text with double quotes in it"
+    else:
+        words = "something stands behind a quoted text", "put the quotes around all of it"
+    yield line.slip(last.column, 1, words, start, end, json.dumps(inner, ensure_ascii=False))
+
+
+def _ends(text: str, start: int) -> Iterator[int]:
+    """Where a text that begins there may have been meant to end: before what is like the next key, or at the end."""
+    stop = len(text.rstrip())
+    if found := re.search(rf", *{_KEY}:(?= )", text[start:]):
+        yield start + found.start()
+    bare = len(text[:stop].rstrip("]} "))
+    yield from (end for end in range(bare, stop) if end > start)
+    yield stop
+    if comment := re.search(r" +#", text[start:]):
+        yield start + comment.start()
+
+
+def brackets(text: str, index: int) -> Iterator[Slip]:
+    """A bracket that is not closed in its line, or that closes nothing."""
+    line, marks = _Line(text, index), marks_of(text)
+    if marks.quote:
+        return
+    if marks.open and re.match(r" +#", text[marks.stop :]):
+        yield from _cut(line, marks)
+    if marks.braces:
+        yield from _braces(line, marks)
+    if marks.open:
+        sign, column = marks.open[-1]
+        close = closers(marks.open)
+        yield line.slip(column, 1, not_closed(sign, close), marks.stop, marks.stop, close)
+    for mark in marks.surplus[:1]:
+        at = mark.column
+        if marks.open and marks.open[-1].column < at:
+            sign, column = marks.open[-1]
+            close = closers(marks.open[-1:])
+            words = f"the bracket `{sign}` is not closed by `{mark.sign}`", f"write `{close}`"
+            yield from (line.slip(column, 1, words, at, end, close) for end in (at, at + 1))
+        words = f"`{mark.sign}` closes a bracket that is not open", "delete it, or open one before"
+        yield line.slip(at, 1, words, at, at + 1, "")
+
+
+def _cut(line: _Line, marks: LineMarks) -> Iterator[Slip]:
+    """A text in brackets that a comment cuts off."""
+    text, at = line.text, line.text.index("#", marks.stop)
+    start = next(
+        (i + 2 for i in range(marks.stop - 1, 0, -1) if text[i : i + 2] in (": ", ", ")), marks.open[-1].column + 1
+    )
+    words = "` #` begins a comment, which cuts this text off", "put quotes around the text"
+    for end in _ends(text, start):
+        if end > at:
+            yield line.slip(at, 1, words, start, end, json.dumps(text[start:end], ensure_ascii=False))
+
+
+def not_closed(sign: str, close: str) -> tuple[str, str]:
+    """What is said of a bracket that is not closed."""
+    return f"the bracket `{sign}` is not closed", f"write `{close}` at the end of what is in it"
+
+
+def _braces(line: _Line, marks: LineMarks) -> Iterator[Slip]:
+    """`{{` without quotes: YAML takes it for a map in a map."""
+    start = marks.braces[0]
+    words = BARE_BRACES, QUOTE_BRACES
+    ends = [found.end() for found in re.finditer(r"\}\}", line.text) if found.end() > start]
+    for end in (marks.stop, *reversed(ends)):
+        if end > start:
+            yield line.slip(start, 2, words, start, end, json.dumps(line.text[start:end], ensure_ascii=False))
+
+
+def colons(text: str, index: int) -> Iterator[Slip]:
+    """A key without its colon, or a value with one that is none of YAML's."""
+    line, item = _Line(text, index), r"^ *(?:- +)*"
+    if found := re.search(rf"{item}(?:\{{ *)?(?P<key>{_KEY})(?P<rest> +[^ :#].*| *)$", text):
+        start, end, rest = *found.span("key"), found["rest"].strip()
+        shown = f"write `{found['key']}: {rest}"[:40].rstrip() + "`"
+        alone = f"write `{found['key']}:` if it is a key; else indent it below its key"
+        yield line.slip(start, end - start, (_no_colon(found["key"]), shown if rest else alone), end, end, ":")
+    if found := re.search(rf"{item}{_KEY}:(?P<slip> +- +)\S", text):
+        words = "the first item of a list stands behind its key", "begin a new line with `- `, below the key"
+        yield line.slip(found.start("slip") + 1, 1, words, *found.span("slip"), " ")
+    if found := re.search(rf"{item}(?P<all>{_KEY}: [^,]+(?:, *{_KEY}: [^,]+)+) *$", text):
+        (start, end), meant = found.span("all"), f"{{{found['all']}}}"
+        words = "several keys in one line need braces around them", f"write `{_short(meant)}`"
+        yield line.slip(start, end - start, words, start, end, meant)
+    found = re.search(rf"{item}(?P<key>{_KEY}): +(?P<value>(?P<inner>#?[a-z][\w.]*): .*?) *$", text)
+    if found and (
+        len(found["key"]) > 2 or found["key"] in ("on", "do", "at", "if")
+    ):  # a language has two letters, and a text behind it
+        message = f"two keys stand in one line: `{found['key']}` and `{found['inner']}`"
+        hint = f"write `{found['inner']}:` in the next line, further in, or quotes around it if it is a text"
+        yield line.quoted(*found.span("value"), message, hint)
+    if found := re.search(rf"{item}{_KEY}: +(?P<value>(?!- )[^\"'\[{{|>#].*?: ?.*?) *$", text):
+        yield line.quoted(*found.span("value"), COLON_IN_TEXT)
+    if found := re.search(rf"{item}{_KEY}: +(?P<value>[@%`!&*|>,\]}}].*?) *$", text):
+        yield line.quoted(*found.span("value"), _odd_beginning(found["value"]))
+
+
+def flows(text: str, index: int) -> Iterator[Slip]:
+    """What is missing in brackets: commas, colons, and quotes around texts with a colon in them."""
+    line = _Line(text, index)
+    for found in re.finditer(rf"(?<=[\w\"'\]}}.])(?P<slip> +)(?={_KEY}: )", text):
+        yield line.slip(found.start(), 1, NO_COMMA, found.start(), found.start(), ",")
+    for found in re.finditer(rf"{_KEY}: +(?P<value>[^\"'\[\]{{}},:]+: [^\"'\[\]{{}},]*[^\"'\[\]{{}}, ])", text):
+        yield line.quoted(*found.span("value"), COLON_IN_TEXT)
+    for found in re.finditer(rf"(?:{_KEY}: +|[\[,] *)(?P<value>[@%`!&*|>][^\"'\[\]{{}},]*)", text):
+        yield line.quoted(*found.span("value"), _odd_beginning(found["value"]))
+    for found in re.finditer(rf"(?<=[{{,] ){_KEY}(?= +[\w\"'])|(?<=[{{,]){_KEY}(?= +[\w\"'])", text):
+        words = _no_colon(found[0]), f"write `{found[0]}: `"
+        yield line.slip(found.start(), len(found[0]), words, found.end(), found.end(), ":")
+
+
+def _no_colon(key: str) -> str:
+    return f"`{key}` has no colon behind it"
+
+
+def _odd_beginning(value: str) -> str:
+    return f"a text that begins with `{value[0]}` needs quotes"
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 60 else f"{text[:40]}…{text[-1]}"

@@ -13,9 +13,9 @@ from lumen.loading.rule_parser import KEYWORDS
 
 EMPTY_TERM = Code("empty-term", "controllers", ERROR, "a term covers nothing")
 NO_SHAPE = Code("no-shape", "controllers", ERROR, "a term has no shape")
-NOT_ASCENDING = Code("not-ascending", "controllers", ERROR, "the corners of a term do not rise")
+NOT_ASCENDING = Code("not-ascending", "controllers", ERROR, "the corners of a term are not in rising order")
 NOT_POSITIVE = Code("not-positive", "controllers", ERROR, "a width is not more than 0")
-RESERVED_NAME = Code("reserved-name", "controllers", ERROR, "a variable or term is called like a word of the rules")
+RESERVED_NAME = Code("reserved-name", "controllers", ERROR, "a variable or term has the name of a word of the rules")
 TWO_SHAPES = Code("two-shapes", "controllers", ERROR, "a term has two shapes")
 WRONG_PARAMETERS = Code("wrong-parameters", "controllers", ERROR, "a term has too few or too many numbers")
 

@@ -89,6 +89,8 @@ class TransitionReader:
             if found is not None:
                 event = f"at.{''.join(found.text.split())}.{entry.name}"
                 yield from self._candidates(entry, rows, (*where, text), event=event, exact=True, schedule=found)
+            else:
+                self.report.pruned.add((*where, text))  # what it leads to is not gone to for this reason
 
     def _candidates(
         self,

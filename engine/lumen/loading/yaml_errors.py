@@ -1,6 +1,7 @@
 """What to say of a file that is not YAML: where it went wrong, in a student's words."""
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import yaml
@@ -9,9 +10,9 @@ from lumen.language.diagnostics import ERROR, Code, Diagnostic, Place
 from lumen.loading.document import TOO_LARGE
 from lumen.loading.yaml_composer import TooLargeError
 
-MERGE_CONFLICT = Code("merge-conflict", "text", ERROR, "both sides of a merge stand in the file")
+MERGE_CONFLICT = Code("merge-conflict", "text", ERROR, "a merge conflict is not resolved: both sides are in the file")
 NOT_UTF8 = Code("not-utf8", "text", ERROR, "a file is not UTF-8 text")
-TAB = Code("tab", "text", ERROR, "a tab stands in the indentation")
+TAB = Code("tab", "text", ERROR, "a line is indented with a tab")
 YAML_SYNTAX = Code("yaml-syntax", "text", ERROR, "a file is not YAML")
 
 
@@ -26,7 +27,6 @@ _HINTS = {
 }
 _SMALLER = "split it, or use fewer levels and aliases"
 _CONFLICT = re.compile(r"^(<{7}|={7}|>{7})(?= |$)", re.MULTILINE)
-_KEYED = re.compile(r" *[A-Za-z_][\w.]*:( |$)")
 
 
 def merge_conflict(file: str, text: str) -> Diagnostic | None:
@@ -37,7 +37,7 @@ def merge_conflict(file: str, text: str) -> Diagnostic | None:
     line = text.count("\n", 0, found.start()) + 1
     place = Place(file, line, 1, line, len(found[0]) + 1)
     hint = "keep one of the two versions, and delete the lines with <<<<<<<, ======= and >>>>>>>"
-    return MERGE_CONFLICT.at(place, "both sides of a merge stand in the file", hint)
+    return MERGE_CONFLICT.at(place, "a merge conflict is not resolved: both sides are in the file", hint)
 
 
 def not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
@@ -68,37 +68,32 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     if conflict := merge_conflict(file, text):
         return conflict
     context = getattr(error, "context", None) or ""
-    if "quoted scalar" in context:
-        start = error.context_mark  # type: ignore[attr-defined]
-        place = Place(file, start.line + 1, start.column + 1, start.line + 1, start.column + 2)
-        hint = "close it with the same sign; a quote inside the text needs the other kind of quotes around it"
-        return YAML_SYNTAX.at(place, "a quoted text begins here and is not closed where it should be", hint)
     mark: Any = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
-    if "simple key" in context and not text.splitlines()[error.context_mark.line].lstrip().startswith(("-", "?")):  # type: ignore[attr-defined]
+    lines, failed = text.split("\n"), mark.line
+    source = lines[failed] if failed < len(lines) else ""  # YAML knows other ends of lines as well
+    if "\t" in (before := source[: mark.column + 1]) and not before.strip():
+        column = before.index("\t") + 1
+        place = Place(file, failed + 1, column, failed + 1, column + 1)
+        return TAB.at(place, "a line is indented with a tab", "YAML is indented with spaces: use two")
+    if "quoted scalar" in context or _begins_late(error, lines):
         mark = error.context_mark  # type: ignore[attr-defined]
-    place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2)
-    lines = text.splitlines()
-    source = lines[mark.line] if mark.line < len(lines) else ""
-    if "\t" in source[: mark.column + 1] and not source[: mark.column].strip():
-        column = source.index("\t") + 1
-        place = Place(file, mark.line + 1, column, mark.line + 1, column + 1)
-        return TAB.at(place, "a tab stands in the indentation", "YAML is indented with spaces: use two")
-    from lumen.loading.slips import slip_near  # only where something slipped
+    from lumen.loading.mending import mistake  # only where something slipped
+    from lumen.loading.slips import NOT_CLOSED
 
-    if slip := slip_near(lines, mark.line):
-        row, column, length, message, hint = slip
-        return YAML_SYNTAX.at(Place(file, row, column, row, column + length), message, hint)
+    if found := mistake(text, mark.line, failed):
+        slip, _ = found
+        place = Place(file, slip.line, slip.column, slip.line, slip.column + slip.length)
+        return YAML_SYNTAX.at(place, slip.message, slip.hint)
+    place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2)
+    if "quoted scalar" in context:
+        return YAML_SYNTAX.at(place, *NOT_CLOSED)
     problem = " ".join(str(getattr(error, "problem", error)).split())
     detail = f"{problem} {context}" if context else problem
     hint = next((words for sign, words in _HINTS.items() if sign in problem), _LOOK)
-    if "mapping values" in problem and _too_deep(lines, mark.line):
-        hint = "this line stands further in than the one above, which has its value already: align the two"
     return YAML_SYNTAX.at(place, f"this is not YAML: {detail}", hint)
 
 
-def _too_deep(lines: list[str], index: int) -> bool:
-    """Whether a line that is a key stands further in than the key with a value above it."""
-    above = next((line for line in reversed(lines[:index]) if line.strip()), "")
-    here = lines[index] if index < len(lines) else ""
-    deeper = len(here) - len(here.lstrip()) > len(above) - len(above.lstrip())
-    return deeper and bool(_KEYED.match(here)) and bool(_KEYED.match(above))
+def _begins_late(error: Any, lines: Sequence[str]) -> bool:
+    """Whether what could not be ended is a key that began in an earlier line."""
+    late = "simple key" in (getattr(error, "context", None) or "")
+    return late and not "".join(lines[error.context_mark.line :][:1]).lstrip().startswith(("-", "?"))

@@ -6,7 +6,7 @@ the YAML 1.2 core schema.
 
 import re
 from collections.abc import Iterator
-from itertools import chain
+from itertools import chain, pairwise
 from typing import Any
 
 import yaml
@@ -14,15 +14,16 @@ import yaml
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place, Related
 from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
 from lumen.loading.memoization import memoize
+from lumen.loading.slips import BARE_BRACES, QUOTE_BRACES
 from lumen.loading.yaml_composer import PLAIN_TAGS, TooLargeError, compose
 from lumen.loading.yaml_errors import merge_conflict, not_utf8, syntax_error, too_large
 from lumen.loading.yaml_scalars import resolve
 
 COMPLEX_KEY = Code("complex-key", "text", ERROR, "a key is a list or a map")
-DUPLICATE_KEY = Code("duplicate-key", "text", ERROR, "a key stands twice in the same place")
+DUPLICATE_KEY = Code("duplicate-key", "text", ERROR, "a key is written twice in the same place")
 DECIMAL_COMMA = Code("decimal-comma", "text", ERROR, "a number is written with a comma")
 EMPTY_FILE = Code("empty-file", "text", ERROR, "a file holds nothing")
-YAML_TAG = Code("yaml-tag", "text", ERROR, "a tag stands before a value")
+YAML_TAG = Code("yaml-tag", "text", ERROR, "a value has a YAML tag")
 
 
 _WHOLE, _DECIMALS = re.compile(r"[-+]?[0-9]+"), re.compile(r"[0-9]+(ms|s|min|h)?")
@@ -51,7 +52,7 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
         return None, [too_large(file, error)]
     if node is None:
         return None, [EMPTY_FILE.at(Place(file), "the file is empty", "write its content, or delete it")]
-    reader = _Reader(file)
+    reader = _Reader(file, text)
     data = reader.read(node, (), None, 0)
     if "<<<<<<< " in text and (conflict := merge_conflict(file, text)):
         reader.diagnostics.append(conflict)
@@ -61,8 +62,8 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
 class _Reader:
     """Turns composed nodes into plain data, remembering where each stood."""
 
-    def __init__(self, file: str) -> None:
-        self.file = file
+    def __init__(self, file: str, text: str) -> None:
+        self.file, self.text = file, text
         self.spans: dict[NodePath, NodeSpan] = {}
         self.diagnostics: list[Diagnostic] = []
         self.full = False
@@ -83,17 +84,45 @@ class _Reader:
         if isinstance(node, yaml.ScalarNode):
             return node.value if node.style else resolve(node.value)
         if isinstance(node, yaml.SequenceNode):
+            if numbers := _decimals(node):
+                return self.commas(node, numbers)
             return [self.read(child, (*path, i), None, depth + 1) for i, child in enumerate(node.value)]
+        assert isinstance(node, yaml.MappingNode)
+        if braces := self.braces(node):
+            return braces
         return self.mapping(node, path, depth)
+
+    def braces(self, node: yaml.MappingNode) -> str:
+        """The text of `{{ … }}` that stands without quotes, which YAML takes for a map in a map; empty for others."""
+        if not (node.flow_style and len(node.value) == 1 and isinstance(node.value[0][0], yaml.MappingNode)):
+            return ""
+        start, end = node.start_mark, node.end_mark
+        text = self.text[start.index : end.index]
+        if not (text.startswith("{{") and text.endswith("}}")):
+            return ""
+        place = self.place(node)._replace(end_line=start.line + 1, end_column=start.column + 3)
+        self.diagnostics.append(COMPLEX_KEY.at(place, BARE_BRACES, QUOTE_BRACES))
+        return text
+
+    def commas(self, node: yaml.SequenceNode, numbers: list[str]) -> list[Any]:
+        """Report a list of numbers that are written with commas."""
+        message = "a comma ends a number, and these would be twice as many"
+        self.say(DECIMAL_COMMA, node, message, f"write points: [{', '.join(numbers)}]")
+        return [resolve(number) for number in numbers]
 
     def mapping(self, node: yaml.Node, path: NodePath, depth: int) -> dict[str, Any]:
         data: dict[str, Any] = {}
         last: yaml.Node | None = None
+        begun = _begun_anew(node)
         for key, value in node.value:
             before, last = last, value
             if before is not None and data and (number := _decimal(before, key, value)):
                 self.comma(before, key, number)
                 data[next(reversed(data))] = resolve(number)
+            elif begun is not None and key is begun[0]:
+                self.too_deep(key, begun[1], depth)
+                self.dropped.update(_texts_below(node))
+                break
             elif not isinstance(key, yaml.ScalarNode):
                 hint = "put quotes around a text that begins with `{`"
                 self.say(COMPLEX_KEY, key, "a key has to be a single word or text", hint)
@@ -122,6 +151,14 @@ class _Reader:
         message, cause = f"`{key.value}` stands twice in the same place", f"{self.file} twice in {path}"
         self.diagnostics.append(DUPLICATE_KEY.at(self.place(key), message, hint, related=related, cause=cause))
 
+    def too_deep(self, key: yaml.Node, first: yaml.Node, depth: int) -> None:
+        """Report a key that stands as far in as those that were meant to be below it."""
+        message = (
+            f"`{key.value}` stands as far in as `{first.value}` below it, so that keys stand twice in the same place"
+        )
+        blanks = "two blanks" if key.start_mark.column > 1 else "the blanks"
+        self.say(DUPLICATE_KEY, key, message, f"take {blanks} away before `{key.value}`")
+
     def overflow(self, node: yaml.Node, depth: int) -> None:
         if not self.full:
             self.full = True
@@ -147,6 +184,35 @@ def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
     if plain and _WHOLE.fullmatch(before.value) and _DECIMALS.fullmatch(key.value):
         return f"{before.value}.{key.value}"
     return ""
+
+
+def _begun_anew(node: yaml.Node) -> tuple[yaml.Node, yaml.Node] | None:
+    """An empty key behind which the keys of a map begin anew, and the first of those; None where there is none."""
+    keys = [key.value if isinstance(key, yaml.ScalarNode) else "" for key, _ in node.value]
+    before: set[str] = set()
+    for i, (key, value) in enumerate(node.value[:-1]):
+        empty = isinstance(value, yaml.ScalarNode) and not value.style and not value.value
+        if empty and keys[i + 1] in before and keys[i] not in before:
+            again = [name for name in keys[i + 1 :] if name and name in before]
+            if len(again) > 1:
+                return key, node.value[i + 1][0]
+        before.add(keys[i])
+    return None
+
+
+def _decimals(node: yaml.SequenceNode) -> list[str]:
+    """The numbers that a list was meant to hold where some commas in it have a blank behind them, and others none."""
+    items = node.value
+    if len(items) < 4 or len(items) % 2 or not node.flow_style:
+        return []
+    if not all(isinstance(item, yaml.ScalarNode) and not item.style for item in items):
+        return []
+    near = [a.end_mark.index + 1 == b.start_mark.index for a, b in pairwise(items)]
+    if near != [i % 2 == 0 for i in range(len(near))]:
+        return []
+    pairs = [(items[i].value, items[i + 1].value) for i in range(0, len(items), 2)]
+    sound = all(_WHOLE.fullmatch(whole) and _DECIMALS.fullmatch(part) for whole, part in pairs)
+    return [f"{whole}.{part}" for whole, part in pairs] if sound else []
 
 
 def _texts_below(node: yaml.Node) -> Iterator[str]:

@@ -1,14 +1,14 @@
 """What could stand at a cursor: names of the kind that belongs there, else the keys and values of the schema."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.expressions.functions import FUNCTIONS
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ROBOT_EVENTS
 from lumen.lsp.analysis import Analysis
-from lumen.lsp.cursor import CURSOR_MARK, Cursor, cursor
+from lumen.lsp.cursor import Cursor, cursor
 from lumen.lsp.grammar import key_kind, kind_of, value_kind
 from lumen.lsp.index import NameIndex, stem
 from lumen.lsp.names import NameKind
@@ -31,20 +31,35 @@ class Item(NamedTuple):
 
 def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item]:
     """The proposals for a line and column, from 1; the nearest first."""
-    here = cursor(file, analysis.text(file), line, column)
+    here = cursor(analysis.text(file), line, column, analysis.readable_text(file))
     kind = kind_of(file)
     if here is None or not kind:
         return []
-    around = Analysis(analysis.root, analysis.files)
-    around.__dict__["documents"] = {**analysis.documents, file: here.document}
-    around.__dict__["draft"] = analysis.draft
-    return list(_Completion(around, kind, file, here).items())
+    return _fitting(_Completion(analysis, kind, file, here, (line, column)).items(), here.before)
+
+
+def _fitting(items: Iterable[Item], before: str) -> list[Item]:
+    """Those in which what is typed is found, letter by letter; the nearest first: begun by it, holding it, the rest."""
+    ranked = [(rank, item) for item in items if (rank := _rank(item, before)) is not None]
+    return [item for _, item in sorted(ranked, key=lambda each: each[0])]
+
+
+def _rank(item: Item, before: str) -> int | None:
+    typed = before[len(before) - item.replaces :].lower() if item.replaces else ""
+    text = item.text.lower()
+    plain = text.lstrip("\"'#.")
+    if text.startswith(typed) or plain.startswith(typed.lstrip("\"'#.")):
+        return 0
+    if typed in text:
+        return 1
+    letters = iter(text)
+    return 2 if all(letter in letters for letter in typed) else None
 
 
 class _Completion:
-    def __init__(self, analysis: Analysis, kind: str, file: str, here: Cursor) -> None:
-        self.analysis, self.kind, self.file, self.here = analysis, kind, file, here
-        self.index: NameIndex = analysis.index
+    def __init__(self, analysis: Analysis, kind: str, file: str, here: Cursor, at: tuple[int, int]) -> None:
+        self.analysis, self.kind, self.file, self.here, self.at = analysis, kind, file, here, at
+        self.index: NameIndex = analysis.names(file)
         self.scope = self.index.behavior(file)
 
     def items(self) -> Iterator[Item]:
@@ -81,9 +96,8 @@ class _Completion:
     def names(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[Item]:
         wide, end = len(self.here.word), ": " if key else ""
         for name, detail in self.candidates(kind, path, key=key):
-            if CURSOR_MARK not in name:
-                written = f'"{name}"' if name.startswith("#") and not self.quoted() else name
-                yield Item(written + end, detail or str(kind), wide)
+            written = f'"{name}"' if name.startswith("#") and not self.quoted() else name
+            yield Item(written + end, detail or str(kind), wide)
 
     def quoted(self) -> bool:
         """Whether the cursor stands in quotes, where a `#` begins no comment."""
@@ -125,7 +139,8 @@ class _Completion:
 
     def events(self, *, waits: bool) -> Iterator[tuple[str, str]]:
         """Events that may come, where one is waited for; those waited for, where one is raised."""
-        uses = [w for w in self.index.uses if w.kind is NameKind.EVENT]
+        written = self.index.at(self.file, *self.at)
+        uses = [w for w in self.index.uses if w.kind is NameKind.EVENT and w is not written]
         names = dict.fromkeys(w.name for w in uses if w.defines or not waits or w.place.file == self.file)
         yield from ((name, "") for name in names)
         if waits:
@@ -173,17 +188,17 @@ class _Completion:
 
     def declared(self) -> Iterator[tuple[str, Any]]:
         """The events of routes, of the robot and of the file, each with the schema of its data."""
-        settings, own = self.analysis.draft.settings, self.here.document.data
+        settings, own = self.analysis.settings.settings, self.index.documents.get(self.file)
         for route in settings.routes.values() if settings else ():
-            yield route.event, self.analysis.draft.messages.get(route.schema)
+            yield route.event, self.analysis.settings.messages.get(route.schema)
         yield from ROBOT_EVENTS.items()
-        events = own.get("events") if isinstance(own, dict) else None
+        events = own.data.get("events") if own and isinstance(own.data, dict) else None
         yield from events.items() if isinstance(events, dict) else ()
 
     def schema(self, route: str) -> Any:
-        settings = self.analysis.draft.settings
+        settings = self.analysis.settings.settings
         known = settings.routes.get(route) if settings else None
-        return self.analysis.draft.messages.get(known.schema) if known else None
+        return self.analysis.settings.messages.get(known.schema) if known else None
 
     def fields(self, schema: Any) -> list[str]:
         properties = schema.get("properties") if isinstance(schema, Mapping) else None

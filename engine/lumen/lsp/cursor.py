@@ -6,6 +6,7 @@ from typing import NamedTuple
 from lumen.language.diagnostics import NodePath
 from lumen.loading.document import Document
 from lumen.loading.yaml_reader import parse
+from lumen.lsp.fragments import fragment
 
 CURSOR_MARK = "Here0Stands1The2Cursor"
 _BEFORE = re.compile(r"[^\s,\[\]{}:'\"()]*$")
@@ -15,7 +16,8 @@ _PAIRS = {"[": "]", "{": "}"}
 class Cursor(NamedTuple):
     """The node that is being written: its path, whether its key or its value, and what of its text stands before.
 
-    `word` is what a completion replaces, `quote` the quote before it; `document` the file with the cursor's mark in it.
+    `word` is what a completion replaces, `quote` the quote before it; `document` is what stands around, with the
+    cursor's mark in it.
     """
 
     path: NodePath
@@ -26,18 +28,30 @@ class Cursor(NamedTuple):
     document: Document
 
 
-def cursor(file: str, text: str, line: int, column: int) -> Cursor | None:
-    """The node at a line and column, from 1, of a file that need not be whole; None where it can't be told."""
+def cursor(text: str, line: int, column: int, readable: str = "") -> Cursor | None:
+    """The node at a line and column, from 1, of a text that need not be whole; None where it can't be told.
+
+    `readable` is what of all other lines can be read.
+    """
     lines = text.split("\n")
     if line > len(lines):
         return None
+    near, at = fragment(lines, line - 1, column)
+    found = _cursor(near, at + 1, column)
+    others = readable.split("\n") if readable else lines
+    if found or len(others) != len(lines) or near is others:
+        return found
+    return _cursor([*others[: line - 1], lines[line - 1], *others[line:]], line, column)
+
+
+def _cursor(lines: list[str], line: int, column: int) -> Cursor | None:
     head, tail = lines[line - 1][: column - 1], lines[line - 1][column - 1 :]
     found = _BEFORE.search(head)
     word = found[0] if found else ""
     begun = head[: -len(word)] if word.startswith(("#", "*", "&", "@", "`", "%")) else head  # what YAML reads otherwise
     for middle in [*_attempts(head, tail), *(_attempts(begun, tail) if begun != head else ())]:
         content = "\n".join([*lines[: line - 1], middle, *lines[line:]])
-        document, _ = parse(file, content.encode("utf-8", "surrogatepass"))
+        document, _ = parse("cursor", content.encode("utf-8", "surrogatepass"))
         if document and (node := _marked(document)):
             path, key, value = node
             quote = head[: len(head) - len(word)][-1:]

@@ -1,6 +1,7 @@
 """What may stand where in a file: from the path of a node to the kind of name that its key or its value is."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import PurePosixPath
 
 from lumen.language.diagnostics import NodePath
@@ -19,6 +20,8 @@ FOLDER_KINDS: Mapping[str, str] = {
     "schemas/messages": "message",
 }
 """The folders and the kinds of file in them, as the schemas call those."""
+
+MAX_REMEMBERED_PATHS = 50_000
 
 Table = Mapping[tuple[str, ...], NameKind]
 """The ends of paths, `*` for any step; the indices of lists are left out."""
@@ -171,6 +174,7 @@ def kind_of(file: str) -> str:
     return FOLDER_KINDS.get(str(path.parent), "") if path.suffix in (".yaml", ".json") else ""
 
 
+@lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def key_kind(kind: str, path: NodePath) -> NameKind | None:
     """What the key at the end of a path names, in a file of that kind."""
     steps = _steps(path)
@@ -183,6 +187,7 @@ def key_kind(kind: str, path: NodePath) -> NameKind | None:
     return _found(_KEYS.get(kind, {}), steps)
 
 
+@lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def value_kind(kind: str, path: NodePath) -> NameKind | None:
     """What the text at a path names, in a file of that kind."""
     steps = _steps(path)

@@ -9,6 +9,7 @@ from lumen.language.actions import context_key
 from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.memoization import memoize
 from lumen.loading.messages import SCHEMA_SUFFIX
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.lsp.grammar import defines, key_kind, kind_of, value_kind
@@ -35,13 +36,26 @@ class NameIndex:
     @cached_property
     def uses(self) -> tuple[NameUse, ...]:
         """All of them, in the order of the files."""
-        found = [use for document in self.documents.values() for use in _Reader(self, document).uses()]
+        found = [use for document in self.documents.values() for use in self._within(document)]
         for file in sorted(filter(kind_of, self.files)):
             folder = str(PurePosixPath(file).parent)
             found += [
                 NameUse(kind, "", stem(file), "", Place(file), True) for kind, f in KIND_FOLDERS.items() if f == folder
             ]
         return tuple(found)
+
+    def _within(self, document: Document) -> tuple[NameUse, ...]:
+        """The uses in one document; worked out anew where it, or what its names can mean, has changed."""
+        scope = self.behavior(document.file)
+        tree = self.outlines.get(scope)
+        states = (tuple(tree.entries), tuple((name, s.path) for name, s in tree.aliases.items())) if tree else None
+        known = [
+            (w, kind, tuple(_entries(self.data(w), kind)))
+            for w in (scope, *self.words.get(scope, ()))
+            for kind in WORD_KINDS
+        ]
+        given = document.text, scope, states, known
+        return memoize(("uses", document.file), given, lambda: tuple(_Reader(self, document).uses()))
 
     def at(self, file: str, line: int, column: int) -> NameUse | None:
         """The name at that line and column, from 1; the shortest where several stand there."""

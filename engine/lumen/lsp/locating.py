@@ -3,6 +3,7 @@
 import re
 from bisect import bisect_right
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.errors import ExpressionError
@@ -70,6 +71,15 @@ class DocumentText:
 
 def in_expression(source: str, base: int = 0) -> Iterator[NameInText]:
     """The context keys, phrases, tables and states that an expression names; nothing where it can't be read."""
+    yield from (name._replace(offset=base + name.offset) for name in _named(source))
+
+
+@lru_cache(maxsize=10_000)
+def _named(source: str) -> tuple[NameInText, ...]:
+    return tuple(_names(source))
+
+
+def _names(source: str) -> Iterator[NameInText]:
     try:
         tokens = tokenize(source)
     except ExpressionError:
@@ -77,11 +87,11 @@ def in_expression(source: str, base: int = 0) -> Iterator[NameInText]:
     for i, token in enumerate(tokens):
         if token.text == "context" and _signs(tokens, i + 1, ".") and tokens[i + 2].kind == "name":
             key = tokens[i + 2]
-            yield NameInText(NameKind.CONTEXT, key.text, base + key.offset)
+            yield NameInText(NameKind.CONTEXT, key.text, key.offset)
         elif token.kind == "name" and token.text in _NAMED and _signs(tokens, i + 1, "("):
             name = _last_text(tokens, i + 2)
             if name and isinstance(name.value, str):
-                yield NameInText(_NAMED[token.text], name.value, base + name.offset + 1)
+                yield NameInText(_NAMED[token.text], name.value, name.offset + 1)
 
 
 def in_template(text: str) -> Iterator[NameInText]:

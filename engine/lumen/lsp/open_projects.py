@@ -15,6 +15,7 @@ class OpenProjects:
     def __init__(self) -> None:
         self._texts: dict[Path, str] = {}
         self._analyses: dict[Path, Analysis] = {}
+        self._before: dict[Path, Analysis] = {}
 
     def write(self, path: Path, text: str) -> None:
         """What stands in an open file now."""
@@ -29,7 +30,9 @@ class OpenProjects:
     def forget(self, path: Path) -> None:
         """Something has happened to a file."""
         if root := root_of(path):
-            self._analyses.pop(root, None)
+            last = self._analyses.pop(root, None)
+            if last is not None:
+                self._before[root] = last
 
     def analysis(self, root: Path) -> Analysis:
         """The project in that folder, as it is now."""
@@ -39,8 +42,12 @@ class OpenProjects:
                 file = _file(path, root)
                 if file and (kind_of(file) or file in files):
                     files[file] = text.encode("utf-8", "surrogatepass")
-            self._analyses[root] = Analysis(root, files)
+            self._analyses[root] = Analysis(root, files, self._before.get(root))
         return self._analyses[root]
+
+    def roots(self) -> list[Path]:
+        """The folders of the projects of which a file is open."""
+        return list(dict.fromkeys(root for path in list(self._texts) if (root := root_of(path))))
 
     def at(self, path: Path) -> tuple[Analysis, str]:
         """The project that a file belongs to, and its name in it. Raises UsageError where it belongs to none."""

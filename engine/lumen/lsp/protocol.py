@@ -33,6 +33,11 @@ _ICONS = {
 }
 
 
+def icon(kind: NameKind) -> lsp.SymbolKind:
+    """What an editor draws beside a name of that kind."""
+    return _ICONS.get(kind, lsp.SymbolKind.Key)
+
+
 class ProtocolEncoder:
     """Encodes results for one client: `codec` knows how it counts columns."""
 
@@ -81,7 +86,7 @@ class ProtocolEncoder:
         ranges = self.ranges(symbol.place.file)
         return lsp.DocumentSymbol(
             symbol.name,
-            _ICONS.get(symbol.kind, lsp.SymbolKind.Key),
+            icon(symbol.kind),
             ranges.range(symbol.whole),
             ranges.range(symbol.place),
             detail=str(symbol.kind),

@@ -47,6 +47,9 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
 
     A state keeps its `id` where that is another name than its key.
     """
+    if analysis.broken:
+        said = next(d for each in analysis.broken.values() for d in each.diagnostics)
+        raise UsageError(f"not while a file can't be read, for the name may stand there: {said}")
     pattern, look = _NAMES[use.kind]
     if not re.fullmatch(pattern, name) or _RESERVED.fullmatch(name):
         raise UsageError(f"`{name}` can't be the name of a {use.kind}: it has to be {look}")

@@ -1,12 +1,13 @@
 """What a file makes known, as a tree: states within states, and everything else by its key."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
 from lumen.loading.document import Document
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import defines, key_kind, kind_of
-from lumen.lsp.names import NameKind
+from lumen.lsp.names import NameKind, NameUse
 
 
 class Symbol(NamedTuple):
@@ -23,6 +24,14 @@ def symbols(analysis: Analysis, file: str) -> tuple[Symbol, ...]:
     """The symbols of a file, in its order; none where it can't be read."""
     document = analysis.documents.get(file)
     return _below(document, kind_of(file), ()) if document else ()
+
+
+def search(analysis: Analysis, query: str) -> Iterator[NameUse]:
+    """Where things are made known in whose names the letters asked for are found, in their order."""
+    for use in analysis.index.uses:
+        letters = iter(use.name.lower())
+        if use.defines and all(letter in letters for letter in query.lower()):
+            yield use
 
 
 def _below(document: Document, kind: str, path: tuple[str | int, ...]) -> tuple[Symbol, ...]:

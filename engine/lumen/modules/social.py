@@ -13,6 +13,7 @@ from lumen.language.projects import Project
 from lumen.loading.json_lines import forget_lines
 from lumen.modules.module import Module
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.upkeep.private_folder import private_folder
 
 POSTS_FILE = "posts.jsonl"
 MAX_FILE_BYTES = 10_000_000
@@ -55,7 +56,7 @@ class Social(Module):
         if self._file is None:
             return
         try:
-            self._file.parent.mkdir(parents=True, exist_ok=True)
+            private_folder(self._file.parent)
             with open(os.open(self._file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), "ab") as file:
                 if file.tell() > MAX_FILE_BYTES:
                     raise ModuleError(f"{self._file} is full: move it away, and the next posts are kept again")

@@ -8,6 +8,8 @@ from collections import deque
 from contextlib import suppress
 from pathlib import Path
 
+from lumen.upkeep.private_folder import private_folder
+
 DEDUPLICATION_FILE = "commands.jsonl"
 """Its name, among what an exhibition keeps from run to run."""
 MAX_LOGGED_IDS = 1_000
@@ -61,7 +63,7 @@ class DeduplicationLog:
     def _write(self, text: str, how: int) -> None:
         assert self._file is not None
         try:
-            self._file.parent.mkdir(parents=True, exist_ok=True)
+            private_folder(self._file.parent)
             file = os.open(self._file, os.O_WRONLY | os.O_CREAT | how, 0o600)
             try:
                 os.write(file, text.encode())

@@ -1,6 +1,6 @@
 """From a project's files to everything that is wrong with them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from lumen.language.diagnostics import Diagnostic, has_errors
@@ -22,11 +22,17 @@ def check(path: str | Path | None = None) -> list[Diagnostic]:
     return list(check_files(root, read_files(root))[1])
 
 
-def check_files(root: Path, files: Mapping[str, bytes]) -> tuple[Project | None, tuple[Diagnostic, ...]]:
-    """The project that these files make, None where they have errors, and everything wrong with them."""
+def check_files(
+    root: Path, files: Mapping[str, bytes], between: Callable[[], None] = lambda: None
+) -> tuple[Project | None, tuple[Diagnostic, ...]]:
+    """The project that these files make, None where they have errors, and everything wrong with them.
+
+    `between` is called between one rule and the next: whoever does not want to know any more raises what they catch.
+    """
     found = draft(files)
     found.root = root
     for rule in CHECKS:
+        between()
         rule.check(found)
     diagnostics = obey(found.diagnostics, {file: report.document for file, report in found.reports.items()}, CODES)
     project = None if has_errors(diagnostics) else assemble(found, str(root.absolute()))

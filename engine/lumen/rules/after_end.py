@@ -10,6 +10,8 @@ def check(draft: ProjectDraft) -> None:
     """Report what waits for `done.state` of the outermost state."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
+        if any(path and state.name == machine.root.name for path, state in machine.states.items()):
+            continue  # that state may be meant
         end = f"done.state.{machine.root.name}"
         for state in machine.states.values():
             for transition in state.transitions:

@@ -12,7 +12,7 @@ HIGH_GAIN = Code("high-gain", "controllers", WARNING, "a binding's gain makes th
 RANGE_BEYOND_JOINT = Code(
     "range-beyond-joint", "controllers", WARNING, "an output can ask for more than its joint can do"
 )
-WRONG_SIGN = Code("wrong-sign", "controllers", WARNING, "what is turned goes the other way than what is seen")
+WRONG_SIGN = Code("wrong-sign", "controllers", WARNING, "the robot turns away from what it sees")
 
 
 MAX_GAIN = 2.0

@@ -13,11 +13,11 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.routes import PASSWORD_IN_FILE
 
-ALERT_ADDRESS = Code("alert-address", "alerts", ERROR, "a webhook is no address on the web")
-ALERT_IN_CLEAR = Code("alert-in-clear", "alerts", WARNING, "anybody on the way can read what is told")
+ALERT_ADDRESS = Code("alert-address", "alerts", ERROR, "a webhook is not a web address")
+ALERT_IN_CLEAR = Code("alert-in-clear", "alerts", WARNING, "alerts are sent unencrypted: others can read them")
 ALERT_QUIET = Code("alert-quiet", "alerts", ERROR, "quiet hours begin when they end")
-ALERT_TO_NOBODY = Code("alert-to-nobody", "alerts", WARNING, "nobody is told of what goes wrong")
-ALERT_WAY = Code("alert-way", "alerts", ERROR, "it does not say how somebody is told, or says it twice")
+ALERT_TO_NOBODY = Code("alert-to-nobody", "alerts", WARNING, "alerts have no recipient")
+ALERT_WAY = Code("alert-way", "alerts", ERROR, "a recipient has no way to be reached, or more than one")
 
 WAYS = ("webhook", "mail", "command")
 _VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")

@@ -1,13 +1,12 @@
-"""What `now()`, `weekday()` and `date()` are compared with: texts, of which no clock shows some."""
+"""What `now()`, `weekday()`, `date()`, `hour()` and `minute()` are compared with, and that no clock shows."""
 
 import re
 from collections.abc import Iterator, Mapping
 
 from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLiteral, Literal, walk
-from lumen.language.actions import Expression
 from lumen.language.diagnostics import WARNING, Code
 from lumen.loading.draft import ProjectDraft
-from lumen.rules.logic import tree
+from lumen.rules.naming import trees
 from lumen.rules.walk import expression_sites
 
 ODD_TIME = Code("odd-time", "expressions", WARNING, "a time, day or date is compared with a text that no clock shows")
@@ -20,15 +19,37 @@ _SHOWN: Mapping[str, tuple[re.Pattern[str], str]] = {
 """What each of them shows, and how that is said."""
 
 
+_COUNTED: Mapping[str, int] = {"hour": 23, "minute": 59}
+"""The greatest that each of them gives."""
+
+
 def check(draft: ProjectDraft) -> None:
     """Report comparisons that never hold, or not when they were meant to."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
+        broken = {d.place.line for d in report.diagnostics}
         for text in dict.fromkeys(site.text for site in expression_sites(machine)):
-            if isinstance(text, Expression):
-                for function, odd in _odd(tree(text.source)):
+            if report.document.place(text.where).line in broken:
+                continue
+            for root in trees(text):
+                for function, odd in _odd(root):
                     hint = f"it has {_SHOWN[function][1]}"
                     report(ODD_TIME, text.where, f"`{function}()` is never `{odd}`", hint=hint)
+                for function, sign, number in _beyond(root):
+                    hint = f"it goes from 0 to {_COUNTED[function]}"
+                    message = f"`{function}() {sign} {number:g}` asks for a number that no clock shows"
+                    report(ODD_TIME, text.where, message, hint=hint)
+
+
+def _beyond(condition: ExpressionNode) -> Iterator[tuple[str, str, float]]:
+    """The functions that are compared with a number beyond what they give, how, and with which."""
+    for node, _ in walk(condition):
+        if isinstance(node, Binary) and node.sign in ("==", "!=", "<", "<=", ">", ">="):
+            for one, other in ((node.left, node.right), (node.right, node.left)):
+                if isinstance(one, FunctionCall) and one.function in _COUNTED and isinstance(other, Literal):
+                    number = other.value
+                    if isinstance(number, int | float) and not 0 <= number <= _COUNTED[one.function]:
+                        yield one.function, node.sign, number
 
 
 def _odd(condition: ExpressionNode) -> Iterator[tuple[str, str]]:

@@ -10,16 +10,20 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.transitions import ENDLESS_ALWAYS
 from lumen.rules.statecharts import ALWAYS_LOOP, reachable
-from lumen.rules.walk import nested
+from lumen.rules.walk import action_sites, nested
 
-DEAD_END = Code("dead-end", "statecharts", WARNING, "nothing leads on from a state")
+DEAD_END = Code("dead-end", "statecharts", WARNING, "no transition leads out of a state")
 NO_WAY_BACK = Code(
     "no-way-back", "statecharts", WARNING, "no way leads back from a state to where the behaviour begins"
 )
 HISTORY_OF_END = Code(
-    "history-of-end", "statecharts", WARNING, "a history is gone to that remembers the end of its state"
+    "history-of-end", "statecharts", WARNING, "a transition leads to a history that remembers the end of its state"
 )
 WAITS_FOR_EVER = Code("waits-for-ever", "statecharts", WARNING, "a state is left only if a visitor does something")
+LEFT_BY_ALARM = Code("left-by-alarm", "statecharts", WARNING, "a state is left only when something is wrong")
+
+TROUBLES = ("fallen", "stop", "battery.low", "motors.hot", "brain.lost", "robot.lost")
+"""Events of the robot by which one knows the states that watch over it: what these raise is an alarm."""
 
 
 GraphNode = tuple[str, str]
@@ -127,6 +131,7 @@ class _Ways:
         self.graph = _Graph(machine)
         self.exits: dict[str, list[Transition]] = {}
         self.entered: dict[str, list[Transition]] = {}
+        self.alarms: frozenset[str] = frozenset()
         for state in machine.states.values():
             for transition in state.transitions:
                 for target in transition.targets:
@@ -136,6 +141,11 @@ class _Ways:
         root = self.machine.root
         found, ranks = reachable(self.machine), {path: i for i, path in enumerate(self.machine.states)}
         tracks = [root] if root.kind is StateKind.COMPOUND else [self.machine.states[p] for p in root.children]
+        watching = {track.path for track in tracks if len(tracks) > 1 and self.watches(track)}
+        raised = {track.path: self.raised(track) for track in tracks}
+        self.alarms = frozenset(name for path in watching for name in raised[path]) - {
+            name for path in raised.keys() - watching for name in raised[path]
+        }
         for track in tracks:
             below = set(self.below(track)) & found
             order = sorted(below, key=ranks.__getitem__)
@@ -149,12 +159,35 @@ class _Ways:
         dead = dict.fromkeys(path for path in others if not any(self.ways_out(path)))
         for path in dead:
             self.dead_end(path)
+        stuck = [p for p in others if p not in dead and all(self.is_alarm(p, t) for t in self.ways_out(p))]
+        for path in stuck:
+            state = self.machine.states[path]
+            names = " or ".join(f"`{name}`" for name in sorted({t.event for t in self.ways_out(path)}))
+            message = f"`{state.name}` is left only when something is wrong ({names})"
+            hint = "say what comes next: `onDone:`, `after: {30s: …}` or another transition"
+            self.report(LEFT_BY_ALARM, state.where, message, hint, key=True)
+        dead.update(dict.fromkeys(stuck))
         back = spread([("in", home.path)], self.graph.before)
         if any(("in", path) in back for path in others) or home.path.rpartition(".")[2] == "idle":
             self.lost(track, home, [p for p in others if ("in", p) not in back], dead)
         for path in others:
             if path not in dead:
                 self.waiting(self.machine.states[path])
+
+    def watches(self, track: State) -> bool:
+        """Whether some state of a track waits for what goes wrong with the robot."""
+        states = [track, *(self.machine.states[path] for path in self.below(track))]
+        return any(t.event in TROUBLES and t.targets for state in states for t in state.transitions)
+
+    def raised(self, track: State) -> set[str]:
+        """The events that a track raises by itself."""
+        inside = {track.path, *self.below(track)}
+        sites = (site for site in action_sites(self.machine) if site.state.path in inside)
+        return {site.step.action.event for site in sites if isinstance(site.step.action, Raise)}
+
+    def is_alarm(self, path: str, transition: Transition) -> bool:
+        """Whether a transition around a state comes of an alarm."""
+        return transition.source != path and (transition.event in self.alarms or transition.event in TROUBLES)
 
     def ways_out(self, path: str) -> Iterator[Transition]:
         """The transitions by which one may leave an atomic state: its own and those around it."""

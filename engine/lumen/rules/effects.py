@@ -9,10 +9,10 @@ from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.sounds import sound_duration
-from lumen.rules.lookups import first
+from lumen.rules.lookups import first, value_at
 from lumen.rules.walk import action_sites
 
-NO_EFFECT = Code("no-effect", "statecharts", WARNING, "something that is read, and has no effect")
+NO_EFFECT = Code("no-effect", "statecharts", WARNING, "a key has no effect here")
 MISSING_SOUND = Code("missing-sound", "motions", WARNING, "a sound file is not there, so that nothing is heard")
 BAD_SOUND = Code("bad-sound", "motions", WARNING, "a sound file can't be played")
 
@@ -33,7 +33,11 @@ def check(draft: ProjectDraft) -> None:
 
 def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
     for state in machine.states.values():
-        if state.resume and not state.do:
+        if (
+            state.resume
+            and not report.broken((*state.where, "do"))
+            and "do" not in (value_at(report, state.where) or ())
+        ):
             message = "`resume` has no effect in a state without a `do`: there is nothing to go on with"
             report(NO_EFFECT, (*state.where, "resume"), message, "delete it, or give the state a `do`", key=True)
         if state.on_reload and not state.children:

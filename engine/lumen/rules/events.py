@@ -108,13 +108,14 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
         *draft.main.lost,
         *report.lost,
     }
+    heard = {event for event in {*descriptors(machine)} if any(hears(event, name) for name in known)}
     said: set[str] = set()
     routed = any(route.event for route in draft.settings.routes.values())
     sound = not report.diagnostics
     for state in machine.states.values():
         for transition in state.transitions:
             event = transition.event
-            if not event or transition.exact or event in said or any(hears(event, name) for name in known):
+            if not event or transition.exact or event in said or event in heard:
                 continue
             said.add(event)
             report.missed.add(event)

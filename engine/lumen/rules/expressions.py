@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template, schema_of
@@ -13,6 +13,7 @@ from lumen.language.machines import MachineDefinition, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import cause_of, place_within
+from lumen.loading.remembered_findings import Check, RememberedFindings
 from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.lists import entry_schema, list_schema
 from lumen.rules.lookups import value_at
@@ -40,28 +41,37 @@ class _Expressions:
         for behavior, part, key in draft.unsound:
             if behavior == name:
                 (self.context if part == "types" else self.events)[key] = {}
+        self.loops = any(path[-1:] == ("for",) for path in report.document.spans)
         self.lists = {key: list_schema(entries) for key, entries in machine.lists.items()}
-        self.states = {n for state in machine.states.values() for n in (state.path, state.alias) if n}
+        self.names: dict[str, Any] = {
+            "context": self.context,
+            "phrases": machine.phrases if self.whole else None,
+            "answers": machine.answers if self.whole else None,
+            "states": {n for state in machine.states.values() for n in (state.path, state.alias) if n},
+            "lists": self.lists if self.whole else None,
+        }
+        given = self.events, self.known
+        self.remembered = RememberedFindings(("typed expressions", name), self.names, given)
 
     def check(self) -> None:
         for spot in expression_sites(self.machine):
             for finding in self.findings(spot):
                 self.say(spot, finding)
 
-    def findings(self, spot: ExpressionSite) -> list[ExpressionFinding]:
-        around: dict[str, Any] = {
-            "context": self.context,
-            "events": self.possible(spot.transition),
-            "phrases": self.machine.phrases if self.whole else None,
-            "answers": self.machine.answers if self.whole else None,
-            "states": self.states,
-            "lists": self.lists if self.whole else None,
-            "variables": self.variables(spot.text.where),
-        }
-        if isinstance(spot.text, Template):
-            return check_template(spot.text.shown, **around)
-        expected = BOOLEAN_SCHEMA if spot.guard else spot.expected or self.expected(spot.key)
-        return check_expression(spot.text.shown, **around, expected=expected)
+    def findings(self, spot: ExpressionSite) -> Sequence[ExpressionFinding]:
+        transition, variables = spot.transition, self.variables(spot.text.where)
+
+        def around() -> dict[str, Any]:
+            there = {"events": self.possible(transition), "variables": variables}
+            if isinstance(spot.text, Template):
+                return there
+            return {**there, "expected": BOOLEAN_SCHEMA if spot.guard else spot.expected or self.expected(spot.key)}
+
+        check: Check = check_template if isinstance(spot.text, Template) else check_expression
+        if variables or spot.expected or (transition and transition.exact):
+            return check(spot.text.shown, **self.names, **around())
+        site = transition and transition.event, spot.guard, spot.key
+        return self.remembered.of(check, spot.text.shown, site, around)
 
     def expected(self, way: str) -> Mapping[str, Any] | None:
         """The schema of what `assign` calls so; None where nothing is known of it."""
@@ -75,7 +85,7 @@ class _Expressions:
     def variables(self, where: NodePath) -> dict[str, Any]:
         """What stands for entries there, each with its schema."""
         found: dict[str, Any] = {}
-        for depth in range(len(where)):
+        for depth in range(len(where) if self.loops else 0):
             node = value_at(self.report, where[:depth])
             loop = node.get("for") if isinstance(node, Mapping) and where[depth] != "for" else None
             if isinstance(loop, Mapping) and "as" in loop:

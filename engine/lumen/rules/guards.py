@@ -1,8 +1,10 @@
 """Guards: those that are always or never true, and transitions that an earlier one leaves nothing for."""
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import NamedTuple
 
+from lumen.interpreters.expressions.parser import MAX_REMEMBERED_TREES
 from lumen.interpreters.expressions.phrases import is_heard
 from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal, Logic
 from lumen.language.actions import Expression
@@ -16,7 +18,7 @@ from lumen.rules.walk import expression_sites
 
 CONSTANT_GUARD = Code("constant-guard", "statecharts", WARNING, "a guard is always true, or never")
 OVERLAPPING_GUARDS = Code(
-    "overlapping-guards", "statecharts", INFO, "phrases are taken for others that are asked for earlier"
+    "overlapping-guards", "statecharts", INFO, "an earlier guard already takes some of these phrases"
 )
 SHADOWED_TRANSITION = Code(
     "shadowed-transition", "statecharts", WARNING, "a transition is never taken, because one before it always is"
@@ -53,12 +55,27 @@ def _told(report: DocumentReport, where: NodePath) -> bool:
 
 
 def _constant(guard: Expression, report: DocumentReport) -> None:
-    condition = tree(guard.source)
-    if never(condition):
-        message = "this is never true" if _simple(condition) else "this is never true: its parts contradict each other"
+    if _never(guard.source):
+        simple = _simple(tree(guard.source))
+        message = "this is never true" if simple else "this is never true: its parts contradict each other"
         report(CONSTANT_GUARD, guard.where, message, "look at the signs and numbers, or delete what it guards")
-    elif always(condition):
+    elif _always(guard.source):
         report(CONSTANT_GUARD, guard.where, "this is always true", "leave it out, or look at its signs")
+
+
+@lru_cache(maxsize=MAX_REMEMBERED_TREES)
+def _never(source: str) -> bool:
+    return never(tree(source))
+
+
+@lru_cache(maxsize=MAX_REMEMBERED_TREES)
+def _always(source: str) -> bool:
+    return always(tree(source))
+
+
+@lru_cache(maxsize=MAX_REMEMBERED_TREES)
+def _implies(source: str, other: str) -> bool:
+    return implies(tree(source), tree(other))
 
 
 def _simple(node: ExpressionNode) -> bool:
@@ -96,9 +113,9 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
     if later.guard is None:
         return False
     one, other = tree(earlier.guard.source), tree(later.guard.source)
-    first, second = _heard(one), _heard(other)
+    first, second = heard_call(one), heard_call(other)
     taken = set(_taken(first, second, machine.phrases)) if first and second else set()
-    if implies(other, one) and not never(other):
+    if _implies(later.guard.source, earlier.guard.source) and not _never(later.guard.source):
         message, hint = "this is never taken: one with the same guard comes first", "delete one of the two"
         if one != other:
             wide = _short(earlier.guard.shown)
@@ -118,7 +135,8 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
     return False
 
 
-def _heard(node: ExpressionNode) -> HeardCall | None:
+def heard_call(node: ExpressionNode) -> HeardCall | None:
+    """The call of `heard` that a guard is, None where it is another."""
     match node:
         case FunctionCall(function="heard", arguments=(text, Literal(value=str() as name))):
             return HeardCall(text, name)

@@ -52,9 +52,26 @@ class _Frame(NamedTuple):
 
 def obstacles(content: bytes) -> tuple[Obstacle, ...]:
     """The solid boxes, cylinders, spheres and capsules of a hall; none where it can't be read or has no stage."""
+    stage, found = _solids(content)
+    low, high = stage.z + TOE_HEIGHT, stage.z + ROBOT_HEIGHT
+    return tuple(_from(stage, shape) for shape, bottom, top in found if top > low and bottom < high)
+
+
+def ground(content: bytes) -> tuple[Obstacle, ...]:
+    """What the robot can stand on in a hall, as high as its stage; none where the hall does not tell."""
+    stage, found = _solids(content)
+    return tuple(_from(stage, shape) for shape, _, top in found if abs(top - stage.z) < TOE_HEIGHT)
+
+
+def _from(stage: _Frame, shape: Obstacle) -> Obstacle:
+    return shape._replace(x=shape.x - stage.x, y=shape.y - stage.y)
+
+
+def _solids(content: bytes) -> tuple[_Frame, list[tuple[Obstacle, float, float]]]:
+    """The site of the stage, and what is solid with its bottom and top; nothing is where there is no such site."""
     elements, fault = mjcf_elements(content)
     if fault:
-        return ()
+        return _Frame(), []
     degrees = not any(e.name == "compiler" and e.attributes.get("angle") == "radian" for e in elements)
     defaults, found, stage, frames = _defaults(elements), [], None, {0: _Frame()}
     inherited = {0: ""}
@@ -71,14 +88,7 @@ def obstacles(content: bytes) -> tuple[Obstacle, ...]:
             elif element.name == "geom":
                 whole = {**defaults.get("", {}), **defaults.get(said.get("class", inherits), {}), **said}
                 found += [shape] if (shape := _shape(around, whole, degrees)) else []
-    if stage is None:
-        return ()
-    low, high = stage.z + TOE_HEIGHT, stage.z + ROBOT_HEIGHT
-    return tuple(
-        shape._replace(x=shape.x - stage.x, y=shape.y - stage.y)
-        for shape, bottom, top in found
-        if top > low and bottom < high
-    )
+    return (stage, found) if stage else (_Frame(), [])
 
 
 def _defaults(elements: list[ModelElement]) -> dict[str, Mapping[str, str]]:
@@ -114,7 +124,7 @@ def _placed(around: _Frame, said: Mapping[str, str], degrees: bool) -> _Frame:
 
 
 def _shape(around: _Frame, said: Mapping[str, str], degrees: bool) -> tuple[Obstacle, float, float] | None:
-    """What a solid geom covers, its bottom and its top; None of one that nothing touches, or that is the ground.
+    """What a solid geom covers, its bottom and its top; None of one that nothing touches.
 
     One that is turned in another way than around the vertical is the ball around it.
     """
@@ -126,6 +136,8 @@ def _shape(around: _Frame, said: Mapping[str, str], degrees: bool) -> tuple[Obst
         middle = " ".join(str((a + b) / 2) for a, b in zip(ends[:3], ends[3:], strict=True))
         return _ball(_placed(around, {"pos": middle}, degrees), size[0] + dist(ends[:3], ends[3:]) / 2)
     frame = _placed(around, said, degrees)
+    if kind == "plane" and frame.yaw is not None:  # MuJoCo's planes have no end, whatever size is drawn
+        return Obstacle(frame.x, frame.y, frame.yaw, inf, inf, 0.0), -inf, frame.z
     upright = {"box": (3, 2), "cylinder": (2, 1), "capsule": (2, 1), "sphere": (1, 0)}
     if kind not in upright:
         return None

@@ -13,7 +13,7 @@ from lumen.loading.document import Document
 
 IGNORE_WITHOUT_REASON = Code("ignore-without-reason", "comments", WARNING, "an ignore comment does not say why")
 IGNORED_ERROR = Code("ignored-error", "comments", WARNING, "an ignore comment names a code that is an error")
-UNKNOWN_CODE = Code("unknown-code", "comments", WARNING, "an ignore comment names a code that does not exist, or none")
+UNKNOWN_CODE = Code("unknown-code", "comments", WARNING, "an ignore comment names no code, or one that does not exist")
 UNUSED_IGNORE = Code("unused-ignore", "comments", WARNING, "an ignore comment hides nothing")
 
 

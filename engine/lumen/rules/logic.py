@@ -6,7 +6,6 @@ understood claims nothing, so that an answer of yes is certain.
 """
 
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
 from itertools import product
 from math import inf
 from typing import NamedTuple
@@ -34,7 +33,6 @@ class Claim(NamedTuple):
 Alternative = frozenset[Claim]
 
 
-@lru_cache(maxsize=20_000)
 def tree(source: str) -> ExpressionNode:
     """The tree of an expression that is known to be sound."""
     return parse_expression(source)

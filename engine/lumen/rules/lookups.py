@@ -10,9 +10,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.keyframes import UNKNOWN_MOTION
 from lumen.loading.linking import UNKNOWN_BEHAVIOR
 
-MISSING_FOLDER = Code(
-    "missing-folder", "text", ERROR, "something is named that should be in a folder in which nothing is"
-)
+MISSING_FOLDER = Code("missing-folder", "text", ERROR, "a name refers to a folder that is empty or missing")
 UNKNOWN_CONTROLLER = Code("unknown-controller", "references", ERROR, "a controller is named that is not in fuzzy/")
 UNKNOWN_MESSAGE = Code(
     "unknown-message", "references", ERROR, "a message schema is named that is not in schemas/messages/"

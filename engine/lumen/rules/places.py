@@ -1,5 +1,6 @@
 """The places of lumen.yaml: whether they are there, on the stage, and told apart, and who walks to them."""
 
+import re
 from collections.abc import Iterable, Iterator
 from itertools import combinations
 from math import hypot, pi
@@ -8,6 +9,7 @@ from lumen.interpreters.expressions import split_template
 from lumen.language.commands import GoTo
 from lumen.language.diagnostics import ERROR, INFO, WARNING, Code, NodePath, did_you_mean, has_errors
 from lumen.language.hall_places import HallPlace
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Stage
 from lumen.language.stories import Expect
 from lumen.loading.document_report import DocumentReport
@@ -15,11 +17,15 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import value_at
 from lumen.rules.units import HALF_TURN_PARTS, WRONG_UNIT
 from lumen.rules.walk import action_sites
+from lumen.rules.word_tables import word_tables
 
 PLACE_OFF_STAGE = Code("place-off-stage", "robot", ERROR, "a place lies where the robot's feet may not go")
 PLACES_TOO_CLOSE = Code("places-too-close", "robot", WARNING, "two places are nearer than the robot can tell apart")
 UNKNOWN_PLACE = Code("unknown-place", "references", ERROR, "a place is named that is not in lumen.yaml")
 UNUSED_PLACE = Code("unused-place", "references", INFO, "nobody walks to a place")
+
+_ENTRY = re.compile(r"\{\{\s*(?:in_language\()?context\.(?P<key>\w+)\.entry\.(?P<field>\w+)\)?\s*\}\}")
+_LIST = re.compile(r"lists\.(\w+)")
 
 SOLE_REACH = 0.1
 """How far a sole reaches from the point between the feet [m]."""
@@ -62,10 +68,26 @@ def _named(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath, str]
         for site in action_sites(machine):
             if isinstance(site.step.action, GoTo) and "{{" not in site.step.action.to:
                 yield draft.report("behaviors", behavior), (*site.step.where, "walk", "to"), site.step.action.to
+        yield from _listed(draft, machine)
     for name, story in draft.stories.items():
         for step in story.steps:
             if isinstance(step.action, Expect) and step.action.place:
                 yield draft.report("behaviors/stories", name), (*step.where, "expect", "place"), step.action.place
+
+
+def _listed(draft: ProjectDraft, machine: MachineDefinition) -> Iterator[tuple[DocumentReport, NodePath, str]]:
+    """The places that entries of a list name, where a `for` walks to them."""
+    loops = {state.for_each.key: state.for_each for state in machine.states.values() if state.for_each}
+    walks = {step.to for site in action_sites(machine) if isinstance(step := site.step.action, GoTo)}
+    for found in filter(None, map(_ENTRY.fullmatch, sorted(walks))):
+        if found["key"] not in loops or not (listed := _LIST.fullmatch(loops[found["key"]].each.source)):
+            continue
+        table, field = listed[1], found["field"]
+        for tables in word_tables(draft):
+            if table in tables.lists and machine.lists.get(table) is tables.lists[table]:
+                for i, entry in enumerate(tables.lists[table]):
+                    if isinstance(place := entry.get(field), str):
+                        yield tables.report, ("lists", table, i, field), place
 
 
 def _computed(draft: ProjectDraft) -> bool:

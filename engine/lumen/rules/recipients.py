@@ -10,7 +10,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.rules.walk import ActionSite, action_sites
 
 UNKNOWN_RECIPIENT = Code(
-    "unknown-recipient", "references", WARNING, "a `send` goes to what the behaviour never invokes"
+    "unknown-recipient", "references", WARNING, "a `send` goes to a behaviour that is never invoked"
 )
 
 

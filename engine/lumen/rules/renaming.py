@@ -5,7 +5,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 
-STILL_THERE = Code("still-there", "statecharts", ERROR, "something is said to be renamed that still has its old name")
+STILL_THERE = Code("still-there", "statecharts", ERROR, "`renamed` names a state or key that still has its old name")
 
 
 def check(draft: ProjectDraft) -> None:

@@ -1,10 +1,10 @@
 """The route table: keys, schemas, events."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from urllib.parse import urlsplit
 
 from lumen.language.commands import Track
-from lumen.language.diagnostics import ERROR, WARNING, Code, has_errors
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, has_errors
 from lumen.language.routes import (
     COMMAND,
     HEARD,
@@ -17,6 +17,7 @@ from lumen.language.routes import (
     Direction,
     Route,
 )
+from lumen.language.routing_keys import DEFAULT_KEYS
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
@@ -27,13 +28,11 @@ from lumen.rules.walk import action_sites
 
 DUPLICATE_ROUTE = Code("duplicate-route", "routes", ERROR, "two routes carry the same key to the same event")
 MISSING_ROUTE = Code("missing-route", "routes", WARNING, "a route is missing that something the behaviour does needs")
-NO_TTL = Code("no-ttl", "routes", WARNING, "a command may come late, and is done all the same")
-LONG_TTL = Code("long-ttl", "routes", WARNING, "a command may wait for so long that nobody counts on it any more")
-LOSSY_JOURNAL = Code(
-    "lossy-journal", "routes", ERROR, "a route of which nothing may be lost is told to throw messages away"
-)
-BEYOND_CAMERA = Code("beyond-camera", "routes", ERROR, "images are asked for that the robot's camera does not take")
-PASSWORD_IN_FILE = Code("password-in-file", "routes", ERROR, "a name and a password stand in the project")
+NO_TTL = Code("no-ttl", "routes", WARNING, "a command that comes late is still performed")
+LONG_TTL = Code("long-ttl", "routes", WARNING, "a command may wait so long that it is no longer wanted")
+LOSSY_JOURNAL = Code("lossy-journal", "routes", ERROR, "a route that must not lose messages is set to drop them")
+BEYOND_CAMERA = Code("beyond-camera", "routes", ERROR, "a route wants images that the robot's camera can't take")
+PASSWORD_IN_FILE = Code("password-in-file", "routes", ERROR, "a name and a password are written in the project")
 UNUSED_ROUTE = Code("unused-route", "routes", WARNING, "the messages of a route become an event that nothing waits for")
 
 
@@ -43,7 +42,6 @@ def check(draft: ProjectDraft) -> None:
     if settings is None or report is None:
         return
     _password(settings.bus, report)
-    _missing(draft, settings.routes, report)
     references = References(draft)
     events: dict[tuple[str, str], str] = {}
     for name, route in settings.routes.items():
@@ -61,6 +59,7 @@ def check(draft: ProjectDraft) -> None:
                 message = f"`{other}` has the same key and becomes the same event"
                 related = [((*settings.routes[other].where, "key"), "the other one stands here")]
                 report(DUPLICATE_ROUTE, (*route.where, "key"), message, "delete one of them", related=related)
+    _missing(draft, settings.routes, report)
 
 
 def _password(bus: str, report: DocumentReport) -> None:
@@ -110,7 +109,15 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
             if needed and name not in routes and name not in report.lost:
                 message = f"`{behavior}` {what}, and there is no route `{name}`: {MEANINGS[name]}"
                 hint, cause = f"write a row `{name}:`", f"name {name}"
-                report(MISSING_ROUTE, ("routes",), message, hint, key=True, cause=cause)
+                where: NodePath = ("routes",)
+                if meant := next((r for r in routes.values() if name in (r.event, *_meant(r))), None):
+                    hint, where = f"call this row `{name}`: its key is that of `{name}`", meant.where
+                report(MISSING_ROUTE, where, message, hint, key=True, cause=cause)
+
+
+def _meant(route: Route) -> Iterator[str]:
+    """The routes of Lumen's own whose key a route has."""
+    return (name for name, key in DEFAULT_KEYS.items() if key == route.key)
 
 
 def _moves_joints(draft: ProjectDraft, action: object) -> bool:

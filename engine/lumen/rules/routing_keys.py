@@ -5,14 +5,14 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 
 from lumen.language.diagnostics import ERROR, WARNING, Code
-from lumen.language.routes import Direction, Route
+from lumen.language.routes import MEANINGS, Direction, Route
 from lumen.language.routing_keys import DEFAULT_KEYS, INTERNAL_KEYS, KEY_PREFIXES, SHARED_ROUTES
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.settings import Settings
 
 ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has a form that no message could have")
 TAKEN_KEY = Code("taken-key", "routes", ERROR, "a route sends under a key that Lumen itself uses for something else")
-NEAR_KEY = Code("near-key", "routes", WARNING, "a routing key begins nearly as Lumen's own do")
+NEAR_KEY = Code("near-key", "routes", WARNING, "a routing key is almost one of Lumen's own")
 
 MAX_ROUTING_KEY_BYTES = 255
 """Of a routing key (AMQP 0-9-1, 3.1.1: a short string)."""
@@ -64,6 +64,8 @@ def _taken(report: DocumentReport, route: Route, settings: Settings) -> bool:
     elif owner == route.name:
         return False
     hint = f"choose a key of your own, such as `museum.{route.name}`"
+    if owner in MEANINGS and owner not in settings.routes and owner != route.name:
+        hint = f"call the route `{owner}`, or {hint}"
     report(TAKEN_KEY, (*route.where, "key"), message, hint, cause=cause)
     return True
 

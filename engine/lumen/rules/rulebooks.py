@@ -20,7 +20,7 @@ from lumen.loading.document_report import DocumentReport
 CONTRADICTING_RULE = Code(
     "contradicting-rule", "controllers", WARNING, "two rules ask the same and conclude different things"
 )
-DUPLICATE_RULE = Code("duplicate-rule", "controllers", WARNING, "a rule stands twice")
+DUPLICATE_RULE = Code("duplicate-rule", "controllers", WARNING, "a rule is written twice")
 IDLE_RULE = Code("idle-rule", "controllers", WARNING, "a rule has the weight 0")
 MISSING_RULE = Code("missing-rule", "controllers", WARNING, "a table of rules leaves out a case")
 SUBSUMED_RULE = Code("subsumed-rule", "controllers", WARNING, "a rule adds nothing to another one")
@@ -164,6 +164,8 @@ def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Ru
 
 
 def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
+    if any(diagnostic.code == CONTRADICTING_RULE for diagnostic in report.diagnostics):
+        return  # one of the two was meant for it
     asked = {(p.variable, p.term) for rule in controller.rules for p in propositions(rule.antecedent)}
     asked |= {(p.variable, p.term) for rule in controller.rules for p in rule.consequents}
     for side, variables in (("asks for", controller.inputs), ("concludes", controller.outputs)):
@@ -171,4 +173,7 @@ def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
             for term in variable.terms.values():
                 if (variable.name, term.name) not in asked:
                     message = f"no rule {side} `{variable.name} is {term.name}`"
-                    report(UNUSED_TERM, term.where, message, "write a rule with it, or delete it", key=True)
+                    cause = f"{report.document.file} term {term.name}"  # a rule that is gone had it on both sides
+                    report(
+                        UNUSED_TERM, term.where, message, "write a rule with it, or delete it", key=True, cause=cause
+                    )

@@ -10,10 +10,8 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.references import known_route
 
-SHOW_ADDRESS = Code("show-address", "routes", ERROR, "a topic, an address or a channel is none, or is used twice")
-SHOW_DIRECTION = Code(
-    "show-direction", "routes", ERROR, "devices are to send on a route on which they can't, or may not"
-)
+SHOW_ADDRESS = Code("show-address", "routes", ERROR, "a topic, an address or a channel is invalid, or is used twice")
+SHOW_DIRECTION = Code("show-direction", "routes", ERROR, "devices are to send on a route where they can't, or may not")
 SHOW_FIELD = Code("show-field", "routes", ERROR, "a field of a message can't be carried to a device, or from one")
 
 MAX_TOPIC_BYTES = 65_535

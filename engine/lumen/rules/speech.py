@@ -1,6 +1,7 @@
 """Speech: languages that are missing, or that the project does not speak."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from lumen.interpreters.expressions.phrases import is_heard
@@ -20,6 +21,9 @@ SHADOWED_ANSWER = Code(
     "shadowed-answer", "speech", WARNING, "an answer is never given, because one before it always is"
 )
 MISSING_LANGUAGE = Code("missing-language", "speech", WARNING, "a text is missing in one of the project's languages")
+UNREACHABLE_LANGUAGE = Code(
+    "unreachable-language", "speech", WARNING, "the project speaks a language, and nothing switches to it"
+)
 
 
 MIN_TEXTS_FOR_LANGUAGE = 4
@@ -35,18 +39,20 @@ def check(draft: ProjectDraft) -> None:
         return
     if any(path[:1] == ("languages",) for path in draft.main.pruned):
         return
-    silent = _silent(draft, draft.settings.languages)
+    silent, few = _silent(draft, draft.settings.languages)
     speech = _Speech(tuple(n for n in draft.settings.languages if n not in silent), draft.main.lost | silent.keys())
     for language, (meant, related) in silent.items():
         path = ("languages", draft.settings.languages.index(language))
         hint = f"did you mean `{meant}`?" if meant else f"write the texts in `{language}`, or delete it"
-        message = f"nothing is said in `{language}`"
+        message = f"`{language}` is in {few[language]} texts" if few[language] else f"nothing is said in `{language}`"
         draft.main.diagnostics.append(_silence(draft.main, path, message, hint, related))
         speech.lost |= {meant}
     for name, machine in draft.behaviors.items():
         speech.behavior(machine, draft.report("behaviors", name))
     for tables in word_tables(draft):
         speech.tables(tables)
+        speech.phrases(tables)
+    speech.switches(draft, silent)
     for name, motion in draft.motions.items():
         report = draft.report("motions", name)
         for cue in motion.cues:
@@ -58,26 +64,35 @@ def check(draft: ProjectDraft) -> None:
             speech.known(report, ("language",), story.language)
 
 
-def _silent(draft: ProjectDraft, languages: tuple[str, ...]) -> dict[str, tuple[str, list[Related]]]:
-    """The languages in which no text is, where others have some; each with the one meant instead, and a place of it."""
+def _silent(
+    draft: ProjectDraft, languages: tuple[str, ...]
+) -> tuple[dict[str, tuple[str, list[Related]]], dict[str, str]]:
+    """The languages in which hardly a text is, where others have some; each with the one meant instead, and a place of
+    it, and with how many of how many texts it has, empty for none.
+    """
     found: dict[str, Place] = {}
+    counts: Counter[str] = Counter()
     count = 0
     for report, where in _spoken(draft):
-        count += 1
-        for language in _written(report, where):
+        written = _written(report, where)
+        count += not written or written.isdisjoint(("", "any"))
+        for language in written:
+            counts[language] += 1
             found.setdefault(language, report.document.place((*where, language), key=True))
     spoken = found.keys() - {"", "any"}
     strangers = sorted(spoken - set(languages))
-    silent = [language for language in languages if language not in spoken]
-    near = {language: nearest(language, strangers) for language in silent}
-    if len(silent) == len(strangers) == 1 and len(languages) > 1:
+    begun = {n for n in languages if n in spoken and count >= MIN_TEXTS_FOR_LANGUAGE**2 and 2 * counts[n] < count}
+    silent = [language for language in languages if language not in spoken or language in begun]
+    near = {language: nearest(language, strangers) if language not in begun else "" for language in silent}
+    if len(silent) == len(strangers) == 1 and len(languages) > 1 and not begun:
         near = {silent[0]: strangers[0]}
     if not spoken or (count < MIN_TEXTS_FOR_LANGUAGE and not any(near.values())):
-        return {}
-    return {
+        return {}, {}
+    said = {
         language: (meant, [Related(found[meant], f"this is said in `{meant}`")] if meant else [])
         for language, meant in near.items()
     }
+    return said, {n: f"{counts[n]} of {count}" if n in begun else "" for n in silent}
 
 
 def _spoken(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
@@ -121,6 +136,33 @@ class _Speech:
                     self.texts(report, ("answers", table, i, "value"), row.value)
         for report, path, texts in listed_texts([tables], self.languages):
             self.texts(report, path, texts)
+
+    def phrases(self, tables: WordTables) -> None:
+        """Phrases that are listened for in fewer languages than the project speaks; each language is told once."""
+        for name, phrases in tables.phrases.items():
+            said = {*phrases, *_written(tables.report, ("phrases", name))}
+            for language in self.languages if said and said.isdisjoint(("", "any")) else ():
+                if language not in said and said <= {*self.languages}:
+                    message = f"no phrase of `{name}` is in `{language}`"
+                    hint = f"write `{language}: [ … ]` beside it: what a visitor says in it"
+                    cause = f"phrases in {language}"
+                    tables.report(MISSING_LANGUAGE, ("phrases", name), message, hint, key=True, cause=cause)
+
+    def switches(self, draft: ProjectDraft, silent: Collection[str]) -> None:
+        """Languages that nobody can ask for, where behaviours switch to others."""
+        assert draft.main
+        actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
+        spoken = {action.language for action in actions if isinstance(action, Language)}
+        spoken |= {story.language for story in draft.stories.values() if story.language}
+        reports = [draft.report("behaviors", name) for name in draft.behaviors]
+        whole = all(r.whole and not any(d.code == UNKNOWN_LANGUAGE for d in r.diagnostics) for r in reports)
+        for i, language in enumerate(self.languages if whole and any(isinstance(a, Language) for a in actions) else ()):
+            if i and language not in spoken and language not in silent:
+                message = f"nothing lets the robot speak `{language}`"
+                hint = f"write `language: {language}` where a visitor asks for it"
+                assert draft.settings
+                path = ("languages", draft.settings.languages.index(language))
+                draft.main(UNREACHABLE_LANGUAGE, path, message, hint)
 
     def texts(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> None:
         """What is said in several languages should be said in all."""

@@ -101,7 +101,11 @@ class _Script:
         pruned = self.draft.report("behaviors", self.behavior).pruned
         if any((*s.where, "id") in pruned and s.path.endswith(rest) for s in machine.states.values()):
             return  # its id was refused
-        hint = did_you_mean(name, _names(machine, name.removesuffix(rest)))
+        names = _names(machine, name.removesuffix(rest))
+        inner = sorted(known for known in names if known.rpartition(".")[2] == rest)
+        hint = (
+            f"write `{inner[0]}`: a state without an `id` is called by its path" if inner else did_you_mean(name, names)
+        )
         if state and rest:
             hint = f"it is called by its id: `{name.removesuffix(rest)}{state.name}`"
         message = f"`{self.behavior}` has no state that is called `{name}`"

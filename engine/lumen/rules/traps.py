@@ -2,9 +2,10 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 from lumen.language.actions import SayText
-from lumen.language.diagnostics import WARNING, Code, NodePath
+from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
@@ -12,12 +13,12 @@ from lumen.loading.line_index import LineIndex
 from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 
-CURLY_QUOTES = Code("curly-quotes", "text", WARNING, "quotes of a printed text stand where YAML's should")
-LOOKS_LIKE_NUMBER = Code("looks-like-number", "text", WARNING, "a number or text is not the number that it looks like")
-LOOKS_LIKE_TRUTH = Code(
-    "looks-like-truth", "text", WARNING, "`yes`, `no`, `on` or `off` is a text, and looks like true or false"
+CURLY_QUOTES = Code("curly-quotes", "text", WARNING, "curly quotes are used where YAML needs straight ones")
+LOOKS_LIKE_NUMBER = Code(
+    "looks-like-number", "text", WARNING, "a value looks like one number and is read as another, or as a text"
 )
-NOT_FILLED_IN = Code("not-filled-in", "speech", WARNING, "the name of a value is said in place of the value")
+LOOKS_LIKE_TRUTH = Code("looks-like-truth", "text", WARNING, "`yes`, `no`, `on` or `off` is a text, not true or false")
+NOT_FILLED_IN = Code("not-filled-in", "speech", WARNING, "the robot would say the name of a value instead of the value")
 
 
 _TRUTHS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
@@ -34,6 +35,7 @@ _BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
 def check(draft: ProjectDraft) -> None:
     """Report values that are texts, numbers or texts with quotes where something else was probably meant."""
     for report in draft.reports.values():
+        _strange(report)
         for pattern, look in ((_TRUTH, _truth), (_ZERO, _number), (_GROUP, _number), (_CURLY, _quotes)):
             if lines := _lines(report.document.text, pattern):
                 for path, source, value in list(_plain(report, lines)):
@@ -78,9 +80,25 @@ def _number(report: DocumentReport, path: NodePath, source: str, value: object) 
 
 def _quotes(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
     closing = _PAIRS.get(source[:1], "")
+    place = report.document.place(path)
+    if any(d.place.line == place.line and d.place.column == place.column for d in report.diagnostics):
+        return  # told already
     if isinstance(value, str) and len(source) > 1 and source[-1] in closing and not _CURLY.search(source[1:-1]):
         hint = f'write straight quotes: "{source[1:-1]}"'
         report(CURLY_QUOTES, path, "these quotes are part of the text: YAML knows only straight ones", hint)
+
+
+def _strange(report: DocumentReport) -> None:
+    """Errors that come of curly quotes are told as such."""
+    if not _CURLY.search(report.document.text):
+        return
+    lines = report.document.text.split("\n")
+    for i, found in enumerate(report.diagnostics):
+        start, line = found.place.column - 1, lines[found.place.line - 1]
+        said = line[start : found.place.end_column - 1] if found.place.line == found.place.end_line else ""
+        if found.severity is ERROR and _CURLY.search(said[:1] + said[-1:]):
+            hint = "write straight quotes: YAML and expressions know only these"
+            report.diagnostics[i] = replace(found, hint=hint)
 
 
 def _holes(machine: MachineDefinition, report: DocumentReport) -> None:

@@ -1,7 +1,6 @@
 """What is declared and never used, and names that differ by case only."""
 
-import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from lumen.interpreters.expressions import expression_findings
@@ -16,15 +15,16 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.words import WORDS_FOLDER
 from lumen.rules.events import UNUSED_EVENT, descriptors, hears
+from lumen.rules.naming import Named, named_in
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import word_tables
 
 SAME_BUT_CASE = Code("same-but-case", "references", WARNING, "two names differ in capital letters only")
-UNUSED_ANSWERS = Code("unused-answers", "references", WARNING, "answers are written that nothing looks up")
+UNUSED_ANSWERS = Code("unused-answers", "references", WARNING, "no expression looks up a table of answers")
 UNUSED_CONTEXT_KEY = Code("unused-context-key", "references", WARNING, "a key of the context is never read")
-UNUSED_FILE = Code("unused-file", "references", INFO, "a motion, behaviour or controller is named nowhere")
-UNUSED_LIST = Code("unused-list", "references", WARNING, "a list is written that nothing reads")
-UNUSED_PHRASES = Code("unused-phrases", "references", WARNING, "phrases are written that nothing listens for")
+UNUSED_FILE = Code("unused-file", "references", INFO, "nothing uses a motion, behaviour or controller")
+UNUSED_LIST = Code("unused-list", "references", WARNING, "nothing reads a list")
+UNUSED_PHRASES = Code("unused-phrases", "references", WARNING, "nothing listens for a group of phrases")
 UNUSED_WORDS = Code("unused-words", "references", WARNING, "no behaviour names a words file")
 
 
@@ -35,14 +35,7 @@ _ASKED = {
 }
 """The tables, and for each what is said where nothing asks for it, and a hint."""
 
-_LISTED = re.compile(r"\blists\s*(?:\.\s*(\w+)|\[\s*['\"]([^'\"]+)['\"])")
-
-_DECLARED = ("context", "types", "words", "phrases", "events", "answers", "lists", "description", "units", "renamed")
-_FIELD = re.compile(r"context\s*(?:\.\s*(\w+)|\[\s*['\"]([^'\"]+)['\"])")
-_WHOLE = re.compile(r"\bcontext\b(?!\s*\.)(?!\s*\[\s*['\"])")
 _EXPRESSION_CODES = {c for c in vars(expression_findings).values() if isinstance(c, Code)} - {UNKNOWN_STATE}
-_COMPUTED = re.compile(r"\blists\b(?!\s*\.)(?!\s*\[\s*['\"])")
-_NAME = re.compile(r"['\"]([^'\"]+)['\"]")
 
 
 def check(draft: ProjectDraft) -> None:
@@ -65,12 +58,11 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: DocumentReport) -> None:
-    said = _said(report)
-    everywhere = f"{said}\n" + "\n".join(_texts(report.document.data.get("answers", {})))
-    if not _WHOLE.search(everywhere):
-        _context(machine, report, {a or b for a, b in _FIELD.findall(everywhere)} | _looked_at(draft, name))
+    named = named_in(machine)
+    if named.keys is not None:
+        _context(machine, report, named.keys | _looked_at(draft, name))
     own = {part: {key for key in getattr(machine, part) if (part, key) not in machine.borrowed} for part in _ASKED}
-    _unasked(report, own, [said], _states_of(report))
+    _unasked(report, own, [named], _states_of(report))
     waited = set(descriptors(machine))
     for event in machine.events:
         if not (any(hears(d, event) for d in waited) or nearest(event, report.missed)):
@@ -90,28 +82,23 @@ def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
             message, hint = f"no behaviour names the words `{name}`", f"write `words: {name}` at the top of one"
             draft.say(UNUSED_WORDS, report.document.file, message, f"{hint}, or delete the file")
         elif users and all(user in sound for user in users):
-            said = [_said(draft.report("behaviors", user)) for user in users]
-            _unasked(report, {part: set(getattr(words, part)) for part in _ASKED}, said, "")
+            named = [named_in(draft.behaviors[user]) for user in users]
+            _unasked(report, {part: set(getattr(words, part)) for part in _ASKED}, named, "")
 
 
-def _unasked(report: DocumentReport, own: Mapping[str, Collection[str]], said: Iterable[str], root: str) -> None:
+def _unasked(report: DocumentReport, own: Mapping[str, Collection[str]], named: Sequence[Named], root: str) -> None:
     """Report phrases, answers and lists of a file whose name stands in no expression."""
-    text = "\n".join(said)
-    named = {name for names in (_NAME.findall(text), *_LISTED.findall(text)) for name in names}
+    texts = {text for each in named for text in each.texts}
+    lists = None if any(each.lists is None for each in named) else {n for each in named for n in each.lists or ()}
     for part, (message, hint, code) in _ASKED.items():
         for key in own[part]:
-            if key not in named and not (part == "lists" and _COMPUTED.search(text)):
+            if key not in texts and (part != "lists" or (lists is not None and key not in lists)):
                 them = "it" if part == "lists" else "them"
                 advice = f"{hint.format(key)}, or delete {them}"
                 report(code, (part, key), message.format(key), advice, key=True, root=root)
 
 
-def _said(report: DocumentReport) -> str:
-    """All texts of a behaviour beside what it declares."""
-    return "\n".join(_texts({k: v for k, v in report.document.data.items() if k not in _DECLARED}))
-
-
-def _context(machine: MachineDefinition, report: DocumentReport, read: set[str]) -> None:
+def _context(machine: MachineDefinition, report: DocumentReport, read: Collection[str]) -> None:
     written = {context_key(key) for site in action_sites(machine) for key in getattr(site.step.action, "values", ())}
     for key in report.document.data.get("context") or ():
         if key not in read:
@@ -214,17 +201,3 @@ def _alike(names: Iterable[str]) -> Iterator[tuple[str, str]]:
         other = seen.setdefault(name.casefold(), name)
         if other != name:
             yield name, other
-
-
-def _texts(data: Any) -> Iterator[str]:
-    """Every text in plain data; of keys those that compute how long an `after` waits."""
-    waiting = [data]
-    while waiting:
-        item = waiting.pop()
-        if isinstance(item, str):
-            yield item
-        elif isinstance(item, Mapping):
-            waiting.extend(item.values())
-            waiting.extend(key for key in item if "{{" in str(key))
-        elif isinstance(item, list):
-            waiting.extend(item)

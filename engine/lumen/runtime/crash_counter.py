@@ -46,6 +46,8 @@ class CrashCounter:
     def _counts(self) -> dict[str, int]:
         try:
             data = self._home.read_json(CRASH_COUNTS_FILE)
+            if data["version"] != CRASH_COUNTS_VERSION:
+                return {}
             return {str(hash): int(count) for hash, count in data["bundles"].items()}
         except (ValueError, TypeError, KeyError, AttributeError, OverflowError):
             return {}

@@ -11,6 +11,7 @@ from typing import Any
 
 from lumen.errors import UsageError
 from lumen.loading.regular_files import read_regular
+from lumen.upkeep.private_folder import private_folder
 
 STATE_FOLDER = ".lumen"
 ADDRESS_FILE = "door.json"
@@ -36,7 +37,7 @@ class Home:
         Raises UsageError where it can't be made.
         """
         try:
-            self.folder.mkdir(parents=True, exist_ok=True)
+            private_folder(self.folder)
             lock = os.open(self.folder / "lock", os.O_RDWR | os.O_CREAT | _NO_LINK, 0o600)
         except OSError as error:
             raise UsageError(f"{self.folder} can't be written: {error.strerror}") from None

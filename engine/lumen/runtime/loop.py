@@ -117,6 +117,10 @@ class BehaviorLoop:
         self._perform(self.runtime.tick(now, self._gather(now)), now)
         return now
 
+    def take(self, step: Step) -> None:
+        """Go on with a step from where the behaviour stands, which nobody else made, and perform its commands."""
+        self._perform(self.runtime.take(step), self._last)
+
     def quiet_until(self, now: float) -> float:
         """Until when nothing happens unless something comes from outside [s]; `now` where that is not known."""
         pending = self._events or self.performer.events or not self.inbox.empty

@@ -58,7 +58,7 @@ class Runtime:
         """Enter the initial states; the commands to perform. `context` gives keys other first values."""
         language = language or self.project.languages[0]
         machine = self.project.machine
-        return self._take(initial(machine, at=now, input=context, language=language, epoch=epoch, timezone=timezone))
+        return self.take(initial(machine, at=now, input=context, language=language, epoch=epoch, timezone=timezone))
 
     def tick(self, now: float, events: Iterable[Event] = ()) -> list[Command]:
         """Let everything happen that is due until `now` [s], timers and events in the order of their times."""
@@ -79,6 +79,12 @@ class Runtime:
         """Go on with another bundle as planned, between two macrosteps."""
         self.project, self._snapshot = project, planned
 
+    def take(self, taken: Step) -> list[Command]:
+        """Go on with a step from where the behaviour stands; its commands."""
+        self._snapshot = taken.snapshot
+        self._observe(taken)
+        return list(taken.commands)
+
     def forget(self, person: PersonName) -> bool:
         """Take somebody's name out of what is remembered; whether it was there."""
         before = self.snapshot
@@ -87,7 +93,7 @@ class Runtime:
 
     def _hear(self, event: Event) -> list[Command]:
         try:
-            return self._take(step(self.project.machine, self.snapshot, event))
+            return self.take(step(self.project.machine, self.snapshot, event))
         except Exception as error:
             rescued = self._rescue(error)
             if rescued is not None:
@@ -99,7 +105,7 @@ class Runtime:
         commands: list[Command] = []
         try:
             for taken in elapse(self.project.machine, lambda: self.snapshot, until):
-                commands += self._take(taken)
+                commands += self.take(taken)
         except Exception as error:
             rescued = self._rescue(error)
             if rescued is not None:
@@ -112,11 +118,6 @@ class Runtime:
         _log.error("the timer `%s` is dropped: %s", first.event, error, exc_info=_ours(error))
         kept = tuple(timer for timer in self.snapshot.timers if timer is not first)
         self._snapshot = self.snapshot._replace(timers=kept)
-
-    def _take(self, taken: Step) -> list[Command]:
-        self._snapshot = taken.snapshot
-        self._observe(taken)
-        return list(taken.commands)
 
 
 def _ours(error: Exception) -> Exception | None:

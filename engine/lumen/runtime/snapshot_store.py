@@ -104,6 +104,12 @@ class SnapshotStore:
         except (ValueError, TypeError, KeyError, OverflowError):
             return None
 
+    def of_another_version(self) -> tuple[str, bool]:
+        """The version of a snapshot that another Lumen has left, or nothing; and whether the robot rests."""
+        data = self._home.read_json(SNAPSHOT_FILE)
+        said = data.get("version", SNAPSHOT_VERSION) if isinstance(data, Mapping) else SNAPSHOT_VERSION
+        return ("", False) if said == SNAPSHOT_VERSION else (str(said)[:20], data.get("rests") is True)
+
     def forget(self) -> None:
         """The run has ended as it should: there is nothing to go on with."""
         self._home.remove(SNAPSHOT_FILE)
@@ -141,7 +147,8 @@ class SnapshotStore:
     def good(self) -> str:
         """The hash of the last good bundle, empty where there is none."""
         try:
-            return str(self._home.read_json(LAST_GOOD_FILE)["bundle"])
+            data = self._home.read_json(LAST_GOOD_FILE)
+            return str(data["bundle"]) if data["version"] == SNAPSHOT_VERSION else ""
         except (TypeError, KeyError):
             return ""
 

@@ -13,6 +13,7 @@ from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.hours import Schedule
+from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import (
     Arrive,
@@ -32,6 +33,8 @@ from lumen.runtime.loop import Observer
 from lumen.runtime.sending import send
 from lumen.runtime.story_time import story_moment
 from lumen.runtime.visitor import VisitorActor
+
+FALLEN = "fallen"
 
 
 class UnmetExpectation(NamedTuple):
@@ -152,6 +155,7 @@ class StoryPlayer(Observer):
         self._awaited: int | None = None
         machine = exhibition.project.behaviors[story.behavior or exhibition.project.behavior]
         self._monitors = monitors(machine, (*machine.properties, *story.properties))
+        self._falls = expects_fall(story, machine)
 
     @property
     def failure(self) -> str:
@@ -189,6 +193,8 @@ class StoryPlayer(Observer):
                 self._witness.published.append((route, body))
 
     def answered(self, event: Event) -> None:
+        if event.name == FALLEN and not self._falls:
+            self.fail(UnmetExpectation("the robot on its feet", "it fell"))
         if event.name.startswith("done.command."):
             motion = self._witness.playing.pop(event.name.removeprefix("done.command."), None)
             if motion:
@@ -284,6 +290,21 @@ class StoryPlayer(Observer):
         self.failed = self.failed or StoryFailure(
             self.story.name, position + 1, self.story.steps[position].where, *lack
         )
+
+
+def expects_fall(story: Story, machine: MachineDefinition) -> bool:
+    """Whether a story says that the robot falls: by the event, or by expecting a state that answers it."""
+    answers = {
+        machine.states[target].name
+        for state in machine.states.values()
+        for transition in state.transitions
+        if transition.event == FALLEN
+        for target in transition.targets
+    }
+    actions = [step.action for step in story.steps]
+    return any(isinstance(a, Happen) and a.name == FALLEN for a in actions) or any(
+        isinstance(a, Expect) and not answers.isdisjoint(a.states) for a in actions
+    )
 
 
 def _holds(body: Any, wanted: Any) -> bool:

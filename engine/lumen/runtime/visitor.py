@@ -1,4 +1,4 @@
-"""A visitor who walks up, speaks and leaves: what modules and people do in a real hall."""
+"""A visitor who walks up, speaks, touches and leaves: what modules and people do in a real hall."""
 
 import logging
 from dataclasses import replace
@@ -33,6 +33,11 @@ class VisitorActor:
         """Whether the visitor is on their way."""
         return self._goal is not None
 
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """The tactile sensors of the robot before them."""
+        return self._project.body.tactile
+
     def use(self, project: Project) -> None:
         """Speak on the routes of this project from now on."""
         self._project = project
@@ -54,6 +59,10 @@ class VisitorActor:
         body = {"name": "visitor", "result": text, "date": "", "language": language}
         if reason := send(self._bus, self._project, SPEECH_ROUTE, body):
             _log.warning("nobody hears the visitor: %s", reason)
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        """Lay a hand on a tactile sensor, or take it away. Raises UsageError where that can't be."""
+        self._hall.touch(sensor, pressed)
 
     def tick(self, now: float) -> None:
         dt, self._last = now - self._last, now

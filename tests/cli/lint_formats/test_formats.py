@@ -131,3 +131,15 @@ def test_json_says_of_several_projects_which() -> None:
     assert found["files"] == 6
     assert [row["project"] for row in found["diagnostics"]] == [""] * 6 + ["b"]
     assert "project" not in json.loads(render("json", [FOUND]))["diagnostics"][0]
+
+
+def test_github_is_told_to_say_what_it_leaves_out() -> None:
+    one = FOUND.diagnostics[0]
+    few, many = (render("github", [Findings([one] * number, FILES)]) for number in (10, 23))
+    assert "::notice" not in few
+    assert "::group::" not in few
+    shown = "GitHub shows the first 10 of a kind: 13 errors more stand in the log of this step only"
+    assert f"::notice title=lumen lint::{shown}\n::group::All findings\n" in many
+    listed = many.partition("::group::All findings\n")[2].partition("::endgroup::")[0].splitlines()
+    assert len(listed) == 23
+    assert not [line for line in listed if line.startswith("::")]

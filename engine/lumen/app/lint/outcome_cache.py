@@ -16,6 +16,7 @@ from lumen.ports import Perform
 from lumen.robots.motion_codec import encode_motion
 from lumen.rules.physics import Case, Outcome
 from lumen.runtime.home import home_of
+from lumen.upkeep.private_folder import private_folder
 
 _ENGINE = ("robots/simulation", "robots/executor.py", "interpreters", "rules/physics")
 
@@ -50,7 +51,8 @@ class OutcomeCache:
         draft = file.with_suffix(f".{os.getpid()}")
         try:
             if not file.exists():
-                self._folder.mkdir(parents=True, exist_ok=True)
+                private_folder(self._folder.parent)
+                self._folder.mkdir(exist_ok=True)
                 for old in self._folder.glob(f"{_name(case)}-*.json"):
                     old.unlink()
             text = json.dumps({number: outcome.to_json() for number, outcome in outcomes.items()})

@@ -33,15 +33,17 @@ def played(
 ) -> tuple[Findings, list[CaseResult]]:
     """The findings of a project with those of its motions in simulation, where it has no errors; and what was played.
 
-    Only motions in files that somebody asked about are played, and with `keep` only where they were not before.
+    Only motions in files that somebody asked about are played, and with `keep` only where they were not before. Raises
+    MissingExtraError where there is no simulation.
     """
     root = Path(found.root)
     project = check_files(root, found.files)[0]
     if project is None:
         return found, []
+    make = _maker(project)
     chosen = [case for case in cases(project) if not found.asked or case.file in found.asked]
     memory = OutcomeCache(project, found.files) if keep else None
-    rehearsals = play_cases(chosen, _maker(project), robots, memory, tell)
+    rehearsals = play_cases(chosen, make, robots, memory, tell)
     more = [d for r in rehearsals for d in findings(r, project.documents[r.case.file]) if wanted(d)]
     everything = sorted([*found.diagnostics, *dict.fromkeys(more)], key=lambda d: (d.place.file, d.place.line))
     return replace(found, diagnostics=everything), rehearsals

@@ -10,7 +10,8 @@ from lumen.app.lint.findings import Findings
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.files import MAX_FILE_BYTES, counts, read_files
-from lumen.loading.packaged import MAIN_FILE, find_project
+from lumen.loading.own_project import own_project
+from lumen.loading.packaged import MAIN_FILE, project_above
 from lumen.rules import check_files
 
 Wanted = Callable[[Diagnostic], bool]
@@ -41,9 +42,10 @@ class FindingsOf(Protocol):
     def __call__(self, what: LintTarget, files: Mapping[str, bytes] | None = None) -> Findings: ...
 
 
-def lint_targets(paths: Sequence[str], stdin_name: str | None = None) -> list[LintTarget]:
+def lint_targets(paths: Sequence[str], stdin_name: str | None = None, *, whole: bool = False) -> list[LintTarget]:
     """The projects that these folders and files are or belong to; without any, the one here or above.
 
+    Of a file its project is meant with nothing shown but what is in that file; with `whole` all of the project.
     Raises UsageError for what is neither, and for a file that lint does not read.
     """
     if STDIN in paths:
@@ -51,10 +53,10 @@ def lint_targets(paths: Sequence[str], stdin_name: str | None = None) -> list[Li
     if stdin_name:
         raise UsageError("--stdin-filename names what is read with `-`: write `lumen lint - --stdin-filename FILE`")
     if not paths:
-        return [LintTarget(find_project())]
+        return [LintTarget(own_project())]
     projects: dict[Path, set[str] | None] = {}
     for path in paths:
-        root, files = _owner(path)
+        root, files = _owner(path, whole)
         known = projects.setdefault(root.resolve(), set())
         projects[root.resolve()] = known | files if files and known is not None else None
     return [LintTarget(root, frozenset(only or ())) for root, only in projects.items()]
@@ -76,7 +78,7 @@ def checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
     return check_files(root, files)[1]
 
 
-def _owner(path: str) -> tuple[Path, set[str]]:
+def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
     """The project of a folder or file, and which of its files are meant; empty for the whole."""
     here = Path(path)
     try:
@@ -85,10 +87,12 @@ def _owner(path: str) -> tuple[Path, set[str]]:
     except (OSError, ValueError) as error:
         raise UsageError(f"{path} can't be read: {getattr(error, 'strerror', None) or error}") from None
     if not (alone or inside):
-        return find_project(here), set()
+        return own_project(here), set()
     root = _root(here)
     if root is None:
         raise UsageError(f"{path} belongs to no project: there is no {MAIN_FILE} beside it or above")
+    if whole:
+        return root, set()
     name = here.absolute().relative_to(root).as_posix()
     files = {file for file in read_files(root) if file == name or file.startswith(f"{name}/")}
     if not files:
@@ -98,7 +102,7 @@ def _owner(path: str) -> tuple[Path, set[str]]:
 
 def _root(path: Path) -> Path | None:
     """The nearest project around a file or folder."""
-    return next((folder for folder in path.absolute().parents if (folder / MAIN_FILE).is_file()), None)
+    return project_above(path.absolute().parent)
 
 
 def _typed(paths: Sequence[str], name: str | None) -> LintTarget:

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
+from datetime import datetime
 from pathlib import Path
 
 from lumen.app.narrator import Narrator
@@ -17,10 +18,11 @@ from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, Record, RobotCommand
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE, DeduplicationLog
+from lumen.robots.person_hold import StoppedBy
 from lumen.robots.remote import RobotHost
 from lumen.runtime.home import home_of
 from lumen.runtime.journal import Journal
-from lumen.runtime.presence import BRAIN, Presence
+from lumen.runtime.presence import BRAIN, ROBOT_PART, Presence
 from lumen.upkeep.threads import WatchedThread
 
 
@@ -53,6 +55,12 @@ class HostedRobotPart(RobotPart):
     def stopped(self) -> bool:
         """Whether a person stopped it."""
         return self.server.hold.stopped is not None
+
+    @property
+    def said(self) -> dict[str, str]:
+        """What other processes hear of it: who stopped it, and when."""
+        stopped = self.server.hold.stopped
+        return {"stopped_by": stopped.by, "stopped_at": stopped.since.isoformat()} if stopped else {}
 
     def forget(self, person: PersonName) -> None:
         """Have what names somebody taken out of the journal, by a thread that no tick waits for."""
@@ -124,3 +132,13 @@ class HostedRobotPart(RobotPart):
 
     def _say(self, text: str) -> None:
         self._narrator.line("robot", text)
+
+
+def stopped_there(presence: Presence) -> StoppedBy | None:
+    """Who stopped a robot that is in this process or another one, by what that says of itself."""
+    peer = presence.find(ROBOT_PART)
+    said = peer.said if peer else {}
+    try:
+        return StoppedBy(str(said["stopped_by"]), datetime.fromisoformat(said["stopped_at"]))
+    except (KeyError, TypeError, ValueError):
+        return None

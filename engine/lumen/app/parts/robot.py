@@ -84,7 +84,7 @@ class RobotPart(Part, Observer):
         self.server.answer(event)
 
     def summary(self) -> Iterator[str]:
-        yield "published: " + ", ".join(map(_counted, self.server.counts.items()))
+        yield "published: " + (", ".join(map(_counted, self.server.counts.items())) or "nothing")
 
     def close(self) -> None:
         try:

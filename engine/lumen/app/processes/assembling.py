@@ -11,10 +11,11 @@ from lumen.app.narrator import Narrator
 from lumen.app.node import Node
 from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
-from lumen.app.parts.hosted_robot import HostedRobotPart
+from lumen.app.parts.hosted_robot import HostedRobotPart, stopped_there
 from lumen.app.parts.module import ModulePart
 from lumen.app.parts.module_troubles import ModuleTroublesPart
 from lumen.app.parts.motion import MotionPart
+from lumen.app.parts.operating import OperatorPart
 from lumen.app.parts.remote_brain import RemoteBody, RemoteBrainPart
 from lumen.app.parts.visitor import RemoteVisitorPart
 from lumen.app.processes.bundles import BundleFollower
@@ -65,6 +66,7 @@ def assemble(
     def said() -> dict[str, Any]:
         follows = robot.follows if robot else ""
         body = {"bundle": node.project.hash, "speed": options.speed, "follows": follows}
+        body |= robot.said if robot else {}
         return {**body, "time": round(node.now, 3), "realtime": node.pace.realtime} if robot else body
 
     presence = presence_of(project, bus, tuple(names), said)
@@ -105,6 +107,15 @@ def assemble(
             node.parts.append(RefusalPart(reloader, alerts))
         node.parts += [
             ReloadPart(reloader, brain.needs),
+            OperatorPart(
+                behavior,
+                narrator,
+                stopped=lambda: robot.server.hold.stopped if robot else stopped_there(presence),
+                realtime=lambda: node.pace.realtime,
+                reloaded=lambda: reloader.last_reload,
+                record=run_directory.records.write,
+                needs=brain.needs,
+            ),
             ForgettingPart(project, bus, behavior.forget, records.forget, needs=brain.needs),
             brain,
             RecordsPart(run_directory.records, behavior, brain.needs),

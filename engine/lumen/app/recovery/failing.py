@@ -30,7 +30,7 @@ def failures_told(
         try:
             _tell(error, root, run_directory, parts, tell)
         except Exception as other:
-            tell(f"nobody is told of it: {other!r}")
+            tell(f"no alert could be sent: {other!r}")
         raise
 
 

@@ -8,14 +8,14 @@ from typing import NamedTuple
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.report import START, ReloadReport
 from lumen.app.reload.validation_worker import load_apart
-from lumen.errors import LumenError
+from lumen.errors import LumenError, ProjectError
 from lumen.interpreters.changes import changes
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.statechart import deserialize
 from lumen.language.projects import Project
 from lumen.runtime.crash_counter import MAX_CRASHES
 from lumen.runtime.resuming import FreshStart, Resumption, resume
-from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
+from lumen.runtime.snapshot_store import SNAPSHOT_VERSION, SnapshotStore, StoredSnapshot
 
 LATELY = 600.0
 """How old a snapshot may be to be gone on with [s]: after that, whoever spoke with the robot has left."""
@@ -37,7 +37,7 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
     keeper = records.keeper
     kept = keeper.kept() if keeper else None
     if keeper is None or kept is None:
-        return Recovery(FreshStart())
+        return Recovery(_after_another(keeper) if keeper else FreshStart())
     away, began = time.time() - kept.ended, time.perf_counter()
     if not 0.0 <= away <= LATELY:
         return _anew(kept, f"The last run ended without notice, but {_ago(away)}: this one begins anew.")
@@ -58,7 +58,18 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
 def rested(records: RunRecords) -> FreshStart:
     """A beginning that asks for nothing of the run before, but whether the robot was at rest."""
     kept = records.keeper.kept() if records.keeper else None
-    return FreshStart(AT_REST if kept and kept.rests else "", bool(kept and kept.rests))
+    rests = kept.rests if kept else bool(records.keeper and records.keeper.of_another_version()[1])
+    return FreshStart(AT_REST if rests else "", rests)
+
+
+def _after_another(keeper: SnapshotStore) -> FreshStart:
+    """How to begin where another Lumen may have written down where the behaviour stood."""
+    version, rests = keeper.of_another_version()
+    why = (
+        f"The last run ended without notice, under another Lumen (its snapshot is of version {version}, this one reads "
+        f"{SNAPSHOT_VERSION}): this one begins anew. To go on from there, start that Lumen instead, next time."
+    )
+    return FreshStart(f"{why}\n{AT_REST}" if rests else why, rests) if version else FreshStart()
 
 
 def _anew(kept: StoredSnapshot, why: str, news: tuple[ReloadReport, ...] = ()) -> Recovery:
@@ -71,11 +82,13 @@ def _resumed(old: Project, new: Project, kept: StoredSnapshot, away: float) -> R
 
 
 def _before(root: Path, keeper: SnapshotStore, kept: StoredSnapshot, project: Project) -> Project | None:
-    """The bundle that ran, None where it was not kept."""
+    """The bundle that ran, None where it was not kept. Raises ProjectError where this Lumen can't read it."""
     old: Project | None = project
     if kept.bundle != project.hash:
         files = keeper.files(kept.bundle)
-        old = load_apart(root, files)[0] if files else None
+        old, found = load_apart(root, files) if files else (None, ())
+        if old is None and found:
+            raise ProjectError(found)
     if old is None or kept.behavior not in old.behaviors:
         return None
     return old if kept.behavior == old.behavior else replace(old, behavior=kept.behavior)

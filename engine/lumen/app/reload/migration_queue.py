@@ -149,7 +149,7 @@ class MigrationQueue:
             self._applied(self.running)
             self._records.prune(self.running, self.rollback_guard.before, self.rollback_guard.good)
         except Exception:
-            _log.exception("other files are active, and not everybody was told")
+            _log.exception("the active files have changed, but not every process could be informed")
 
     def _give_up(self, staged: StagedBundle, verdict: MigrationDelay | Refusal) -> None:
         """It has waited long enough, or can't go on from here at all."""

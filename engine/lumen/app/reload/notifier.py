@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Iterable
+from datetime import UTC, datetime
 
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
@@ -14,15 +15,19 @@ _log = logging.getLogger(__name__)
 
 
 class ReloadNotifier:
-    """Tells the terminal, the bus (`lumen.config.status`), who asked, and the journal; `last` is what was told last."""
+    """Tells the terminal, the bus (`lumen.config.status`), who asked, and the journal.
+
+    `last` is what was told last, `last_at` when that was (UTC).
+    """
 
     def __init__(self, behavior: LiveBehavior, narrator: Narrator, records: RunRecords) -> None:
         self._behavior, self._narrator, self._records = behavior, narrator, records
         self.last: ReloadReport | None = None
+        self.last_at = datetime.now(UTC)
 
     def tell(self, report: ReloadReport, orders: Iterable[ReloadRequest] = ()) -> None:
         lines, body = list(report.lines()), report.to_json()
-        self.last = report.kept()
+        self.last, self.last_at = report.kept(), datetime.now(UTC)
         for line in lines:
             self.line(line)
         self._records.write({"at": round(self._behavior.loop.clock.now(), 3), **body})

@@ -17,6 +17,7 @@ from lumen.app.reload.report import ReloadReport
 from lumen.app.reload.requests import COMMAND, WAITING, ReloadRequest, answering, request_from
 from lumen.app.reload.validation_worker import FileJudge, ValidationWorker
 from lumen.app.reload.validator import BUDGET, BundleValidator, Validation, fault_of, told
+from lumen.app.status import LastReload
 from lumen.buses.validated import by_key
 from lumen.errors import BusError, UsageError
 from lumen.interpreters.changes import changes, live
@@ -79,6 +80,13 @@ class Reloader:
     def last(self) -> ReloadReport | None:
         """What was told last."""
         return self._notifier.last
+
+    @property
+    def last_reload(self) -> LastReload | None:
+        """The same for who asks how the exhibition is."""
+        if (last := self.last) is None:
+            return None
+        return LastReload(self._notifier.last_at, last.verdict, last.after, next(iter(last.lines()), ""))
 
     @property
     def _running(self) -> Project:

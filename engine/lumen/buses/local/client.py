@@ -52,6 +52,7 @@ class LocalBusClient:
         self._wire, self._read = _connect(address)
         self._unsent, self._closed = SendBuffer(), False
         self._handlers: dict[int, MessageHandler] = {}
+        self._returned: Callable[[str], None] = lambda _: None
         self._answers: dict[int, tuple[threading.Event, list[str]]] = {}
         self._numbers, self._marked = count(), threading.Event()
         self._arrived: deque[tuple[MessageHandler, int, Message]] = deque(maxlen=MAX_UNHANDLED_MESSAGES)
@@ -98,6 +99,10 @@ class LocalBusClient:
         if self.gone.is_set():
             raise BusClosedError("the exhibition is gone")
         self._put(framed(["publish", key, reply_to, correlation_id, ttl], encode(body)))
+
+    def returns(self, handler: Callable[[str], None]) -> None:
+        self._returned = handler
+        self._put(frame("returns"))
 
     def reply(self, message: Message, body: Any) -> None:
         if message.reply_to:
@@ -166,6 +171,8 @@ class LocalBusClient:
                 waiting[0].set()
             case ["refused", key, reason]:
                 _log.warning("the exhibition refuses a message on %.100a: %s", key, reason)
+            case ["returned", str(key)]:
+                self._returned(key)
             case ["marked"]:
                 with self._arriving:
                     self._arrived.append((lambda _: self._marked.set(), -1, Message("", None)))

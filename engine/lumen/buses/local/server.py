@@ -55,6 +55,7 @@ class ClientConnection:
         self.wire, self.question, self.known = wire, nonce(), False
         self.since = time.monotonic()
         self.undo: dict[int, Callable[[], None]] = {}
+        self.returns = False
         self.arrived: deque[tuple[int, Message]] = deque(maxlen=MAX_CLIENT_MESSAGES)
         self.read, self.unsent, self.bytes, self.sent = bytearray(), deque[bytes](), 0, 0
 
@@ -177,6 +178,8 @@ class LocalBusServer:
                 pass
             case ["publish", str(key), str(reply_to), str(correlation_id), ttl, body]:
                 self._publish(client, key, body, reply_to, correlation_id, ttl)
+            case ["returns"]:
+                client.returns = True
             case ["mark"]:
                 mark = nonce()
                 self._marks[mark] = lambda: client.arrived.append((-1, Message(FLUSH_MARK, mark)))
@@ -209,9 +212,15 @@ class LocalBusServer:
             for name in (key, reply_to, correlation_id):
                 check_key(name)
             check_ttl(ttl)
+            if client.returns and not self._heard(key):
+                client.send(frame("returned", key))
             self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl)
         except BusError as error:
             client.send(frame("refused", key, str(error)))
+
+    def _heard(self, key: str) -> bool:
+        known: Callable[[str], bool] = getattr(self._bus, "heard", lambda _: True)
+        return known(key)
 
     def _marked(self, message: Message) -> None:
         if mark := self._marks.pop(str(message.body), None):

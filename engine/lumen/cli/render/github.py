@@ -4,19 +4,39 @@ The commands and how they are escaped: GitHub's documentation of workflow comman
 """
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from lumen.app.lint.findings import Findings
-from lumen.cli.render.terminal_text import clean, summary
+from lumen.cli.render.concise import render as concise
+from lumen.cli.render.terminal_text import clean, counted, summary
 from lumen.language.diagnostics import Diagnostic, Severity
 
 _COMMANDS: Mapping[Severity, str] = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 
+SHOWN = 10
+"""How many errors, and how many warnings, GitHub shows of a step; the rest it drops without a word."""
+
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """A command for each finding, its file as seen from the repository's root, and a line that counts them."""
-    return "\n".join([*(_command(each, d) for each in found for d in each.diagnostics), summary(found, False)])
+    """A command for each finding, its file as seen from the repository's root, and a line that counts them.
+
+    GitHub shows the first ten errors, warnings and notices of a step. Where there are more it is said so, and all of
+    them stand in the log.
+    """
+    commands = [_command(each, d) for each in found for d in each.diagnostics]
+    return "\n".join([*commands, *_left_out(found), summary(found, False)])
+
+
+def _left_out(found: Sequence[Findings]) -> Iterator[str]:
+    counts = [(sum(each.count(severity) for each in found), command) for severity, command in _COMMANDS.items()]
+    more = [counted(number - SHOWN, command) for number, command in counts if number > SHOWN]
+    if more:
+        said = f"GitHub shows the first {SHOWN} of a kind: {' and '.join(more)} more stand in the log of this step only"
+        yield f"::notice title=lumen lint::{_escape(said)}"
+        yield "::group::All findings"
+        yield from concise(found).splitlines()[:-1]
+        yield "::endgroup::"
 
 
 def _command(found: Findings, diagnostic: Diagnostic) -> str:

@@ -4,6 +4,7 @@ import io
 import logging
 from typing import TYPE_CHECKING, Any
 
+from lumen.extras import demand
 from lumen.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
 
 if TYPE_CHECKING:
@@ -33,7 +34,11 @@ _STYLE: dict[Any, Any] = {
 
 
 def draw(sheet: PlotSheet, ending: str) -> bytes:
-    """The sheet as a PNG or SVG file, by the ending; the same sheet gives the same bytes."""
+    """The sheet as a PNG or SVG file, by the ending; the same sheet gives the same bytes.
+
+    Raises MissingExtraError where matplotlib is not installed.
+    """
+    demand("plot", "a plot", "matplotlib")
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     from matplotlib import rc_context
     from matplotlib.figure import Figure

@@ -26,7 +26,8 @@ _INSTEAD = {
 _ARGUMENTS = {
     **dict.fromkeys(CLOCK_FUNCTIONS, ""),
     "has": "event.data.x", "In": "'state'", "contains": "text, 'part'", "replace": "text, 'old', 'new'",
-    "after": "text, 'phrase'", "matches": "text, 'pattern'", "heard": "text, 'name'", "lookup": "text, 'table'",
+    "after": "text, 'phrase'", "matches": "text, 'pattern'", "heard": "event.data.result, 'name'",
+    "lookup": "event.data.result, 'table'",
     "take": "list, 3", "drop": "list, 1", "shuffle": "list", "pick": "list", "in_language": "value",
 }  # fmt: skip
 

@@ -210,6 +210,8 @@ class _Checker:
             several = base.fields() and key in base.fields()
             message = f"not every event here has `{owner}.{key}`" if several else f"`{owner}` has no `{key}`"
             hint = f"guard it with has({owner}.{key})" if several else hint
+            if path == ("event", key) and key not in ("data", "name"):
+                hint = f"what came with it stands in its data: `event.data.{key}`"
             self.report(UNKNOWN_FIELD, node, message, hint, start)
         else:
             hint = f"guard it with has({owner}.{key})"

@@ -14,9 +14,7 @@ UNKNOWN_FIELD = Code(
 )
 UNKNOWN_STATE = Code("unknown-state", "references", ERROR, "a state is named that does not exist")
 EXPRESSION_SYNTAX = Code("expression-syntax", "expressions", ERROR, "an expression can't be read")
-TYPE_MISMATCH = Code(
-    "type-mismatch", "expressions", ERROR, "values stand together in an expression that can't go together"
-)
+TYPE_MISMATCH = Code("type-mismatch", "expressions", ERROR, "an expression combines values whose types do not fit")
 MISPLACED_DRAW = Code("misplaced-draw", "expressions", ERROR, "`shuffle` or `pick` stands outside `assign`")
 UNGUARDED_FIELD = Code("unguarded-field", "expressions", ERROR, "a field is read that not every event has")
 UNKNOWN_ANSWERS = Code("unknown-answers", "expressions", ERROR, "an answers table is named that the file does not have")

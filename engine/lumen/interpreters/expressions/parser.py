@@ -1,6 +1,7 @@
 """From the text of an expression to its tree."""
 
 from collections.abc import Collection
+from functools import lru_cache
 from typing import ClassVar
 
 from lumen.errors import ExpressionError
@@ -21,8 +22,15 @@ _PAIRS = {
 """Signs of other languages that are two tokens here."""
 
 
+MAX_REMEMBERED_TREES = 10_000
+
+
+@lru_cache(maxsize=MAX_REMEMBERED_TREES)
 def parse_expression(source: str) -> ExpressionNode:
-    """The tree of an expression; raises ExpressionError with the offset of what can't be read."""
+    """The tree of an expression; raises ExpressionError with the offset of what can't be read.
+
+    Trees are frozen, and those of the same source are one.
+    """
     return _ExpressionParser(tokenize(source)).bounded()
 
 

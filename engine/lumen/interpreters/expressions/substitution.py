@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.parser import parse_expression
+from lumen.interpreters.expressions.parser import MAX_REMEMBERED_TREES, parse_expression
 from lumen.interpreters.expressions.printer import unparse
 from lumen.interpreters.expressions.templates import split_template
 from lumen.interpreters.expressions.tree import (
@@ -37,9 +38,15 @@ def substituted(source: str, variables: Mapping[str, str], *, localized: bool = 
     except ExpressionError:
         return source
     known = {"lists", *variables} if localized else {*variables}
-    if not any(isinstance(node, Identifier) and node.name in known for node, _ in walk(tree)):
+    if known.isdisjoint(_roots(source)):
         return source
     return unparse(_Substitution(variables, localized).of(tree))
+
+
+@lru_cache(maxsize=MAX_REMEMBERED_TREES)
+def _roots(source: str) -> frozenset[str]:
+    """What the paths of a sound expression begin with."""
+    return frozenset(node.name for node, _ in walk(parse_expression(source)) if isinstance(node, Identifier))
 
 
 def substituted_template(text: str, variables: Mapping[str, str]) -> str:

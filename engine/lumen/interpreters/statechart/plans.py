@@ -55,7 +55,7 @@ class Configuration:
         self.names = frozenset(node.name for node in nodes if node.path)
         self.known = names_of(nodes)
         self.plans: dict[tuple[object, ...], MicrostepPlan] = {}
-        self._leaves = [node for node in self.ordered if not any(child in nodes for child in node.children)]
+        self.leaves = [node for node in self.ordered if not any(child in nodes for child in node.children)]
         self._by_event: dict[str, Candidates] = {}
         self.eventless = self._select(lambda transition: not transition.definition.event)
 
@@ -75,7 +75,7 @@ class Configuration:
         if self.finished:
             return ()
         groups = (
-            tuple(t for node in (leaf, *leaf.ancestors) for t in node.transitions if wanted(t)) for leaf in self._leaves
+            tuple(t for node in (leaf, *leaf.ancestors) for t in node.transitions if wanted(t)) for leaf in self.leaves
         )
         return tuple(group for group in groups if group)
 

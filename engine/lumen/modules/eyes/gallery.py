@@ -10,6 +10,7 @@ from lumen.errors import ModuleError
 from lumen.language.people import name_key
 from lumen.modules.eyes.detector import Box
 from lumen.modules.eyes.opencv import opencv
+from lumen.upkeep.private_folder import private_folder
 
 if TYPE_CHECKING:
     from lumen.modules.eyes.pictures import Grey
@@ -110,7 +111,7 @@ class FaceGallery:
         faces = np.array([face for _, _, face in self._faces], dtype=np.uint8).reshape(-1, FACE_SIZE, FACE_SIZE)
         np.savez_compressed(data, names=names, times=times, faces=faces)
         try:
-            self._file.parent.mkdir(parents=True, exist_ok=True)
+            private_folder(self._file.parent)
             with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
                 file.write(data.getvalue())
             os.replace(draft, self._file)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.language.modules import MEMORY
+from lumen.language.modules import MEMORY, VISITOR_KEY
 from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
 from lumen.modules.memory.store import Forgotten, JournalEntry, Store
@@ -17,7 +17,6 @@ from lumen.modules.module import DAY, KEEP_DAYS, Module
 from lumen.ports import Bus, Message, MessageHandler
 
 DATABASE_FILE = "memory.db"
-VISITOR_KEY = "visitor"
 """The key of the behaviour's context that holds the visitor's name, where `lumen.yaml` does not say."""
 MAX_PENDING_ENTRIES = 10_000
 """Entries that wait for a database that can't be written; then the oldest are dropped."""

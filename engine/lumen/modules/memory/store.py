@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 
 from lumen.errors import ModuleError
 from lumen.language.people import PersonName, name_key
-from lumen.modules.memory.tables import check, prepare
+from lumen.modules.memory.tables import NEWER_TABLES, check, prepare
 from lumen.modules.memory.visit import JournalEnd
+from lumen.upkeep.private_folder import private_folder
 
 LOCK_TIMEOUT = 0.5
 """How long a locked database is waited for [s]."""
@@ -162,7 +163,7 @@ class Store:
 
     def _open(self) -> sqlite3.Connection:
         if self._file:
-            self._file.parent.mkdir(parents=True, exist_ok=True)
+            private_folder(self._file.parent)
             os.close(os.open(self._file, os.O_RDWR | os.O_CREAT, 0o600))
         db = sqlite3.connect(self._file or ":memory:", timeout=LOCK_TIMEOUT)
         self._connection = db
@@ -178,6 +179,8 @@ class Store:
         text = str(error)
         if "locked" in text or "busy" in text:
             return f"{file} is locked by another program: close that, what happens meanwhile is kept and written then"
+        if text.startswith(NEWER_TABLES):
+            return f"{file} was written by a newer Lumen: use that one, or move the file away, and a new one is begun"
         if "not a database" in text or "malformed" in text:
             return f"{file} is no SQLite database, or is damaged: move it away, and a new one is begun"
         if (

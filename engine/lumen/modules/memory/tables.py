@@ -7,6 +7,9 @@ from lumen.language.people import name_key
 VERSION = 2
 """Of the tables: 1 had no keys of names, and did not know which entries are of one visit."""
 
+NEWER_TABLES = "tables of version"
+"""How the error begins that says that a newer Lumen has written them."""
+
 _TABLES = """
 CREATE TABLE IF NOT EXISTS journal (
     id INTEGER PRIMARY KEY, time REAL NOT NULL, date TEXT NOT NULL, robot TEXT NOT NULL, visitor TEXT NOT NULL,
@@ -28,7 +31,9 @@ _NOW = {"journal": _FIRST["journal"] | {"key", "visit"}, "visitors": _FIRST["vis
 
 
 def check(db: sqlite3.Connection) -> None:
-    """Raises sqlite3.OperationalError where tables of these names are somebody else's; nothing is written."""
+    """Raises sqlite3.OperationalError where tables of these names are somebody else's, or newer; nothing is written."""
+    if (written := db.execute("PRAGMA user_version").fetchone()[0]) > VERSION:
+        raise sqlite3.OperationalError(f"{NEWER_TABLES} {written}")
     for table in _NOW:
         if _columns(db, table) not in (set(), _FIRST[table], _NOW[table]):
             raise sqlite3.OperationalError(f"no such column in {table}")

@@ -110,7 +110,7 @@ class MqttBroker:
             try:
                 self._client.loop_forever(retry_first_connection=True)
             except UnicodeError:
-                self._health.down("has a name that nobody can have: mend `host`")
+                self._health.down("can't be reached, because its name is not valid: correct `host`")
 
     def _publish(self, topic: str, payload: bytes, row: Route, *, retain: bool) -> None:
         quality = 0 if row.carried is Carried.TELEMETRY else 1

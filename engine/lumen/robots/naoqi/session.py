@@ -15,7 +15,7 @@ CONNECT_TIMEOUT = 5.0
 MAX_ERROR_LENGTH = 200
 
 QI_MISSING = (
-    "a NAO is reached through the package `qi`: pip install lumen-robot[naoqi]"
+    "a NAO is reached through the package `qi`: pip install 'lumen-robot[naoqi]'"
     " (there are wheels for CPython up to 3.12 on Linux, x86-64)"
 )
 

@@ -1,6 +1,10 @@
-"""The NAO in MuJoCo, through dm_control. Importing this imports them; OpenGL is chosen just before."""
+"""The NAO in MuJoCo, through dm_control. Importing this imports them; OpenGL is chosen just before.
+
+Raises MissingExtraError where they are not installed.
+"""
 
 from lumen.robots.simulation import gl as gl  # first of all: it chooses what mujoco draws with
+from lumen.robots.simulation import installed as installed  # then: it says what may not be there
 from lumen.robots.simulation.rendering import available
 from lumen.robots.simulation.robot import SimulatedRobot
 

@@ -1,0 +1,204 @@
+"""How long an editor waits for `lumen lsp`: from the last key to the findings, and from a key to its completion.
+
+The project is the shipped one, whose tour has grown to 2,000 lines by visits that follow one another. A client types
+words into it over standard input and output, a key every 60 ms, and then asks what an editor asks (symbols, folds,
+lenses, hints: whatever the server offers). Findings count once they are those of the whole word; completion is asked
+right behind its key, while the project is being checked. The last key may also close a quote that hid the rest of the
+file.
+
+    python benchmarks/lsp.py
+"""
+
+import os
+import platform
+import re
+import statistics
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from tests.lsp.client import Client
+
+from lumen.loading.files import read_files
+
+ROOT = Path(__file__).parents[1]
+TOUR = "behaviors/tour.yaml"
+LINES, KEY_EVERY, TURNS = 2_000, 0.06, 20
+AROUND = {
+    "documentSymbolProvider": "documentSymbol",
+    "foldingRangeProvider": "foldingRange",
+    "codeLensProvider": "codeLens",
+    "inlayHintProvider": "inlayHint",
+    "documentLinkProvider": "documentLink",
+}
+"""What an editor asks after every key, by the capability."""
+
+
+def main() -> int:
+    print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}")
+    with tempfile.TemporaryDirectory() as name:
+        root = Path(name).resolve()
+        for file, content in read_files(ROOT).items():
+            (root / file).parent.mkdir(parents=True, exist_ok=True)
+            (root / file).write_bytes(content)
+        (root / TOUR).write_text(grown((ROOT / TOUR).read_text("utf-8"), LINES), "utf-8")
+        with Client(root) as client:
+            typist = Typist(client, TOUR)
+            print(
+                f"{TOUR}: {len(typist.lines):,} lines; {TURNS} times each: median and p95, and the server's CPU time\n"
+            )
+            asked = [name for capability, name in AROUND.items() if typist.can(capability)]
+            print(f"beside each key: {', '.join(asked)}")
+            for near, word, said in (
+                ("onDone: offer_3", "onDone: ofer", "`ofer`"),
+                ('guard: "context.name_tries < 2"', 'guard: "context.nametries < 2"', "`nametries`"),
+            ):
+                took = [typist.findings(near, word, said) for _ in range(TURNS)]
+                print(f"{'findings, ' + word:42s} {shown(took)}")
+            print(f"{'findings, a quote is closed':42s} {shown([typist.closed() for _ in range(TURNS)])}")
+            for near, word in (("onDone: offer_3", "onDone: off"), ("{play: dance}", "{play: da")):
+                took, counts = zip(*(typist.completion(near, word) for _ in range(TURNS)), strict=True)
+                print(f"{'completion, ' + word:42s} {shown(list(took))}   {max(counts):,} proposals")
+    return 0
+
+
+def grown(text: str, lines: int) -> str:
+    """The tour with further visits, one behind the other, until it has that many lines; the last may end early."""
+    begin, end = text.index("          # 3. Asked"), text.index("      # Something is wrong with the robot")
+    states = re.split(r"(?m)^(?= {10}# \d+\.)", text[begin:end])[1:]
+    missing, more, visit = lines - text.count("\n"), [], 0
+    while missing > 0:
+        visit, kept = visit + 1, []
+        while missing > 0 and len(kept) < len(states):
+            kept.append(states[len(kept)])
+            missing -= kept[-1].count("\n")
+        more.append(_visit("".join(kept), visit, last=missing <= 0))
+    return text[:end].replace('{12s: "#idle"}', "{12s: ask_name_1}") + "".join(more) + text[end:]
+
+
+def _visit(block: str, n: int, *, last: bool) -> str:
+    for name in re.findall(r"(?m)^ {10}(\w+):$", block):
+        for before in ("target: ", "onDone: ", "onError: ", "id: ", r"after: \{\w+: ", " {14}- "):
+            block = re.sub(rf"({before}){name}\b(?!_\d)", rf"\g<1>{name}_{n}", block)
+        block = re.sub(rf"^( {{10}}){name}:$", rf"\g<1>{name}_{n}:", block, flags=re.MULTILINE)
+    if last:
+        return block.replace(": goodbye}", ': "#idle"}')
+    return block.replace('{12s: "#idle"}', f"{{12s: ask_name_{n + 1}}}")
+
+
+class Took(NamedTuple):
+    """How long an answer took, and how long the server worked for it [s]."""
+
+    wall: float
+    cpu: float
+
+
+class Typist:
+    """Writes into one file as somebody at a keyboard does, and measures the answers."""
+
+    def __init__(self, client: Client, file: str) -> None:
+        self.client, self.file, self.version = client, file, 1
+        self.text = client.open(file)
+        self.lines = self.text.split("\n")
+        found = client.diagnostics(file)
+        assert found == [], found
+
+    def can(self, capability: str) -> bool:
+        return bool(self.client.capabilities.get(capability))
+
+    def findings(self, near: str, word: str, said: str) -> Took:
+        """From the last key of a word that is wrong to its finding, which says that; then all is as it was."""
+        line, start = self.spot(near)
+        began = self.replace(line, start, len(near), word)
+        self.around()
+        self.until(lambda found: any(said in one["message"] for one in found))
+        took = self.since(began)
+        self.replace(line, start, len(word), near, at_once=True)
+        self.until(lambda found: not found)
+        return took
+
+    def closed(self) -> Took:
+        """From the key that closes a quote to the findings of a sound file."""
+        line, start = self.spot("en: Never mind.")
+        self.replace(line, start + 4, 0, '"', at_once=True)
+        self.until(bool)
+        began = self.replace(line, start + 16, 0, '"')
+        self.around()
+        self.until(lambda found: not found)
+        took = self.since(began)
+        self.replace(line, start + 4, 13, "Never mind.", at_once=True)
+        return took
+
+    def completion(self, near: str, word: str) -> tuple[Took, int]:
+        """From the last key of a word that is begun to the proposals behind it, and how many they are."""
+        line, start = self.spot(near)
+        self.replace(line, start, len(near), word[:-1])
+        began = self.replace(line, start + len(word) - 1, 0, word[-1])
+        answer = self.client.ask("completion", self.file, line, start + len(word))
+        took = self.since(began)
+        self.around()
+        self.replace(line, start, len(word), near, at_once=True)
+        self.until(lambda found: not found)
+        return took, len(answer["items"] if isinstance(answer, dict) else answer)
+
+    def spot(self, near: str) -> tuple[int, int]:
+        line = next(i for i, text in enumerate(self.lines) if near in text)
+        return line, self.lines[line].index(near)
+
+    def replace(self, line: int, start: int, wide: int, word: str, *, at_once: bool = False) -> Took:
+        """Write a word in place of so many characters, key by key; the clocks when the last key was pressed."""
+        for i, key in enumerate([word] if at_once else word):
+            if i:
+                time.sleep(KEY_EVERY)
+            pressed = self.clocks()
+            self.key(line, start + (0 if at_once else i), 0 if i else wide, key)
+        return pressed
+
+    def clocks(self) -> Took:
+        return Took(time.perf_counter(), cpu(self.client.process.pid))
+
+    def since(self, began: Took) -> Took:
+        now = self.clocks()
+        return Took(now.wall - began.wall, now.cpu - began.cpu)
+
+    def key(self, line: int, start: int, wide: int, key: str) -> None:
+        self.version += 1
+        places = [{"line": line, "character": start + n} for n in (0, wide)]
+        change = {"range": {"start": places[0], "end": places[1]}, "text": key}
+        document = {"uri": self.client.uri(self.file), "version": self.version}
+        self.client.notify("textDocument/didChange", textDocument=document, contentChanges=[change])
+
+    def around(self) -> None:
+        """Ask what an editor asks beside."""
+        document = {"uri": self.client.uri(self.file)}
+        window = {"start": {"line": 0, "character": 0}, "end": {"line": 100, "character": 0}}
+        for capability, method in AROUND.items():
+            if self.can(capability):
+                more = {"range": window} if method == "inlayHint" else {}
+                self.client.ask_later(f"textDocument/{method}", textDocument=document, **more)
+
+    def until(self, wanted: Callable[[list[dict[str, Any]]], bool]) -> None:
+        """Wait until findings are as they should be."""
+        while not wanted(self.client.diagnostics(self.file)):
+            pass
+
+
+def cpu(pid: int) -> float:
+    """The CPU time of all threads of a process [s]."""
+    return sum(int(each.read_text().split()[0]) for each in Path(f"/proc/{pid}/task").glob("*/schedstat")) / 1e9
+
+
+def shown(took: list[Took]) -> str:
+    """Median and 95th percentile of the wall time, the median of the CPU time."""
+    wall = sorted(each.wall for each in took)
+    p95, cpu = statistics.quantiles(wall, n=20)[-1], statistics.median(each.cpu for each in took)
+    return f"{1e3 * statistics.median(wall):5.0f} ms {1e3 * p95:5.0f} ms   {1e3 * cpu:4.0f} ms"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

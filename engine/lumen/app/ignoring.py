@@ -1,0 +1,74 @@
+"""What happened and changed nothing, in a line; once where it happens many times a second."""
+
+import json
+from typing import Any
+
+from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart.ignored_events import FalseGuard, IgnoredEvent, ignored
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition
+from lumen.runtime.visitor import SPEECH_ROUTE
+
+BURST = 1.0
+"""How soon after one the next event of its name, with the same texts, says nothing new [s]."""
+MAX_GUARDS = 3
+"""How many false guards a line shows."""
+MAX_VALUE = 40
+"""How many characters of a value it shows."""
+MAX_REMEMBERED = 1_000
+
+
+class IgnoredEvents:
+    """Says of each step whether its event changed nothing, and why.
+
+    A face is seen many times a second, and only some state cares: what follows one of its kind soon is not told of.
+    """
+
+    def __init__(self) -> None:
+        self._last: dict[tuple[str, tuple[str, ...]], float] = {}
+
+    def line(self, machine: MachineDefinition, step: Step) -> str:
+        """`“dance” while goodbye does not listen`; empty where something happened, or nobody would want to know."""
+        if step.event is None or self._follows(step.event, step.snapshot.at):
+            return ""
+        found = ignored(machine, step)
+        return _words(found) if found else ""
+
+    def _follows(self, event: Event, at: float) -> bool:
+        texts = tuple(v for v in event.data.values() if isinstance(v, str)) if isinstance(event.data, dict) else ()
+        if len(self._last) >= MAX_REMEMBERED:
+            self._last.clear()
+        before, self._last[event.name, texts] = self._last.get((event.name, texts)), at
+        return before is not None and at - before < BURST
+
+
+def _words(found: IgnoredEvent) -> str:
+    what = _shown(found.event)
+    if found.deaf:
+        return f"{what} while {' and '.join(found.deaf)} {'does' if len(found.deaf) == 1 else 'do'} not listen"
+    false = [_false(guard, found.event) for guard in found.refused[:MAX_GUARDS]]
+    more = len(found.refused) - len(false)
+    return f"{what} while {', and '.join(false)}" + (f", and {more} more guards are" if more else "")
+
+
+def _false(guard: FalseGuard, event: Event) -> str:
+    said = _said(event)
+    news = {name: value for name, value in guard.values.items() if not said or value != said}
+    values = ", ".join(f"{name} is {_value(value)}" for name, value in news.items())
+    return f"{guard.guard.shown} is false in {guard.state}" + (f" ({values})" if values else "")
+
+
+def _shown(event: Event) -> str:
+    said = _said(event)
+    return f"“{said}”" if said else event.name
+
+
+def _said(event: Event) -> str:
+    """What a visitor said, where that is what happened."""
+    said = event.data.get("result") if event.name == SPEECH_ROUTE and isinstance(event.data, dict) else None
+    return said if isinstance(said, str) else ""
+
+
+def _value(value: Any) -> str:
+    text = f"'{value}'" if isinstance(value, str) else json.dumps(value, ensure_ascii=False, default=str)
+    return text if len(text) <= MAX_VALUE else f"{text[: MAX_VALUE - 1]}…"

@@ -1,0 +1,113 @@
+"""What operators ask of an exhibition that runs: how it is, and to enter a state."""
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from lumen.app.asking import OPERATOR_KEY
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.narrator import Narrator
+from lumen.app.parts.part import Part
+from lumen.app.status import LastReload, status_of
+from lumen.errors import BusError, LumenError
+from lumen.interpreters.statechart import Step
+from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.language.events import Event
+from lumen.ports import Message, Sense
+from lumen.robots.person_hold import StoppedBy
+from lumen.runtime.loop import Observer
+
+GOTO = "operator.goto"
+"""The event of a step that an operator wanted."""
+SOMEBODY = "somebody"
+MAX_PENDING_REQUESTS = 100
+REQUESTS = '`{"ask": "status"}` or `{"ask": "goto", "state": …}`'
+
+
+class OperatorPart(Part, Observer):
+    """Answers `lumen status` and `lumen goto` between two steps; it stands before the brain, whose `needs` it has.
+
+    `stopped` says who stopped the robot, `realtime` how much of real time is kept, `reloaded` what came of saved files
+    last; `record` keeps an entry of the journal.
+    """
+
+    def __init__(
+        self,
+        behavior: LiveBehavior,
+        narrator: Narrator,
+        *,
+        stopped: Callable[[], StoppedBy | None],
+        realtime: Callable[[], float],
+        reloaded: Callable[[], LastReload | None] = lambda: None,
+        record: Callable[[Mapping[str, Any]], None] = lambda _: None,
+        needs: Sequence[str] = (),
+    ) -> None:
+        self.needs, self._behavior, self._narrator = needs, behavior, narrator
+        self._stopped, self._realtime, self._reloaded, self._record = stopped, realtime, reloaded, record
+        self._since = 0.0
+        self._came: deque[Message] = deque(maxlen=MAX_PENDING_REQUESTS)
+        self._bus = behavior.loop.bus
+        self._undo = self._bus.subscribe(OPERATOR_KEY, self._came.append)
+        behavior.loop.observers.append(self)
+
+    def begin(self, now: float) -> None:
+        self._since = now
+
+    def stepped(self, step: Step) -> None:
+        if step.entered or step.exited or any(inner.entered or inner.exited for _, inner in step.invoked):
+            self._since = step.snapshot.at
+
+    def tick(self, now: float, changes: Sequence[Event]) -> None:
+        while self._came:
+            message = self._came.popleft()
+            answer = self._answer(message.body, now)
+            try:
+                self._bus.reply(message, answer)
+            except BusError:
+                continue  # who asked is gone
+
+    def close(self) -> None:
+        self._undo()
+
+    def status(self) -> dict[str, Any]:
+        """How the exhibition is, as JSON data."""
+        loop = self._behavior.loop
+        return status_of(
+            loop.project,
+            loop.runtime.snapshot,
+            self._since,
+            battery=loop.robot.read(Sense.BATTERY),
+            stopped=self._stopped(),
+            realtime=self._realtime(),
+            reloaded=self._reloaded(),
+        )
+
+    def _answer(self, body: Any, now: float) -> dict[str, Any]:
+        match body:
+            case {"ask": "status"}:
+                return self.status()
+            case {"ask": "goto", "state": str(state)}:
+                by = body.get("by")
+                return self._goto(state[:200], str(by)[:100] if by else SOMEBODY, now, only=body.get("only") == "check")
+            case _:
+                return _refusal(f"{REQUESTS} is expected")
+
+    def _goto(self, state: str, by: str, now: float, *, only: bool) -> dict[str, Any]:
+        """Enter a state; with `only` say what that would leave and enter."""
+        loop = self._behavior.loop
+        event = Event(GOTO, {"by": by, "state": state}, now)
+        try:
+            step = entered_directly(loop.project.machine, loop.runtime.snapshot, state, event)
+        except LumenError as error:
+            return _refusal(str(error))
+        said = {"exited": list(step.exited), "entered": list(step.entered)}
+        if only:
+            return {"verdict": "possible", **said}
+        self._narrator.line("operator", f"goes to {state}, by {by}")
+        self._record({"goto": state, "by": by})
+        loop.take(step)
+        return {"verdict": "done", **said}
+
+
+def _refusal(reason: str) -> dict[str, Any]:
+    return {"verdict": "refused", "reason": reason}

@@ -1,0 +1,111 @@
+"""A project of one's own, begun as a copy of one that comes with Lumen."""
+
+import re
+import shutil
+from pathlib import Path, PurePosixPath
+
+from lumen.loading.files import PROJECT_FOLDERS
+from lumen.loading.packaged import MAIN_FILE, shipped_root
+from lumen.loading.project import main_settings
+
+STARTERS = {
+    "tour": "the shipped one, with everything",
+    "museum": "a guide for five exhibits",
+    "minimal": "a greeting, a gesture and a story, in 50 lines",
+}
+EXAMPLES = "examples"
+CHECKOUT = "actions/checkout@11bd71901bbe5b1630ceea73d27597364c9af683  # v4.2.2"
+_SCHEMA = re.compile(r"(?m)^(# yaml-language-server: \$schema=)\S*?([\w.]+\.schema\.json)$")
+
+IGNORED = """\
+# Where a run keeps what it needs after a crash, and names of visitors: nobody else's.
+.lumen/
+# What `lumen run` was asked to write.
+*.mp4
+"""
+
+README = """\
+# {name}
+
+What the robot does and says stands in these files, and in no program:
+
+| file | holds |
+| --- | --- |
+{files}
+
+    lumen run --story {story:<12} # a scripted visitor meets the robot, in simulation
+    lumen run                      # be the visitor: type what you say
+    lumen lint                     # what is wrong, and where
+    lumen test                     # all stories, in seconds
+
+Change a text while `lumen run` is running, and save: the robot says the new one. `lumen language add de` begins another
+language. `.github/workflows/exhibition.yml` lints and tests what is pushed to GitHub.
+"""
+MEANINGS = {
+    MAIN_FILE: "who performs, which languages, which messages come and go",
+    "behaviors": "what it does: states; below `stories` visitors that follow a script, and what must happen",
+    "behaviors/words": "what it says and listens for, by language",
+    "fuzzy": "controllers, as that which lets the head follow a face",
+    "motions": "gestures",
+    "sounds": "what it plays",
+    "models": "the robot's body, and the hall of the simulation",
+    "schemas": "what may stand in the files and the messages: your editor completes with them",
+}
+
+WORKFLOW = """\
+# Lints and tests this exhibition on GitHub with each push.
+# {action} is Lumen's action: its repository, and the 40 digits of one of its commits.
+name: exhibition
+on: [push, pull_request]
+permissions: {{contents: read}}
+jobs:
+  check:
+    runs-on: ubuntu-latest
+    steps:
+      - uses: {checkout}
+      - uses: {action}
+        with: {{project: ., arguments: --strict}}
+      - run: lumen test
+"""
+
+
+def start_project(folder: Path, like: str, action: str) -> None:
+    """Put a copy of a starter there, with a README, what git ignores, and a workflow that uses `action`.
+
+    Raises OSError where that can't be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    shipped = shipped_root()
+    if like == "tour":
+        shutil.copy(shipped / MAIN_FILE, folder)
+        for name in PROJECT_FOLDERS:
+            shutil.copytree(shipped / name, folder / name, dirs_exist_ok=True)
+    else:
+        ignored = shutil.ignore_patterns(".lumen", "__pycache__")
+        shutil.copytree(shipped / EXAMPLES / like, folder, dirs_exist_ok=True, ignore=ignored)
+        (folder / "schemas").mkdir(exist_ok=True)
+        for schema in (shipped / "schemas").glob("*.schema.json"):
+            shutil.copy(schema, folder / "schemas")
+    for file in folder.rglob("*.yaml"):
+        _lead_to_schemas(file, folder)
+    (folder / ".gitignore").write_text(IGNORED, "utf-8")
+    (folder / "README.md").write_text(_readme(folder), "utf-8")
+    workflows = folder / ".github" / "workflows"
+    workflows.mkdir(parents=True)
+    (workflows / "exhibition.yml").write_text(WORKFLOW.format(action=action, checkout=CHECKOUT), "utf-8")
+
+
+def _lead_to_schemas(file: Path, folder: Path) -> None:
+    """Let an editor find the schemas of this folder, however deep the file lies."""
+    up = PurePosixPath(*[".."] * len(file.parent.relative_to(folder).parts), "schemas")
+    text = file.read_text("utf-8")
+    if (led := _SCHEMA.sub(rf"\g<1>{up}/\g<2>", text)) != text:
+        file.write_text(led, "utf-8")
+
+
+def _readme(folder: Path) -> str:
+    settings = main_settings(folder)
+    assert settings is not None  # a starter has no errors
+    there = {name: what for name, what in MEANINGS.items() if (folder / name).exists()}
+    rows = "\n".join(f"| `{name}{'/' if (folder / name).is_dir() else ''}` | {what} |" for name, what in there.items())
+    return README.format(name=settings.name, files=rows, story=settings.story)

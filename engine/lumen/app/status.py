@@ -1,0 +1,92 @@
+"""How an exhibition is, in one object: for `lumen status`, and for whoever else shows it."""
+
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+from lumen.interpreters.statechart import Snapshot, Timer
+from lumen.interpreters.statechart.nesting import ID_SEPARATOR, active_names
+from lumen.language.machines import MachineDefinition
+from lumen.language.modules import MEMORY, VISITOR_KEY
+from lumen.language.projects import Project
+from lumen.ports import Battery
+from lumen.robots.person_hold import StoppedBy
+
+
+class LastReload(NamedTuple):
+    """What came of saved files last, in which bundle, told how, and when (UTC)."""
+
+    at: datetime
+    verdict: str
+    bundle: str
+    text: str
+
+
+def status_of(
+    project: Project,
+    snapshot: Snapshot,
+    since: float,
+    *,
+    battery: object = None,
+    stopped: StoppedBy | None = None,
+    realtime: float = 1.0,
+    reloaded: LastReload | None = None,
+) -> dict[str, Any]:
+    """The status of an exhibition whose states were last changed at `since` [s]; JSON data.
+
+    Times are ISO 8601 in UTC, on the exhibition's clock, but those of stops and reloads, which people make. What is not
+    known is None: the `visitor` who has not said a name, the `battery` of a robot that has none.
+    """
+    return {
+        "robot": project.robot,
+        "configuration": sorted(active_names(snapshot)),
+        "since": _time(snapshot, since),
+        "language": snapshot.language,
+        "visitor": _visitor(project, snapshot),
+        "battery": battery.percentage if isinstance(battery, Battery) else None,
+        "timers": [
+            {"event": event, "due": _time(snapshot, due)} for due, event in sorted(_timers(project.machine, snapshot))
+        ],
+        "stopped": stopped is not None,
+        "stopped_by": stopped.by if stopped else None,
+        "realtime": realtime,
+        "bundle": project.hash,
+        "last_reload": _reload(reloaded) if reloaded else None,
+    }
+
+
+def _time(snapshot: Snapshot, at: float) -> str:
+    return iso(datetime.fromtimestamp(snapshot.epoch + at, UTC))
+
+
+def iso(moment: datetime) -> str:
+    """`2026-11-22T18:00:00.000Z`."""
+    return moment.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+
+
+def _visitor(project: Project, snapshot: Snapshot) -> str | None:
+    """The name in the key of the context that the memory looks at, too."""
+    memory = project.modules.get(MEMORY)
+    name = snapshot.context.get(str(memory.options.get("visitor", VISITOR_KEY)) if memory else VISITOR_KEY)
+    return name if isinstance(name, str) and name else None
+
+
+def _timers(machine: MachineDefinition, snapshot: Snapshot, prefix: str = "") -> Iterator[tuple[float, str]]:
+    for timer in snapshot.timers:
+        yield timer.due, prefix + _event(machine, timer)
+    for id, child in snapshot.invoked.items():
+        inner = machine.invoked[machine.invoked_behavior(child.state, id)]
+        yield from _timers(inner, child.snapshot, f"{prefix}{id}{ID_SEPARATOR}")
+
+
+def _event(machine: MachineDefinition, timer: Timer) -> str:
+    """`after 30 s in greet`, `wait in sing`; of a `send` the event's name."""
+    if timer.kind == "send":
+        return timer.event
+    state = machine.states[timer.state]
+    waited = next((t.awaited_time for t in state.transitions if t.timed and t.event == timer.event), timer.kind)
+    return f"{waited} in {state.name or machine.id}"
+
+
+def _reload(reloaded: LastReload) -> dict[str, Any]:
+    return {**reloaded._asdict(), "at": iso(reloaded.at)}

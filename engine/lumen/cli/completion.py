@@ -1,0 +1,34 @@
+"""`lumen completion SHELL`: what has a shell complete verbs, options and names of the project."""
+
+import argparse
+from importlib.resources import files
+
+from lumen.cli.completing import candidates
+from lumen.cli.main import command_line
+from lumen.cli.project_names import names_of
+from lumen.errors import UsageError
+
+SHELLS = ("bash", "zsh", "fish")
+WORDS = "words"
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Print a script that has a shell complete verbs, options, and the names of stories, motions, states and codes."
+    )
+    what = "`words` is what they ask: how the last of the words behind `lumen`, a dot before each, may go on"
+    parser.add_argument("shell", metavar="SHELL", choices=(*SHELLS, WORDS), help=f"{', '.join(SHELLS)}; {what}")
+    parser.add_argument("words", nargs="*", metavar="WORD", help=argparse.SUPPRESS)
+
+
+def run(options: argparse.Namespace) -> int:
+    """0."""
+    if options.shell == WORDS:
+        typed = [word.removeprefix(".") for word in options.words]
+        for word, says in candidates(command_line(typed[:1]), typed, names_of):
+            print(f"{word}\t{' '.join(says.replace('%%', '%').split())}")
+    elif options.words:
+        raise UsageError(f"write `lumen completion {options.shell}`, and nothing behind it")
+    else:
+        print(files("lumen.cli").joinpath("shells", f"lumen.{options.shell}").read_text(encoding="utf-8"), end="")
+    return 0

@@ -1,0 +1,57 @@
+"""`lumen goto STATE`: a running exhibition enters a state, as if a transition led there."""
+
+import argparse
+import sys
+from typing import Any
+
+from lumen.app.asking import OPERATOR_ANSWERS, OPERATOR_KEY, ask
+from lumen.cli.formats import configure_format, print_object
+from lumen.cli.person import person
+from lumen.cli.reach import configure_reach, reach
+from lumen.errors import UsageError
+from lumen.ports import Bus
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("state", metavar="STATE", help="by its id, or by its path such as guide.talking")
+    parser.add_argument("-y", "--yes", action="store_true", help="do not ask whether it shall")
+    configure_reach(parser)
+    configure_format(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 once it is there, 1 where it could not or nobody wants it."""
+    if options.format == "json" and not options.yes:
+        raise UsageError("--format json is for programs, which can't be asked: say --yes as well")
+    reached = reach(options)
+    try:
+        way = _ask(reached.bus, options.state, only="check")
+        if way["verdict"] != "refused":
+            if not options.yes and not _sure(options.state, way):
+                print("it stays where it is")
+                return 1
+            way = _ask(reached.bus, options.state, by=person())
+    finally:
+        reached.bus.close()
+    if options.format == "json":
+        print_object(way)
+        return int(way["verdict"] == "refused")
+    if way["verdict"] == "refused":
+        print(f"lumen goto: {way['reason']}", file=sys.stderr)
+        return 1
+    print(f"in {', '.join(way['entered'])}")
+    return 0
+
+
+def _ask(bus: Bus, state: str, **more: str) -> dict[str, Any]:
+    answer: dict[str, Any] = next(ask(bus, OPERATOR_KEY, {"ask": "goto", "state": state, **more}, OPERATOR_ANSWERS))
+    return answer
+
+
+def _sure(state: str, way: dict[str, Any]) -> bool:
+    """Whether whoever is asked says yes; what it leaves and enters is said before."""
+    left = f"leaves {', '.join(way['exited'])} and " if way["exited"] else ""
+    print(f"It {left}enters {', '.join(way['entered'])}, whatever any guard says.")
+    if not sys.stdin.isatty():
+        raise UsageError("goto asks first, but this is not a terminal: say --yes")
+    return input(f"Go to {state}? [y/N] ").strip().lower() in ("y", "yes", "ya")

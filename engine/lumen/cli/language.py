@@ -1,0 +1,106 @@
+"""`lumen language`: begin another language, and see what is missing in one."""
+
+import argparse
+import json
+import re
+from pathlib import Path
+
+from lumen.cli.fixing import write
+from lumen.cli.tables import table
+from lumen.errors import ProjectError, UsageError
+from lumen.language.diagnostics import did_you_mean, has_errors
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.files import read_files
+from lumen.loading.own_project import own_project
+from lumen.loading.project import draft
+from lumen.rules import check_files
+from lumen.rules.translation import TO_DO, LanguageEntry, Untranslated, language_entries, untranslated, with_language
+
+CODE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
+VERBS = {
+    "list": "the languages of the project, and how much of each is there",
+    "add LANG": f"write a place for it beside each text and phrase, with {TO_DO}and the words to translate",
+    "check [LANG…]": "say what is missing in these languages, or in all: exit code 1 where anything is",
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = "\n".join(["what to do:", *(f"  {verb:15} {what}" for verb, what in VERBS.items())])
+    parser.add_argument("what", metavar="WHAT", choices=[verb.split()[0] for verb in VERBS], help="see below")
+    parser.add_argument("languages", metavar="LANG", nargs="*", help="a code, as `de`")
+    parser.add_argument(
+        "--from", dest="source", metavar="LANG", help="add: which words stand there (default: the first)"
+    )
+    parser.add_argument("--project", metavar="DIR", help="default: the one here or above")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0, or for `check` 1 where anything is missing."""
+    root = own_project(options.project)
+    files = read_files(root)
+    _, diagnostics = check_files(root, files)
+    if has_errors(diagnostics):
+        raise ProjectError(diagnostics)
+    found = draft(files)
+    if options.what == "add":
+        return _add(options, root, files, found)
+    spoken = found.settings.languages if found.settings else ()
+    for language in options.languages:
+        if language not in spoken:
+            raise UsageError(f"the project does not speak `{language}`: {did_you_mean(language, spoken, 'it speaks')}")
+    entries = language_entries(found)
+    missing = {language: list(untranslated(entries, language)) for language in options.languages or spoken}
+    if options.format == "json":
+        print(json.dumps({"languages": {name: _said(entries, gaps) for name, gaps in missing.items()}}))
+    elif options.what == "list":
+        rows = [[name, str(len(entries)), str(len(gaps))] for name, gaps in missing.items()]
+        print(table(["language", "texts and phrases", "missing"], rows))
+    else:
+        _tell(entries, missing)
+    return int(options.what == "check" and any(missing.values()))
+
+
+def _add(options: argparse.Namespace, root: Path, files: dict[str, bytes], found: ProjectDraft) -> int:
+    spoken = found.settings.languages if found.settings else ()
+    if len(options.languages) != 1:
+        raise UsageError("write `lumen language add LANG`, with a code such as `de`")
+    [language] = options.languages
+    source = options.source or spoken[0]
+    if language in spoken:
+        raise UsageError(
+            f"the project speaks `{language}` already: `lumen language check {language}` says what is missing"
+        )
+    if not CODE.fullmatch(language):
+        raise UsageError(f"`{language}` is no language's code: write two or three small letters, as `de`")
+    if source not in spoken:
+        raise UsageError(f"the project does not speak `{source}`: {did_you_mean(source, spoken, 'it speaks')}")
+    changed = with_language(found, files, language, source)
+    after = {**files, **changed}
+    _, diagnostics = check_files(root, after)
+    if has_errors(diagnostics):
+        errors = [str(d) for d in diagnostics if d.severity.value == "error"]
+        raise UsageError(f"`{language}` can't be added, nothing was written: {errors[0]}")
+    write(root, files, changed)
+    for file, content in sorted(changed.items()):
+        print(f"{file}: {content.count(TO_DO.encode()) - files[file].count(TO_DO.encode())} to translate")
+    print(f"Translate what begins with {TO_DO.strip()}; `lumen language check {language}` says what is left.")
+    print(f"The robot speaks it after the action `language: {language}`, or with `lumen run --language {language}`.")
+    return 0
+
+
+def _tell(entries: list[LanguageEntry], missing: dict[str, list[Untranslated]]) -> None:
+    for language, gaps in missing.items():
+        for place, text in gaps:
+            print(f"{place} {language} is missing: {text}")
+    for language, gaps in missing.items():
+        print(
+            f"{language}: "
+            + (f"{len(gaps)} of {len(entries)} are missing" if gaps else f"all {len(entries)} are there")
+        )
+
+
+def _said(entries: list[LanguageEntry], gaps: list[Untranslated]) -> dict[str, object]:
+    places = [{"file": p.file, "line": p.line, "column": p.column, "text": text} for p, text in gaps]
+    return {"texts": len(entries), "missing": places}

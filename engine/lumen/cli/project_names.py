@@ -1,0 +1,58 @@
+"""The names of the project around us, for who completes a command line: as many as can be had in a moment."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+
+import lumen
+from lumen.errors import LumenError
+from lumen.loading.packaged import find_project
+from lumen.loading.project import main_settings
+
+
+def names_of(placeholder: str) -> Sequence[str]:
+    """What the project here, or the shipped one, has for the placeholder of an argument; none where nobody knows."""
+    found = PLACEHOLDERS.get(placeholder)
+    return sorted(found(find_project())) if found else ()
+
+
+def _files(folder: str) -> Callable[[Path], Iterable[str]]:
+    return lambda root: [file.stem for file in (root / folder).glob("*.yaml")]
+
+
+def _codes(root: Path) -> Iterable[str]:
+    from lumen.rules.codes import CODES, FAMILIES  # with all rules: only for who asks for codes
+
+    return [*CODES, *FAMILIES]
+
+
+def _languages(root: Path) -> Iterable[str]:
+    settings = main_settings(root)
+    return settings.languages if settings else ()
+
+
+def _routes(root: Path) -> Iterable[str]:
+    settings = main_settings(root)
+    return settings.routes if settings else ()
+
+
+def _states(root: Path) -> Iterable[str]:
+    try:
+        project = lumen.load(root)
+    except LumenError:
+        return ()
+    return {state.name for state in project.machine.states.values() if state.path}
+
+
+PLACEHOLDERS: Mapping[str, Callable[[Path], Iterable[str]]] = {
+    "STORY": _files("behaviors/stories"),
+    "[PROJECT] STORY": _files("behaviors/stories"),
+    "MOTION": _files("motions"),
+    "BEHAVIOR": _files("behaviors"),
+    "CODE": _codes,
+    "CODES": _codes,
+    "LANG": _languages,
+    "STATE": _states,
+    "ROUTE": _routes,
+    "OLD": lambda root: ("live", "HEAD"),
+}
+"""By the word that stands for an argument in `--help`, else by what it is called; others are files, or typed freely."""

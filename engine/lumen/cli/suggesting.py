@@ -1,0 +1,51 @@
+"""A word of the command line that is unknown is answered with the one that was probably meant."""
+
+import argparse
+from collections.abc import Sequence
+from typing import Any
+
+from lumen.language.diagnostics import did_you_mean, nearest
+
+
+class Suggesting(argparse.ArgumentParser):
+    """Python's parser, which knows what comes near to a verb, an option or a choice that is none."""
+
+    @property
+    def options(self) -> list[str]:
+        """`--strict`, `-o` and all others that one can write."""
+        return [word for action in self._actions for word in action.option_strings]
+
+    @property
+    def verbs(self) -> dict[str, "Suggesting"]:
+        """The parsers of the words that may come first, where there are such."""
+        found = (action for action in self._actions if isinstance(action, argparse._SubParsersAction))
+        return {name: parser for action in found for name, parser in action.choices.items()}
+
+    def refuse(self, words: Sequence[str]) -> None:
+        """End with 2 and say of the first of these words, which nobody understood, what may have been meant."""
+        word = next((word for word in words if word.startswith("-")), words[0])
+        if not word.startswith("-"):
+            self.error(f"there is a word too much: `{word}`")
+        name = word.partition("=")[0]
+        self.error(f"there is no option `{name}`{_meant(name, self.options)}")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        if action.choices is None or value in action.choices:
+            return
+        if isinstance(action, argparse._SubParsersAction):
+            raise argparse.ArgumentError(None, f"there is no verb `{value}`{_meant(value, action.choices)}")
+        hint = did_you_mean(value, map(str, action.choices), "one of")
+        raise argparse.ArgumentError(action, f"`{value}` is none of its words: {hint}")
+
+
+def parse(parser: Suggesting, arguments: Sequence[str]) -> argparse.Namespace:
+    """What the words say; ends the program with 2 where they say nothing, with 0 after `--help`."""
+    options, left = parser.parse_known_args(arguments)
+    if left:
+        parser.verbs[options.verb].refuse(left)
+    return options
+
+
+def _meant(word: str, known: Any) -> str:
+    near = nearest(word, known)
+    return f": did you mean `{near}`?" if near else "; --help lists them"

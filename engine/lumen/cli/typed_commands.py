@@ -1,0 +1,80 @@
+"""What a visitor who is typed does besides speaking: `/touch head 3s`."""
+
+from collections.abc import Callable
+
+from lumen.app.narrator import Narrator
+from lumen.errors import UsageError
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.durations import seconds
+from lumen.language.stories import TouchSensor
+from lumen.runtime.visitor import VisitorActor
+
+TAP = 0.5
+"""How long a hand stays where nothing is said [s]."""
+PLACES = {
+    "head": "FrontTactil",
+    "chest": "ChestButton",
+    "left hand": "HandLeftBack",
+    "right hand": "HandRightBack",
+    "left bumper": "LeftBumper",
+    "right bumper": "RightBumper",
+}
+"""Where people touch a NAO, in their words."""
+HELP = """\
+What you type is what the visitor says. What begins with / is done:
+  /touch head       a hand on its head; also {places}
+  /touch head 3s    and it stays there for so long (else {tap})
+  /help             this"""
+
+
+class TypedCommands:
+    """Does what was typed after a `/`; `tick` takes hands away again when their time is over."""
+
+    def __init__(self, visitor: VisitorActor, narrator: Narrator) -> None:
+        self._visitor, self._narrator = visitor, narrator
+        self._hands: dict[str, float] = {}
+        self._verbs: dict[str, Callable[[list[str], float], None]] = {"touch": self._touch, "help": self._help}
+
+    def do(self, line: str, now: float) -> None:
+        """Do it at `now` [s], or say in a line why that can't be."""
+        verb, *words = line.removeprefix("/").split() or [""]
+        try:
+            if verb not in self._verbs:
+                raise UsageError(
+                    f"`/{verb}` is nothing that can be done: {did_you_mean(verb, self._verbs, 'there are')}"
+                )
+            self._verbs[verb](words, now)
+        except UsageError as error:
+            self._narrator.note(str(error))
+
+    def tick(self, now: float) -> None:
+        for sensor in [sensor for sensor, until in self._hands.items() if until <= now]:
+            del self._hands[sensor]
+            self._feel(sensor, pressed=False)
+
+    def _touch(self, words: list[str], now: float) -> None:
+        length = seconds(words[-1]) if words else None
+        place = " ".join(words if length is None else words[:-1])
+        known = self._sensors()
+        sensor = known.get(place.casefold())
+        if sensor is None:
+            what = f"the robot has no `{place}` to be touched" if place else "write where, as in `/touch head`"
+            raise UsageError(f"{what}: {did_you_mean(place, self._places(), 'there are')}")
+        if sensor not in self._hands:
+            self._feel(sensor, pressed=True)
+        self._hands[sensor] = now + (TAP if length is None else length)
+
+    def _help(self, _words: list[str], _now: float) -> None:
+        others = [place for place in self._places() if place != "head"]
+        self._narrator.note(HELP.format(places=", ".join(others), tap=f"{TAP * 1000:g}ms"))
+
+    def _sensors(self) -> dict[str, str]:
+        """The sensors of this robot, by what people call them and by their names."""
+        return {**self._places(), **{sensor.casefold(): sensor for sensor in self._visitor.sensors}}
+
+    def _places(self) -> dict[str, str]:
+        return {place: sensor for place, sensor in PLACES.items() if sensor in self._visitor.sensors}
+
+    def _feel(self, sensor: str, *, pressed: bool) -> None:
+        self._visitor.touch(sensor, pressed)
+        self._narrator.visitor_action(TouchSensor(sensor, pressed))

@@ -1,0 +1,56 @@
+"""`lumen upgrade`: a project's files, rewritten for the vocabulary that this Lumen reads."""
+
+import argparse
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from lumen.app.lint.targets import checked
+from lumen.cli.fixing import diff, write
+from lumen.cli.render.terminal_text import clean, counted
+from lumen.cli.terminal import coloured
+from lumen.errors import UsageError
+from lumen.language.diagnostics import has_errors
+from lumen.language.vocabulary import VOCABULARY
+from lumen.loading.files import read_files
+from lumen.loading.own_project import own_project
+from lumen.rules.upgrading import Rewriting, upgraded
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("project", nargs="?", metavar="PROJECT", help="its folder; default: here or above")
+    parser.add_argument("--diff", action="store_true", help="print what would be written, and write nothing")
+    parser.add_argument("--check", action="store_true", help="write nothing; 1 where something is to be rewritten")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="how to print it (default: text)")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 where the files say the newest vocabulary now; 1 where errors are left, or with --check where they did not."""
+    if options.diff and (options.check or options.format != "text"):
+        raise UsageError("--diff shows the lines that change: leave out --check and --format")
+    root = own_project(Path(options.project) if options.project else None)
+    before = read_files(root)
+    after, done = upgraded(before)
+    if options.diff:
+        print("\n".join(diff(root, before, after, coloured())))
+        return 0
+    if not options.check:
+        write(root, before, after)
+    left = None if options.check else has_errors(checked(root, after))
+    if options.format == "json":
+        rows = [{"file": each.place.file, "line": each.place.line, "why": each.why} for each in done]
+        print(json.dumps({"vocabulary": VOCABULARY, "rewritten": rows, "errors": left}, ensure_ascii=False))
+    else:
+        print("\n".join(_text(done, left)))
+    return int(bool(done) if left is None else left)
+
+
+def _text(done: Sequence[Rewriting], left: bool | None) -> Iterator[str]:
+    for each in done:
+        yield clean(f"{each.place.file}:{each.place.line}  {each.why}")
+    if left is None:
+        yield f"{counted(len(done), 'place')} to rewrite for vocabulary {VOCABULARY}"
+        return
+    yield f"{counted(len(done), 'place')} rewritten; the files are written for vocabulary {VOCABULARY}"
+    if left:
+        yield "there are errors in them: `lumen lint` shows these"

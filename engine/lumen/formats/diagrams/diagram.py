@@ -1,0 +1,38 @@
+"""What a picture of a behaviour shows: boxes within boxes, and arrows between them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class StateBox:
+    """A state; `rows` say what leads on from it, `marked` is whether the picture is about it.
+
+    `first` is whether the state around it begins with it. Of a `parallel` one the boxes within stand side by side.
+    """
+
+    id: str
+    title: str
+    rows: tuple[str, ...] = ()
+    within: tuple["StateBox", ...] = ()
+    parallel: bool = False
+    final: bool = False
+    first: bool = False
+    marked: bool = False
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """A picture: its outermost boxes, and the arrows between boxes by their ids, each once, in order."""
+
+    title: str
+    boxes: tuple[StateBox, ...]
+    arrows: tuple[tuple[str, str], ...] = field(default=())
+
+    def all(self) -> Iterator[StateBox]:
+        """Every box, the outer ones first."""
+        waiting = list(self.boxes)
+        while waiting:
+            box = waiting.pop(0)
+            yield box
+            waiting = [*box.within, *waiting]

@@ -1,0 +1,133 @@
+"""What of a behaviour a picture shows: the whole, one region, or one state with its neighbours."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+
+from lumen.errors import UsageError
+from lumen.formats.captions import invocation
+from lumen.formats.diagrams.diagram import Diagram, StateBox
+from lumen.formats.diagrams.transition_rows import made, rows_of, short_name
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.machines import MachineDefinition, State, StateKind
+
+MAX_STATES_WITH_ROWS = 16
+"""With more, the whole shows no more than states and arrows."""
+MAX_ARROWS_IN = 5
+"""With more arrows a state is a hub: they would hide the others, and its box counts them."""
+
+
+def overview(machine: MachineDefinition) -> Diagram:
+    """The whole behaviour, the behaviours that it invokes as rows."""
+    root = machine.root
+    rows = len(machine.states) <= MAX_STATES_WITH_ROWS
+    box = _box(machine, root, rows=rows)
+    return Diagram(machine.id, (box,) if root.kind is StateKind.PARALLEL or box.rows else box.within, _arrows(machine))
+
+
+def region(machine: MachineDefinition, name: str) -> Diagram:
+    """What is within one state, with what leads on. Raises UsageError where there is none of that name."""
+    state = _named(machine, name, lambda state: bool(state.children))
+    return Diagram(f"{machine.id}: {state.name}", (_box(machine, state, rows=True),), _arrows(machine, state.path))
+
+
+def neighbourhood(machine: MachineDefinition, name: str) -> Diagram:
+    """One state, those that lead there and those that it leads to. Raises UsageError where there is none."""
+    state = _named(machine, name, lambda _: True)
+    around = [state, *(machine.states[path] for path in _above(machine, state))]
+    out = {target for each in around for t in each.transitions for target in t.targets}
+    inward = [s for s in machine.states.values() if any(state.path in t.targets for t in s.transitions)]
+    before = [_alone(machine, s, tuple(rows_of(machine, s, state.path))) for s in inward if s is not state]
+    here = [row for each in around for row in _rows(machine, each)]
+    own = _alone(machine, state, tuple(dict.fromkeys(here)), marked=True)
+    after = [_alone(machine, machine.states[path]) for path in machine.states if path in out and path != state.path]
+    seen = {box.id for box in before}
+    boxes = (*before, own, *(box for box in after if box.id not in seen))
+    arrows = [*((box.id, own.id) for box in before), *((own.id, box.id) for box in after)]
+    return Diagram(f"{machine.id}: {state.name}", boxes, tuple(arrows))
+
+
+def _box(machine: MachineDefinition, state: State, *, rows: bool, first: bool = False) -> StateBox:
+    children = [machine.states[path] for path in state.children]
+    within = [child for child in children if child.kind is not StateKind.HISTORY and not made(child.where)]
+    begins = [within[0].path] if state.for_each else state.initial
+    hub = _led_here(machine)[state.path]
+    said = list(_rows(machine, state)) if rows else list(_runs(state))
+    if hub > MAX_ARROWS_IN:
+        said.append(f"← from {hub} states")
+    return StateBox(
+        state.path or machine.id,
+        _title(machine, state),
+        tuple(said),
+        tuple(_box(machine, child, rows=rows, first=child.path in begins) for child in within),
+        parallel=state.kind is StateKind.PARALLEL,
+        final=state.kind is StateKind.FINAL,
+        first=first,
+    )
+
+
+def _alone(machine: MachineDefinition, state: State, rows: tuple[str, ...] = (), *, marked: bool = False) -> StateBox:
+    title = _title(machine, state)
+    return StateBox(state.path or machine.id, title, rows, final=state.kind is StateKind.FINAL, marked=marked)
+
+
+def _title(machine: MachineDefinition, state: State) -> str:
+    return short_name(machine.states, state.path) if state.path else machine.id
+
+
+def _rows(machine: MachineDefinition, state: State) -> Iterable[str]:
+    yield from _runs(state)
+    yield from rows_of(machine, state)
+
+
+def _runs(state: State) -> Iterable[str]:
+    """What goes on in it besides its states: other behaviours, rounds."""
+    yield from (f"invokes {invocation(invoke)}" for invoke in state.invoke)
+    if state.for_each:
+        yield f"for each {state.for_each.variable}"
+
+
+def _arrows(machine: MachineDefinition, within: str = "") -> tuple[tuple[str, str], ...]:
+    """Which states lead to which; none to a hub, or between a state and what is within it."""
+    hubs = {path for path, count in _led_here(machine).items() if count > MAX_ARROWS_IN}
+    found: dict[tuple[str, str], None] = {}
+    for state in machine.states.values():
+        for target in (target for t in state.transitions for target in t.targets):
+            end = _drawn(machine, target)
+            nested = any(_inside(one, other) for one, other in ((state.path, end), (end, state.path)))
+            if not nested and end not in hubs and _inside(state.path, within) and _inside(end, within):
+                found[state.path or machine.id, end] = None
+    return tuple(found)
+
+
+def _drawn(machine: MachineDefinition, path: str) -> str:
+    """A state that has a box: of a history the one around it."""
+    state = machine.states[path]
+    return state.parent or "" if state.kind is StateKind.HISTORY else path
+
+
+def _led_here(machine: MachineDefinition) -> Counter[str]:
+    """How many other states lead to each."""
+    pairs = {(s.path, _drawn(machine, e)) for s in machine.states.values() for t in s.transitions for e in t.targets}
+    return Counter(end for start, end in pairs if start != end)
+
+
+def _inside(path: str, other: str) -> bool:
+    """Whether a state is another one, or within it."""
+    return not other or path == other or path.startswith(f"{other}.")
+
+
+def _above(machine: MachineDefinition, state: State) -> Iterable[str]:
+    parent = state.parent
+    while parent:
+        yield parent
+        parent = machine.states[parent].parent
+
+
+def _named(machine: MachineDefinition, name: str, wanted: Callable[[State], bool]) -> State:
+    states = [state for state in machine.states.values() if state.path and wanted(state)]
+    ends = [state for state in states if state.path.rpartition(".")[2] == name]
+    found = [state for state in states if name in (state.name, state.path)] or (ends if len(ends) == 1 else [])
+    if not found:
+        hint = did_you_mean(name, [state.name for state in states], "there are")
+        raise UsageError(f"`{machine.id}` has no such state `{name}`: {hint}")
+    return found[0]

@@ -1,0 +1,60 @@
+"""Entering a state because a person says so: as if a transition led there from where the machine stands."""
+
+from collections.abc import Iterator
+
+from lumen.errors import UsageError
+from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
+from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.invocations import open_context
+from lumen.interpreters.statechart.macrostep import complete
+from lumen.interpreters.statechart.microstep import microstep
+from lumen.interpreters.statechart.plans import Configuration
+from lumen.interpreters.statechart.values import Snapshot, Step
+from lumen.language.diagnostics import did_you_mean
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition, StateKind, Transition
+
+
+def entered_directly(machine: MachineDefinition, snapshot: Snapshot, name: str, event: Event) -> Step:
+    """The step that enters a state at once, whatever any guard says; `event` says who wanted it, and when.
+
+    Left is only what excludes it: regions beside it stay as they are. A state that is active is left and entered again.
+    `name` is an alias or a path, or the end of one where no other state has it. Raises UsageError where there is no
+    such state, or the machine is at its end.
+    """
+    program = compiled(machine)
+    target = _named(program.chart, name)
+    context = open_context(program, snapshot, event, max(snapshot.at, event.at))
+    if context.configuration.finished:
+        raise UsageError(f"`{machine.id}` is at its end: nothing can be entered any more")
+    source, targets = _way(target, context.configuration)
+    where = tuple(node.path for node in targets)
+    transition = CompiledTransition(Transition(source.path, event.name, where), source, targets)
+    microstep(context, program.planner.plan(context.configuration, transition.alone, context.history))
+    return complete(context)
+
+
+def _way(target: StateNode, standing: Configuration) -> tuple[StateNode, tuple[StateNode, ...]]:
+    """From where a transition leads there that leaves nothing else: the innermost active state around it."""
+    assert target.parent is not None  # only the document has none, and it has no name
+    if target.parent.kind is StateKind.PARALLEL and target in standing.nodes and target.initial:
+        return target, target.initial
+    return next(node for node in target.ancestors if node in standing.nodes), (target,)
+
+
+def _named(chart: Chart, name: str) -> StateNode:
+    nodes = [node for node in chart.nodes.values() if node.path]
+    found = [node for node in nodes if name in (node.name, node.path)]
+    found = found or [node for node in nodes if node.path.rpartition(".")[2] == name]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise UsageError(f"`{name}` is the end of several: {', '.join(f'`{node.path}`' for node in found)}")
+    raise UsageError(f"there is no state `{name}`: {did_you_mean(name, _names(nodes), 'there are')}")
+
+
+def _names(nodes: list[StateNode]) -> Iterator[str]:
+    for node in nodes:
+        yield node.name
+        if node.name == node.path:
+            yield node.path.rpartition(".")[2]

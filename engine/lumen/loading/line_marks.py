@@ -1,0 +1,94 @@
+"""The quotes and brackets of one line of YAML, read without the lines around it: what is open at its end."""
+
+from typing import NamedTuple
+
+_PAIRS = {"[": "]", "{": "}"}
+
+
+class Mark(NamedTuple):
+    """A sign and its column, from 0."""
+
+    sign: str
+    column: int
+
+
+class LineMarks(NamedTuple):
+    """What a line leaves open or closes too much, by columns from 0.
+
+    `quote` is the one that opens and is not closed, `ended` a quoted text with something behind it other than a comma,
+    a colon or a closing bracket: where it opens and where it closes. `open` are brackets that are not closed, the outer
+    ones first, `surplus` those that close nothing or another kind; `stop` is where the line ends but for blanks and a
+    comment. `braces` are pairs `{{` outside of quotes.
+    """
+
+    quote: Mark | None
+    ended: tuple[Mark, Mark] | None
+    open: tuple[Mark, ...]
+    surplus: tuple[Mark, ...]
+    stop: int
+    braces: tuple[int, ...]
+
+
+def marks_of(line: str) -> LineMarks:
+    """The marks of a line that does not begin within a quoted text."""
+    opened, surplus, braces, bracketed = list[Mark](), list[Mark](), list[int](), False
+    ended: tuple[Mark, Mark] | None = None
+    i, token, stop = 0, True, 0  # `token`: here a text may begin, and a quote opens it
+    while i < len(line):
+        sign = line[i]
+        if sign == "#" and (i == 0 or line[i - 1] in " \t"):
+            break
+        if sign in "'\"" and token:
+            close = _closing(line, i)
+            if close < 0:
+                return LineMarks(Mark(sign, i), ended, (*opened,), (*surplus,), len(line.rstrip()), (*braces,))
+            if ended is None and not _well_ended(line, close, bool(opened)):
+                ended = Mark(sign, i), Mark(sign, close)
+            i, token = close, False
+        elif sign in _PAIRS and (token or opened):
+            if line.startswith("{{", i) and token:
+                braces.append(i)
+            opened.append(Mark(sign, i))
+            token = bracketed = True
+        elif sign in _PAIRS.values() and (bracketed or token):
+            if opened and _PAIRS[opened[-1].sign] == sign:
+                opened.pop()
+            else:
+                surplus.append(Mark(sign, i))
+            token = False
+        elif not sign.isspace():
+            blank = line[i + 1 : i + 2] in ("", " ")
+            token = (sign == "," and bool(opened)) or (sign == ":" and blank) or (sign == "-" and blank and token)
+        if not line[i].isspace():
+            stop = i + 1
+        i += 1
+    return LineMarks(None, ended, (*opened,), (*surplus,), stop, (*braces,))
+
+
+def closers(brackets: tuple[Mark, ...]) -> str:
+    """What closes these brackets, the inner ones first."""
+    return "".join(_PAIRS[mark.sign] for mark in reversed(brackets))
+
+
+def _closing(line: str, start: int) -> int:
+    """Where the quoted text that begins there ends, -1 where it does not."""
+    quote, i = line[start], start + 1
+    while i < len(line):
+        if quote == '"' and line[i] == "\\":
+            i += 1
+        elif line[i] == quote:
+            if quote == "'" and line.startswith("''", i):
+                i += 1
+            else:
+                return i
+        i += 1
+    return -1
+
+
+def _well_ended(line: str, close: int, within: bool) -> bool:
+    """Whether what comes behind a quoted text may stand there."""
+    rest = line[close + 1 :]
+    text = rest.lstrip()
+    if not text or (text[0] == "#" and rest != text):
+        return True
+    return text[0] == ":" or (within and text[0] in ",]}")

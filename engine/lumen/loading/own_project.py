@@ -1,0 +1,64 @@
+"""The project that somebody wants judged: their own, never the shipped one for want of another."""
+
+import os
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+
+from lumen.errors import UsageError
+from lumen.loading.packaged import MAIN_FILE, find_project, project_above
+
+MAX_FOLDERS = 5_000
+"""How many folders are looked into, which takes a fraction of a second; a project has its place near the top."""
+NAMED = 8
+_PASSED_OVER = ("node_modules", "__pycache__", "site-packages")
+
+
+def own_project(path: str | Path | None = None) -> Path:
+    """The folder of a project: `path`, else the working directory or the nearest parent with a lumen.yaml.
+
+    Raises UsageError where there is none, with those that are seen below. A folder that was named and has none in it
+    or below is returned all the same: whoever reads its files says what is missing.
+    """
+    folder = project_above(Path.cwd()) if path is None else find_project(path)
+    if folder and ((folder / MAIN_FILE).is_file() or (path is not None and not any(projects_below(folder)))):
+        return folder
+    where = f"in {folder.absolute()}" if folder else f"in {Path.cwd()} or above"
+    raise UsageError(f"there is no {MAIN_FILE} {where}: {_instead(folder or Path.cwd())}")
+
+
+def projects_below(folder: Path) -> Iterator[Path]:
+    """Folders with a lumen.yaml, the upper ones first by name; what is hidden or installed is passed over, and so is
+    what lies within a project.
+    """
+    waiting, looked = [folder], 0
+    while waiting and looked < MAX_FOLDERS:
+        level, waiting = waiting, []
+        for here in level:
+            looked += 1
+            if here != folder and (here / MAIN_FILE).is_file():
+                yield here
+            elif looked < MAX_FOLDERS:
+                waiting += _folders(here)
+
+
+def _folders(here: Path) -> list[Path]:
+    try:
+        with os.scandir(here) as entries:
+            names = [one.name for one in entries if one.is_dir(follow_symlinks=False)]
+    except OSError:
+        return []
+    return [here / name for name in sorted(names) if not name.startswith(".") and name not in _PASSED_OVER]
+
+
+def _instead(folder: Path) -> str:
+    below = [_named(one) for one in islice(projects_below(folder), NAMED + 1)]
+    if not below:
+        return "name the folder of a project, or make one with `lumen new DIR`"
+    more = ", …" if len(below) > NAMED else ""
+    return f"name one of the projects below: {', '.join(f'`{name}`' for name in below[:NAMED])}{more}"
+
+
+def _named(folder: Path) -> str:
+    """As one types it from here."""
+    return Path(os.path.relpath(folder)).as_posix()

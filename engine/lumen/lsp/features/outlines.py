@@ -1,0 +1,50 @@
+"""What a file, or the whole project, makes known; what of a file folds, and which other files it names."""
+
+from lsprotocol import types as lsp
+
+from lumen.lsp import folding, links, symbols
+from lumen.lsp.language_server import LanguageServer
+from lumen.lsp.protocol import icon
+
+MAX_FOUND_SYMBOLS = 300
+
+
+def outline(server: LanguageServer, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
+    if (found := server.file(params.text_document.uri)) is None:
+        return []
+    encoder = server.encoder(found[0])
+    return [encoder.symbol(symbol) for symbol in symbols.symbols(*found)]
+
+
+def search(server: LanguageServer, params: lsp.WorkspaceSymbolParams) -> list[lsp.WorkspaceSymbol]:
+    """What the open projects make known under a name in which what is asked for is found, letter by letter."""
+    found: list[lsp.WorkspaceSymbol] = []
+    for analysis in server.analyses():
+        encoder = server.encoder(analysis)
+        for use in symbols.search(analysis, params.query):
+            location = encoder.location(use.place)
+            found.append(lsp.WorkspaceSymbol(location, use.name, icon(use.kind), container_name=str(use.kind)))
+            if len(found) == MAX_FOUND_SYMBOLS:
+                return found
+    return found
+
+
+def fold(server: LanguageServer, params: lsp.FoldingRangeParams) -> list[lsp.FoldingRange]:
+    found = server.file(params.text_document.uri)
+    document = found[0].documents.get(found[1]) if found else None
+    kinds = (None, lsp.FoldingRangeKind.Comment)
+    return [
+        lsp.FoldingRange(each.first - 1, each.last - 1, kind=kinds[each.comment])
+        for each in (folding.folds(document) if document else ())
+    ]
+
+
+def link(server: LanguageServer, params: lsp.DocumentLinkParams) -> list[lsp.DocumentLink]:
+    if (found := server.file(params.text_document.uri)) is None:
+        return []
+    encoder = server.encoder(found[0])
+    ranges = encoder.ranges(found[1])
+    return [
+        lsp.DocumentLink(ranges.range(each.place), target=encoder.uri(each.target), tooltip=each.target)
+        for each in links.links(*found)
+    ]

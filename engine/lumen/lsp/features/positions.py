@@ -1,0 +1,55 @@
+"""What an editor asks about a position: completion, hover, where a name is made known and where it is used."""
+
+from collections.abc import Callable
+from typing import Any
+
+from lsprotocol import types as lsp
+
+from lumen.lsp import completion, definitions, hover
+from lumen.lsp.analysis import Analysis
+from lumen.lsp.language_server import LanguageServer
+
+TRIGGERS = lsp.CompletionOptions(trigger_characters=[".", "#", "'", "{", " ", ":"])
+
+
+def complete(server: LanguageServer, params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
+    def items(analysis: Analysis, file: str, line: int, column: int) -> list[lsp.CompletionItem]:
+        encoder = server.encoder(analysis)
+        found = completion.complete(analysis, file, line, column)
+        return [encoder.item(item, file, line, column, order) for order, item in enumerate(found)]
+
+    return server.asked(params, items) or []
+
+
+async def show(server: LanguageServer, params: lsp.HoverParams) -> lsp.Hover | None:
+    await server.settled(params.text_document.uri)
+    text = server.asked(params, hover.hover)
+    return lsp.Hover(lsp.MarkupContent(lsp.MarkupKind.Markdown, text)) if text else None
+
+
+def define(server: LanguageServer, params: lsp.DefinitionParams) -> list[lsp.Location]:
+    return _places(server, params, definitions.definitions)
+
+
+def refer(server: LanguageServer, params: lsp.ReferenceParams) -> list[lsp.Location]:
+    return _places(server, params, definitions.uses)
+
+
+def highlight(server: LanguageServer, params: lsp.DocumentHighlightParams) -> list[lsp.DocumentHighlight]:
+    """Every use of a name in its file; where it is made known, and where it is read."""
+
+    def marks(analysis: Analysis, file: str, line: int, column: int) -> list[lsp.DocumentHighlight]:
+        use, ranges = analysis.index.at(file, line, column), server.encoder(analysis).ranges(file)
+        kinds = (lsp.DocumentHighlightKind.Read, lsp.DocumentHighlightKind.Write)
+        return [
+            lsp.DocumentHighlight(ranges.range(other.place), kinds[other.defines])
+            for other in (analysis.index.of(use) if use else ())
+            if other.text and other.place.file == file
+        ]
+
+    return server.asked(params, marks) or []
+
+
+def _places(server: LanguageServer, params: Any, find: Callable[..., list[Any]]) -> list[lsp.Location]:
+    found = server.at(params.text_document.uri, params.position)
+    return [server.encoder(found[0]).location(place) for place in find(*found)] if found else []

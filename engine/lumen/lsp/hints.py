@@ -1,0 +1,74 @@
+"""What a time means, shown beside it: an `after` among what its state does, a beat in seconds."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from lumen.language.diagnostics import Place
+from lumen.lsp.analysis import Analysis
+from lumen.lsp.grammar import kind_of
+from lumen.rules.timing import duration
+
+
+class Hint(NamedTuple):
+    """A word behind a place, and what more there is to say of it."""
+
+    place: Place
+    text: str
+    more: str
+
+
+def hints(analysis: Analysis, file: str) -> Iterator[Hint]:
+    """The hints of a file, in its order."""
+    match kind_of(file):
+        case "behavior":
+            yield from _afters(analysis, file)
+        case "motion":
+            yield from _beats(analysis, file)
+
+
+def _afters(analysis: Analysis, file: str) -> Iterator[Hint]:
+    """How an `after` compares with the `do` beside it: it counts from when the state is entered."""
+    draft, document = analysis.draft, analysis.documents.get(file)
+    machine = draft.behaviors.get(file.removeprefix("behaviors/").removesuffix(".yaml"))
+    for state in machine.states.values() if machine and document else ():
+        length = duration(state.do, draft.motions)
+        for place, delay in dict.fromkeys(
+            (document.place(_key(t.where), key=True), t.delay)  # type: ignore[union-attr]
+            for t in state.transitions
+            if isinstance(t.delay, float)
+        ):
+            what = f"the `do` of `{state.name}` takes about {length:.1f} s"
+            if not state.do or not length:
+                yield Hint(
+                    place, "after entering", f"counts from when `{state.name}` is entered, and ends if it is left"
+                )
+            elif delay >= length:
+                yield Hint(
+                    place, f"{delay - length:.0f} s after its do", f"{what}; this counts from when it is entered"
+                )
+            else:
+                yield Hint(place, f"{length - delay:.0f} s before its do ends", f"{what}, and would be cut short")
+
+
+def _key(where: tuple[str | int, ...]) -> tuple[str | int, ...]:
+    """The path of the time under `after`, of a candidate in a list below it too."""
+    return where[: max(i for i, step in enumerate(where) if step == "after") + 2]
+
+
+def _beats(analysis: Analysis, file: str) -> Iterator[Hint]:
+    """When a beat is, in seconds from the beginning of its list of keyframes."""
+    document = analysis.documents.get(file)
+    tempo = document.data.get("tempo") if document and isinstance(document.data, dict) else None
+    if document is None or not isinstance(tempo, int | float) or isinstance(tempo, bool) or tempo <= 0:
+        return
+    for path in document.spans:
+        if path and path[-1] == "beat":
+            beat = _value(document.data, path)
+            if isinstance(beat, int | float) and not isinstance(beat, bool):
+                yield Hint(document.place(path), f"{60 * beat / tempo:.2f} s", f"{tempo:g} beats are a minute")
+
+
+def _value(data: Any, path: tuple[str | int, ...]) -> Any:
+    for step in path:
+        data = data[step]
+    return data

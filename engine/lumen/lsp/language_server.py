@@ -1,0 +1,151 @@
+"""The server's side of a conversation with an editor: which projects are open, and what was found in them."""
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+from lsprotocol import types as lsp
+from pygls.lsp import server as pygls_server
+
+import lumen
+from lumen.errors import LumenError
+from lumen.lsp.analysis import Analysis
+from lumen.lsp.lenses import active_places
+from lumen.lsp.open_projects import OpenProjects, root_of
+from lumen.lsp.protocol import ProtocolEncoder
+from lumen.lsp.ranges import path_of
+from lumen.lsp.running import RunningExhibitions
+from lumen.upkeep.threads import WatchedThread
+
+CHECK_DELAY = 0.03
+"""How long nothing may be typed before the project is checked [s]."""
+
+ACTIVE = "lumen/active"
+"""The notification of the states in which a running exhibition is: `root`, `states`, and the `places` of their keys."""
+
+T = TypeVar("T")
+
+
+class OutdatedError(Exception):
+    """Something was written while the project was being checked."""
+
+
+class LanguageServer(pygls_server.LanguageServer):
+    """Checks the projects of the files that are open, and answers what an editor asks about a position."""
+
+    def __init__(self) -> None:
+        super().__init__("lumen", lumen.__version__)
+        self.projects = OpenProjects()
+        self.running = RunningExhibitions(self.projects.roots, self._moved)
+        self._told: dict[Path, set[str]] = {}
+        self._due: dict[Path, float] = {}
+        self._checking: dict[Path, asyncio.Task[None]] = {}
+
+    def encoder(self, analysis: Analysis) -> ProtocolEncoder:
+        return ProtocolEncoder(analysis, self.workspace.position_codec)
+
+    def analyses(self) -> list[Analysis]:
+        """The projects of which a file is open."""
+        return [self.projects.analysis(root) for root in self.projects.roots()]
+
+    def active(self, root: Path) -> tuple[str, ...]:
+        """The states in which a running exhibition of a project is."""
+        return self.running.active(root)
+
+    def follow(self) -> None:
+        """Have running exhibitions looked at from now on, beside everything else."""
+        self._loop = asyncio.get_running_loop()
+        WatchedThread("exhibitions", self.running.follow).start()
+
+    def _moved(self, root: Path) -> None:
+        self._loop.call_soon_threadsafe(self._tell_active, root)
+
+    def _tell_active(self, root: Path) -> None:
+        """Say where a running exhibition is: as a notification of ours, and by lenses that are asked for anew."""
+        analysis = self.projects.analysis(root)
+        encoder = self.encoder(analysis)
+        places = [encoder.location(place) for place in active_places(analysis, self.active(root))]
+        body = {"root": root.absolute().as_uri(), "states": list(self.active(root)), "places": places}
+        self.protocol.notify(ACTIVE, body)
+        lenses = self.client_capabilities.workspace and self.client_capabilities.workspace.code_lens
+        if lenses and lenses.refresh_support:
+            self.workspace_code_lens_refresh(None)
+
+    def file(self, uri: str) -> tuple[Analysis, str] | None:
+        """Project and file of a document; None where it belongs to no project."""
+        try:
+            return self.projects.at(Path(path_of(uri)))
+        except LumenError:
+            return None
+
+    def at(self, uri: str, position: lsp.Position) -> tuple[Analysis, str, int, int] | None:
+        """Project, file, line and column of a position; None where the file belongs to no project."""
+        if (found := self.file(uri)) is None:
+            return None
+        analysis, file = found
+        line, column = self.encoder(analysis).ranges(file).place(position)
+        return analysis, file, line, column
+
+    def asked(self, params: Any, answer: Callable[[Analysis, str, int, int], T]) -> T | None:
+        """What a service answers about the position that is asked for."""
+        found = self.at(params.text_document.uri, params.position)
+        return answer(*found) if found else None
+
+    def written(self, uri: str, *, at_once: bool = False) -> None:
+        """An open file has changed: take its text, and check its project when nothing has come for a while."""
+        path = Path(path_of(uri))
+        self.projects.write(path, self.workspace.get_text_document(uri).source)
+        if root := root_of(path):
+            self._told.setdefault(root, set()).add(path.relative_to(root).as_posix())
+        self.check(path, at_once=at_once)
+
+    def check(self, path: Path, *, at_once: bool = False) -> None:
+        """Check a file's project soon; a check that is under way starts anew."""
+        if (root := root_of(path)) is None:
+            return
+        self._due[root] = asyncio.get_running_loop().time() + (0 if at_once else CHECK_DELAY)
+        if root not in self._checking or self._checking[root].done():
+            self._checking[root] = asyncio.ensure_future(self._check(root))
+
+    async def settled(self, uri: str) -> tuple[Analysis, str] | None:
+        """Project and file of a document, once nothing is typed any more and the findings are known."""
+        root = root_of(Path(path_of(uri)))
+        while (task := self._checking.get(root) if root else None) and not task.done():
+            await asyncio.wait((task,))
+        if found := self.file(uri):
+            await asyncio.get_running_loop().run_in_executor(None, lambda: found[0].diagnostics)
+        return found
+
+    async def _check(self, root: Path) -> None:
+        loop = asyncio.get_running_loop()
+        while (due := self._due.get(root)) is not None:
+            if (wait := due - loop.time()) > 0:
+                await asyncio.sleep(wait)
+                continue
+            del self._due[root]
+            analysis = self.projects.analysis(root)
+            try:
+                await loop.run_in_executor(None, analysis.check, lambda: self._go_on(root))
+            except OutdatedError:
+                continue
+            if root not in self._due:
+                self._tell(root, analysis)
+                await loop.run_in_executor(None, lambda a: a.index.uses, analysis)  # what completion proposes next
+
+    def _go_on(self, root: Path) -> None:
+        if root in self._due:
+            raise OutdatedError
+
+    def _tell(self, root: Path, analysis: Analysis) -> None:
+        """Publish what was found, file by file; of an open one also that nothing was, or nothing is any more."""
+        encoder, found = self.encoder(analysis), dict[str, list[lsp.Diagnostic]]()
+        for diagnostic in analysis.diagnostics:
+            found.setdefault(diagnostic.place.file, []).append(encoder.diagnostic(diagnostic))
+        for file in sorted(self._told.get(root, set()) | found.keys()):
+            uri = encoder.uri(file)
+            version = self.workspace.text_documents[uri].version if uri in self.workspace.text_documents else None
+            self.text_document_publish_diagnostics(
+                lsp.PublishDiagnosticsParams(uri, found.get(file, []), version=version)
+            )
+        self._told[root] = set(found)

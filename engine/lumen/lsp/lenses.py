@@ -1,0 +1,61 @@
+"""What stands above a line and can be clicked: run a story, play a motion, see who comes to a state."""
+
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
+
+from lumen.language.diagnostics import Place
+from lumen.lsp.analysis import Analysis
+from lumen.lsp.grammar import kind_of
+from lumen.lsp.index import stem
+
+RUN_STORY, PLAY_MOTION, SHOW_PLACES = "lumen.runStory", "lumen.playMotion", "lumen.showPlaces"
+"""The commands behind them."""
+ACTIVE_NOW = "● active now"
+
+
+class Lens(NamedTuple):
+    """A title above a place; `command` may be empty, `name` and `places` are what it is about."""
+
+    place: Place
+    title: str
+    command: str = ""
+    name: str = ""
+    places: tuple[Place, ...] = ()
+
+
+def lenses(analysis: Analysis, file: str, active: Collection[str] = ()) -> Iterator[Lens]:
+    """The lenses of a file; `active` are the states, by name, in which a running exhibition of the project is."""
+    top = Place(file)
+    match kind_of(file):
+        case "story":
+            yield Lens(top, "run this story", RUN_STORY, stem(file))
+        case "motion" if file.startswith("motions/"):
+            yield Lens(top, "play this motion", PLAY_MOTION, stem(file))
+        case "behavior":
+            yield from _states(analysis, file, active)
+
+
+def active_places(analysis: Analysis, active: Collection[str]) -> list[Place]:
+    """Where the states are made known that are active, in the behaviour that the project runs."""
+    settings = analysis.settings.settings
+    file = f"behaviors/{settings.behavior}.yaml" if settings else ""
+    return [each.place for each in lenses(analysis, file, active) if each.title == ACTIVE_NOW]
+
+
+def _states(analysis: Analysis, file: str, active: Collection[str]) -> Iterator[Lens]:
+    document, machine = analysis.documents.get(file), analysis.draft.behaviors.get(stem(file))
+    if document is None or machine is None:
+        return
+    ways: dict[str, list[Place]] = {}
+    for state in machine.states.values():
+        for transition in state.transitions:
+            for target in transition.targets:
+                ways.setdefault(target, []).append(document.place(transition.where))
+    for state in machine.states.values():
+        if state.path and document.spans.get(state.where):
+            place = document.place(state.where, key=True)
+            if state.name in active:
+                yield Lens(place, ACTIVE_NOW)
+            if found := tuple(dict.fromkeys(ways.get(state.path, ()))):
+                title = "1 transition leads here" if len(found) == 1 else f"{len(found)} transitions lead here"
+                yield Lens(place, title, SHOW_PLACES, state.name, found)

@@ -1,0 +1,74 @@
+"""A file that is no YAML while it is being written, without the lines that keep it from being read.
+
+All other lines stay where they are, so that what is said of them is in the right place.
+"""
+
+import re
+from typing import NamedTuple
+
+from lumen.loading.yaml_reader import parse
+from lumen.lsp.fragments import ancestors, block_end
+
+MAX_CUTS = 8
+"""Lines that are left out one by one before whole blocks are."""
+
+_WORD = re.compile(r"[^\s\"'`\[\]{},:#]+")
+_QUOTED = re.compile(r"""(?:^|(?<=[\s\[{,:(]))(?P<text>"(?:[^"\\]|\\.)*(?:"|$)|'(?:[^']|'')*(?:'|$))|(?:^|\s)\#.*""")
+
+
+class MendedText(NamedTuple):
+    """What of a text can be read: `cut` are the indices of the lines that were left out."""
+
+    text: str
+    cut: frozenset[int]
+    words: frozenset[str]
+    """The words that stood in them."""
+    around: frozenset[int]
+    """The lines whose content depends on them: those that they stand below."""
+
+
+def mended(file: str, text: str) -> MendedText | None:
+    """The text without the lines that keep it from being read; None where nothing helps."""
+    lines, cut = text.split("\n"), set[int]()
+    first: int | None = None
+    for _ in range(MAX_CUTS):
+        at = _fault(file, lines, cut)
+        if at is None:
+            return _mended(lines, cut)
+        first = at if first is None else first
+        cut.update(range(at, block_end(lines, at, at)))
+    for outer in reversed(ancestors(lines, first or 0, 1)):
+        cut = set(range(outer, block_end(lines, outer, outer)))
+        if _fault(file, lines, cut) is None:
+            return _mended(lines, cut)
+    return None
+
+
+def open_quote(line: str) -> bool:
+    """Whether a quote is opened in a line and not closed there."""
+    return any(
+        len(text) == 1 or text[0] != text[-1] or text.endswith('\\"')
+        for found in _QUOTED.finditer(line)
+        if (text := found["text"])
+    )
+
+
+def _fault(file: str, lines: list[str], cut: set[int]) -> int | None:
+    """The line that most probably keeps the others from being read, None where nothing does."""
+    document, found = parse(file, _kept(lines, cut).encode("utf-8", "surrogatepass"))
+    if document is not None or not found:
+        return None
+    at = min(found[0].place.line, len(lines)) - 1
+    while at > 0 and (at in cut or not lines[at].strip()):
+        at -= 1
+    return next((i for i in range(at, -1, -1) if i not in cut and open_quote(lines[i])), at)
+
+
+def _mended(lines: list[str], cut: set[int]) -> MendedText:
+    words = frozenset(word for i in cut for word in _WORD.findall(lines[i]))
+    around = frozenset(outer for i in cut for outer in ancestors(lines, i, 1))
+    return MendedText(_kept(lines, cut), frozenset(cut), words, around)
+
+
+def _kept(lines: list[str], cut: set[int]) -> str:
+    return "\n".join("" if i in cut else line for i, line in enumerate(lines))

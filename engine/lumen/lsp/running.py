@@ -1,0 +1,58 @@
+"""What the exhibitions of open projects are doing while they run on this machine."""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from threading import Event
+
+from lumen.app.asking import OPERATOR_ANSWERS, OPERATOR_KEY, ask
+from lumen.app.reaching import Reached, reach_exhibition, runs_here
+from lumen.errors import LumenError
+
+ASK_EVERY, ANSWER_TIMEOUT = 1.0, 2.0
+"""How often a running exhibition is asked for its states, and how long it may take to answer [s]."""
+
+
+class RunningExhibitions:
+    """Asks them in a thread of its own, and calls `changed` with a project's folder whose states are others now."""
+
+    def __init__(self, roots: Callable[[], Iterable[Path]], changed: Callable[[Path], None]) -> None:
+        self._roots, self._changed = roots, changed
+        self._active: dict[Path, tuple[str, ...]] = {}
+        self._reached: dict[Path, Reached] = {}
+        self._over = Event()
+
+    def active(self, root: Path) -> tuple[str, ...]:
+        """The states, by name, in which the exhibition of a project is; none where it does not run."""
+        return self._active.get(root, ())
+
+    def follow(self) -> None:
+        """Ask until `close` is called."""
+        while not self._over.wait(ASK_EVERY):
+            for root in list(self._roots()):
+                states = self._asked(root)
+                if states != self.active(root):
+                    self._active[root] = states
+                    self._changed(root)
+        for reached in self._reached.values():
+            reached.bus.close()
+
+    def close(self) -> None:
+        self._over.set()
+
+    def _asked(self, root: Path) -> tuple[str, ...]:
+        try:
+            if not runs_here(root):
+                self._lose(root)
+                return ()
+            if root not in self._reached:
+                self._reached[root] = reach_exhibition(str(root), None)
+            bus = self._reached[root].bus
+            status = next(ask(bus, OPERATOR_KEY, {"ask": "status"}, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
+            return tuple(map(str, status["configuration"]))
+        except (LumenError, KeyError, TypeError, StopIteration):
+            self._lose(root)
+            return ()
+
+    def _lose(self, root: Path) -> None:
+        if (reached := self._reached.pop(root, None)) is not None:
+            reached.bus.close()

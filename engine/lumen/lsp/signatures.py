@@ -1,0 +1,55 @@
+"""The function that is being called where an expression is being written."""
+
+import inspect
+import re
+from typing import NamedTuple
+
+from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.lsp.analysis import Analysis
+
+_OPEN = re.compile(r"(\w+)\s*\($")
+_TEXT = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"")
+
+
+class FunctionSignature(NamedTuple):
+    """How a function is called, which of its parameters is being written (from 0), and what it does."""
+
+    name: str
+    parameters: tuple[str, ...]
+    active: int
+    documentation: str
+
+    @property
+    def label(self) -> str:
+        return f"{self.name}({', '.join(self.parameters)})"
+
+
+def signature(analysis: Analysis, file: str, line: int, column: int) -> FunctionSignature | None:
+    """The innermost call that is open at a line and column, from 1; None where there is none."""
+    lines = analysis.text(file).split("\n")
+    head = lines[line - 1][: column - 1] if line <= len(lines) else ""
+    head = _TEXT.sub(lambda found: "_" * len(found[0]), re.sub(r"'[^']*$", "_", head) if head.count("'") % 2 else head)
+    depth = commas = 0
+    for at in range(len(head) - 1, -1, -1):
+        sign = head[at]
+        if sign in ")]}":
+            depth += 1
+        elif sign in "([{" and depth:
+            depth -= 1
+        elif sign == "," and not depth:
+            commas += 1
+        elif sign == "(" and (called := _OPEN.search(head[: at + 1])) and called[1] in FUNCTIONS:
+            return _of(called[1], commas)
+        elif sign in "([{":
+            commas = 0
+    return None
+
+
+def _of(name: str, active: int) -> FunctionSignature:
+    function = FUNCTIONS[name]
+    named = list(inspect.signature(function.call).parameters)[1 if function.scoped else 0 :]
+    kinds = [" or ".join(sorted(kinds)) if len(kinds) < 4 else "anything" for kinds in function.parameters]
+    shown = tuple(f"{parameter}: {kind}" for parameter, kind in zip(named, kinds, strict=False))
+    says = (inspect.getdoc(function.call) or "").partition("\n\n")[0]
+    gives = " or ".join(sorted(function.returns)) if len(function.returns) < 4 else "anything"
+    return FunctionSignature(name, shown, active, f"{says} Gives {gives}.".strip())

@@ -1,0 +1,13 @@
+"""Importing this raises MissingExtraError where what simulates the robot is not installed."""
+
+from lumen.extras import demand
+
+demand(
+    "simulation",
+    "the simulated robot",
+    "mujoco",
+    "dm_control",
+    "PIL",
+    "imageio_ffmpeg",
+    instead="lint, stories, the editor and `--robot recording` go without",
+)

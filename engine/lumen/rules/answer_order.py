@@ -1,0 +1,77 @@
+"""Rows of answers that are never given, because every state that looks them up asks for a phrase in them first."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from lumen.interpreters.expressions.phrases import is_heard
+from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, walk
+from lumen.language.machines import Answer, MachineDefinition, State
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.guards import covers, heard_call
+from lumen.rules.logic import tree
+from lumen.rules.speech import SHADOWED_ANSWER
+from lumen.rules.word_tables import word_tables
+
+
+class Asking(NamedTuple):
+    """A transition that looks a table up, and the phrases by name that those before it listen for."""
+
+    table: str
+    before: tuple[str, ...]
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report rows whose every phrase is taken by a guard before each lookup of their table."""
+    owners = {
+        id(row): (t.report, name, i)
+        for t in word_tables(draft)
+        for name, rows in t.answers.items()
+        for i, row in enumerate(rows)
+    }
+    for machine in draft.behaviors.values():
+        askings = list(_askings(machine))
+        for table in dict.fromkeys(asking.table for asking in askings):
+            several = [asking.before for asking in askings if asking.table == table]
+            for row in machine.answers.get(table, ()):
+                if id(row) in owners:
+                    _taken(machine, row, several, *owners[id(row)])
+
+
+def _askings(machine: MachineDefinition) -> Iterator[Asking]:
+    for state in machine.states.values():
+        yield from _of(state)
+
+
+def _of(state: State) -> Iterator[Asking]:
+    for i, transition in enumerate(state.transitions):
+        if transition.guard is None:
+            continue
+        for text, table in _lookups(tree(transition.guard.source)):
+            earlier = [t.guard for t in state.transitions[:i] if t.guard and covers(t, transition)]
+            calls = [heard_call(tree(guard.source)) for guard in earlier]
+            yield Asking(table, tuple(call.name for call in calls if call and call.text == text))
+
+
+def _lookups(guard: ExpressionNode) -> Iterator[tuple[ExpressionNode, str]]:
+    """What is looked up where: the text, and the table."""
+    for node, _ in walk(guard):
+        match node:
+            case Binary(left=FunctionCall(function="lookup", arguments=(text, Literal(value=str() as table)))):
+                yield text, table
+
+
+def _taken(
+    machine: MachineDefinition, row: Answer, several: list[tuple[str, ...]], report: DocumentReport, table: str, i: int
+) -> None:
+    phrases = [phrase for texts in row.phrases.values() for phrase in texts]
+    takers = [_taker(machine, phrase, before) for phrase in phrases for before in several]
+    if phrases and takers and all(takers):
+        message = f"this is never answered: `{phrases[0]}` is taken for the phrases `{takers[0]}`, asked for first"
+        hint = f"ask for the answers `{table}` before `heard(…, '{takers[0]}')`, or take other phrases"
+        report(SHADOWED_ANSWER, ("answers", table, i, "phrases"), message, hint, key=True)
+
+
+def _taker(machine: MachineDefinition, phrase: str, before: tuple[str, ...]) -> str:
+    """The first of these names whose phrases are heard in that one; empty where none is."""
+    return next((name for name in before if is_heard(phrase, machine.phrases.get(name, {}))), "")

@@ -1,0 +1,33 @@
+"""Jumps into a state with `for` from outside: no entry was taken of its list."""
+
+from lumen.language.diagnostics import ERROR, Code
+from lumen.language.machines import MachineDefinition, StateKind
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.dead_ends import within
+
+JUMP_INTO_FOR = Code("jump-into-for", "statecharts", ERROR, "a transition leads into a `for`, past its list")
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report transitions that lead from outside of a state with `for` to one within it."""
+    for name, machine in draft.behaviors.items():
+        loops = [path for path, state in machine.states.items() if state.for_each]
+        if loops:
+            _jumps(machine, loops, draft.report("behaviors", name))
+
+
+def _jumps(machine: MachineDefinition, loops: list[str], report: DocumentReport) -> None:
+    for state in machine.states.values():
+        for transition in state.transitions:
+            for target in transition.targets:
+                into = [loop for loop in loops if target != loop and within(target, loop)]
+                past = [loop for loop in into if not within(transition.source, loop)]
+                if past and machine.states[target].kind is not StateKind.HISTORY:
+                    outer, loop = machine.states[past[0]], machine.states[past[0]].for_each
+                    assert loop
+                    inner = machine.states[target].name.rpartition(".")[2]
+                    message = f"`{inner}` is within the `for` of `{outer.name}`, which has taken no {loop.variable} yet"
+                    hint = f"go to `{outer.name.rpartition('.')[2]}`: it takes the first {loop.variable} by itself"
+                    report(JUMP_INTO_FOR, transition.where, message, hint, related=[(outer.where, "the `for` is here")])
+                    report.lost |= {text for path in machine.states for text in path.split(".")}

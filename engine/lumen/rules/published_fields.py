@@ -1,0 +1,28 @@
+"""Fields of what is published that the messages of the route do not have."""
+
+from collections.abc import Mapping
+
+from lumen.interpreters.expressions.expression_findings import UNKNOWN_FIELD
+from lumen.language.actions import PublishBody
+from lumen.language.diagnostics import did_you_mean, nearest
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.walk import action_sites
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report a field that a schema forbids, or that is nearly called as one that it describes."""
+    routes = draft.settings.routes if draft.settings else {}
+    for name, machine in draft.behaviors.items():
+        for site in action_sites(machine):
+            action = site.step.action
+            if isinstance(action, PublishBody) and isinstance(action.body, Mapping) and action.route in routes:
+                schema = draft.messages.get(routes[action.route].schema) or {}
+                fields = schema.get("properties") or {}
+                closed = schema.get("additionalProperties", True) is False
+                report, where = draft.report("behaviors", name), (*site.step.where, "publish", "body")
+                for key in (key for key in action.body if fields and key not in fields):
+                    meant = nearest(key, set(fields) - action.body.keys())
+                    line = report.document.place((*where, key), key=True).line
+                    if (meant or closed) and not any(d.place.line == line for d in report.diagnostics):
+                        message = f"the messages of `{action.route}` have no `{key}`"
+                        report(UNKNOWN_FIELD, (*where, key), message, did_you_mean(key, fields, "they have"), key=True)

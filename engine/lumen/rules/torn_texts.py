@@ -1,0 +1,70 @@
+"""Texts that YAML reads otherwise than they were meant: cut off by a comment, or torn at a comma."""
+
+import re
+from collections.abc import Iterator
+from itertools import pairwise
+
+from lumen.language.diagnostics import WARNING, Code, NodePath
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.lookups import value_at
+
+CUT_TEXT = Code("cut-text", "speech", WARNING, "a text is cut off by ` #`, which begins a comment")
+TORN_TEXT = Code("torn-text", "speech", WARNING, "a text in a list is torn into several by a comma")
+
+_CUT = re.compile(r" +#(?=[^\s#!:-])")
+_HAS_CUT = re.compile(r"[^\s#] +#[^\s#!:-]")
+_ENDED = (".", "!", "?", "…", ":", '"', "'", ")")
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report texts that end where a comment begins without a blank, and alternatives that are parts of one."""
+    for file, report in draft.reports.items():
+        if file.startswith("behaviors/"):
+            _cut(report)
+            _torn(report)
+
+
+def _cut(report: DocumentReport) -> None:
+    text = report.document.text
+    if not _HAS_CUT.search(text):
+        return
+    lines = text.split("\n")
+    for path, span in list(report.document.spans.items()):
+        place = span.value
+        line = lines[place.end_line - 1] if place.end_line <= len(lines) else ""
+        value = value_at(report, path)
+        if not isinstance(value, str) or " " not in value or lines[place.line - 1][place.column - 1] in "\"'|>":
+            continue
+        if found := _CUT.match(line, place.end_column - 1):
+            shown = line[found.end() - 1 :].rstrip()
+            message = f"` #` begins a comment here: `{shown[:40]}` is not part of the text"
+            report(CUT_TEXT, path, message, "put quotes around the text, or a blank behind the `#` of a comment")
+
+
+def _torn(report: DocumentReport) -> None:
+    """Lists of sentences of which one does not end, and goes on in small letters."""
+    lines = report.document.text.split("\n")
+    lists: dict[NodePath, list[str]] = {}
+    for path in report.document.spans:
+        if path and isinstance(path[-1], int) and isinstance(value := value_at(report, path), str):
+            lists.setdefault(path[:-1], []).append(value)
+    for path, texts in lists.items():
+        if len(texts) > 1 and any(text.endswith((".", "!", "?")) for text in texts):
+            for i in _parts(texts):
+                place = report.document.place((*path, i))
+                following = report.document.place((*path, i + 1))
+                plain = all(lines[p.line - 1][p.column - 1] not in "\"'" for p in (place, following))
+                if plain and place.line == following.line:
+                    whole = f"{texts[i]}, {texts[i + 1]}"
+                    message = f"these are two texts: `{texts[i]}` and `{texts[i + 1]}`"
+                    shown = whole if len(whole) <= 60 else f"{whole[:59]}…"
+                    report(TORN_TEXT, (*path, i), message, f'put quotes around a text with a comma in it: "{shown}"')
+                    break
+
+
+def _parts(texts: list[str]) -> Iterator[int]:
+    """The indices of texts that do not end, where the next one begins in small letters."""
+    for i, (one, other) in enumerate(pairwise(texts)):
+        if not one.endswith(_ENDED) and other[:1].islower() and one[:1].isupper():
+            yield i

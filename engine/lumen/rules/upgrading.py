@@ -1,0 +1,113 @@
+"""Files of an older vocabulary, rewritten word by word for a newer one; pure, from files to files.
+
+What is not a word that changed stays as it is, comments and blanks included.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import PurePosixPath
+from typing import NamedTuple
+
+from lumen.errors import UsageError
+from lumen.language.diagnostics import NodePath, Place
+from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
+from lumen.loading.document import Document
+from lumen.loading.packaged import MAIN_FILE
+from lumen.loading.yaml_reader import parse
+from lumen.rules.fixes import Edit, edited
+
+
+class Rewriting(NamedTuple):
+    """A place of a file that is rewritten: why, in words, and how."""
+
+    place: Place
+    why: str
+    text: str
+
+
+Migration = Callable[[Document], Iterable[Rewriting]]
+"""What has changed from one vocabulary to the next, as it is found in one document."""
+
+MIGRATIONS: Mapping[int, Sequence[Migration]] = {}
+"""What leads from each vocabulary to the next, by the number of the older one. There is one vocabulary so far."""
+
+
+def upgraded(
+    files: Mapping[str, bytes],
+    migrations: Mapping[int, Sequence[Migration]] = MIGRATIONS,
+    vocabulary: int = VOCABULARY,
+) -> tuple[dict[str, bytes], list[Rewriting]]:
+    """The files of a project as `vocabulary` has them, and what was rewritten, where it stood.
+
+    lumen.yaml says the number then. Raises UsageError where a file can't be read, where the files are newer than that,
+    or where the old and the new word of something stand side by side.
+    """
+    now, done = dict(files), list[Rewriting]()
+    said = _said(_document(now, MAIN_FILE))
+    if said > vocabulary:
+        raise UsageError(
+            f"{MAIN_FILE} is written for vocabulary {said}, and this Lumen reads {vocabulary}: install a newer one"
+        )
+    for number in range(said, vocabulary):
+        for migration in migrations.get(number, ()):
+            for file in sorted(file for file in now if file.endswith(".yaml")):
+                rewritings = list(dict.fromkeys(migration(_document(now, file))))
+                now[file] = edited(now[file], [Edit(each.place, each.text) for each in rewritings])
+                done += rewritings
+    line_break = "\r\n" if b"\r\n" in now[MAIN_FILE] else "\n"
+    if (last := _numbered(_document(now, MAIN_FILE), vocabulary, line_break)) is not None:
+        now[MAIN_FILE] = edited(now[MAIN_FILE], [Edit(last.place, last.text)])
+        done.append(last)
+    return now, done
+
+
+def renamed_key(files: str, path: Sequence[str], name: str) -> Migration:
+    """Calls a key by a new name in the files that match, at any path that does; `*` in it is any one step."""
+
+    def migrate(document: Document) -> Iterator[Rewriting]:
+        if not PurePosixPath(document.file).match(files):
+            return
+        for node, span in document.spans.items():
+            if span.key and _fits(node, path):
+                if (*node[:-1], name) in document.spans:
+                    where = f"{document.file}:{span.key.line}"
+                    raise UsageError(f"{where}: `{node[-1]}` is `{name}` now, and both stand here: delete one of them")
+                yield Rewriting(span.key, f"`{node[-1]}` is `{name}` now", name)
+
+    return migrate
+
+
+def _fits(node: NodePath, path: Sequence[str]) -> bool:
+    return len(node) == len(path) and all(want in ("*", step) for step, want in zip(node, path, strict=True))
+
+
+def _document(files: Mapping[str, bytes], file: str) -> Document:
+    document = parse(file, files[file])[0] if file in files else None
+    if document is None:
+        raise UsageError(f"{file} can't be read, so nothing is rewritten: `lumen lint` says what is wrong")
+    return document
+
+
+def _said(main: Document) -> int:
+    said = main.data.get(VOCABULARY_KEY, FIRST_VOCABULARY) if isinstance(main.data, Mapping) else None
+    if type(said) is not int or said < FIRST_VOCABULARY:
+        raise UsageError(f"{MAIN_FILE} says no vocabulary that there could be: `lumen lint` says what is wrong")
+    return said
+
+
+def _numbered(main: Document, vocabulary: int, line_break: str) -> Rewriting | None:
+    """How lumen.yaml comes to say the number, None where it does."""
+    said = main.data.get(VOCABULARY_KEY)
+    if said == vocabulary:
+        return None
+    if said is not None:
+        return Rewriting(main.place((VOCABULARY_KEY,)), f"says vocabulary {vocabulary} now", str(vocabulary))
+    first = next(iter(main.data), None)
+    if first is None:
+        raise UsageError(f"{MAIN_FILE} is empty: `lumen lint` says what is missing")
+    key = main.place((first,), key=True)
+    ahead = main.text.split("\n")[key.line - 1][: key.column - 1].strip("\ufeff ")
+    if ahead.strip("{ "):
+        raise UsageError(f"{MAIN_FILE}: write `{VOCABULARY_KEY}: {vocabulary}` as its first key, by hand")
+    after = ", " if ahead else line_break + " " * (key.column - 1)
+    place = key._replace(end_line=key.line, end_column=key.column)
+    return Rewriting(place, f"says vocabulary {vocabulary} now", f"{VOCABULARY_KEY}: {vocabulary}{after}")

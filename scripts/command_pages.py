@@ -1,0 +1,137 @@
+"""Writes docs/commands/ from the parser of the command line: `python scripts/command_pages.py`.
+
+A page for each verb: what it does, how it is called, its words and options, its examples and what stands in
+`engine/lumen/cli/pages/VERB.md` besides.
+"""
+
+import argparse
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from lumen.cli.main import VERBS, command_line
+from lumen.cli.pages import page
+from lumen.cli.suggesting import Suggesting
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs/commands"
+
+_INTRODUCTION = """# The command line
+
+Written by `scripts/command_pages.py` from the parser that reads it; `lumen VERB --help` says the same. A verb or an
+option that is misspelt is answered with the one that was probably meant.
+
+| it ends with | when |
+| --- | --- |
+| 0 | all is well |
+| 1 | what was asked for is not so: there are findings, a story failed, the robot refused |
+| 2 | it could not be tried: a word, a file or an exhibition that is not there. One line on standard error says so |
+| 130 | somebody pressed Ctrl-C |
+
+`--format json` prints one object on standard output, for programs; what is told meanwhile goes to standard error, and
+so does the one line of an exit with 2. What takes longer than two seconds shows on a terminal how far it is.
+
+## Completion
+
+| shell | once, in |
+| --- | --- |
+| bash | `~/.bashrc`: `eval "$(lumen completion bash)"` |
+| zsh | `~/.zshrc`, behind `compinit`: `eval "$(lumen completion zsh)"` |
+| fish | a terminal: `lumen completion fish > ~/.config/fish/completions/lumen.fish` |
+
+Verbs, options and their choices are completed, and names of the project: stories, motions, behaviours, states,
+languages, codes.
+
+## Verbs
+
+"""
+
+
+def written() -> dict[str, str]:
+    """The pages of the docs, by file name."""
+    parser = command_line(VERBS)
+    index = "".join(f"- [`lumen {verb}`]({verb}.md): {summary}\n" for verb, summary in VERBS.items())
+    pages = {f"{verb}.md": _page(verb, parser.verbs[verb]) for verb in VERBS}
+    return {"README.md": _INTRODUCTION + index, **pages}
+
+
+def _page(verb: str, parser: Suggesting) -> str:
+    found = page(verb)
+    examples = "\n".join(f"| `{_cell(one.command)}` | {_cell(one.says)} |" for one in found.examples)
+    blocks = [
+        f"# lumen {verb}",
+        parser.description or "",
+        f"```text\n{_usage(parser)}\n```",
+        f"## Examples\n\n| command | |\n| --- | --- |\n{examples}",
+        *_table("Words", [action for action in parser._actions if not action.option_strings]),
+        *_table("Options", [action for action in parser._actions if action.option_strings]),
+        *([f"```text\n{parser.epilog}\n```"] if parser.epilog else []),
+        *([found.text] if found.text else []),
+    ]
+    return "\n\n".join(blocks) + "\n"
+
+
+def _usage(parser: argparse.ArgumentParser) -> str:
+    """As `--help` begins, in lines of a width that does not depend on the terminal or on the Python."""
+    words, lines = [f"lumen {parser.prog.split()[-1]}"], []
+    words += [_in_usage(action) for action in parser._actions if action.help is not argparse.SUPPRESS]
+    line = words[0]
+    for word in words[1:]:
+        if len(line) + len(word) > 98:
+            lines.append(line)
+            line = " " * len(words[0])
+        line += f" {word}"
+    return "\n".join([*lines, line])
+
+
+def _in_usage(action: argparse.Action) -> str:
+    left_out = action.option_strings or action.nargs in ("?", "*")
+    return f"[{_written(action)[-1]}]" if left_out else _word(action)
+
+
+def _table(title: str, actions: list[argparse.Action]) -> Iterator[str]:
+    rows = [
+        f"| {', '.join(f'`{_cell(name)}`' for name in _written(action))} | {_cell(_help(action))} |"
+        for action in actions
+        if action.help is not argparse.SUPPRESS
+    ]
+    if rows:
+        yield f"## {title}\n\n| | |\n| --- | --- |\n" + "\n".join(rows)
+
+
+def _written(action: argparse.Action) -> list[str]:
+    """How it is written: each option with what it takes."""
+    takes = "" if action.nargs == 0 else f" {_word(action)}"
+    return [f"{name}{takes}" for name in action.option_strings] or [_word(action)]
+
+
+def _word(action: argparse.Action) -> str:
+    if isinstance(action.metavar, str):
+        return action.metavar
+    if action.choices is not None:
+        return "{" + ",".join(map(str, action.choices)) + "}"
+    return action.dest.upper() if action.option_strings else action.dest
+
+
+def _help(action: argparse.Action) -> str:
+    text = (action.help or "").replace("%%", "%")
+    return re.sub(r"%\((\w+)\)s", lambda found: str(getattr(action, found[1])), text)
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def main() -> None:
+    DOCS.mkdir(exist_ok=True)
+    pages = written()
+    for name, text in pages.items():
+        (DOCS / name).write_text(text, encoding="utf-8")
+    for stale in {file.name for file in DOCS.glob("*.md")} - pages.keys():
+        (DOCS / stale).unlink()
+    print(f"wrote {len(pages)} pages to {DOCS.relative_to(ROOT)}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

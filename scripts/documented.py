@@ -1,0 +1,234 @@
+"""Runs what the documentation shows, and compares what it prints: `python scripts/documented.py [PAGE ...]`.
+
+What is run stands in blocks of ```console, a `$` before each command and its output below; of a page one after another,
+in a copy of the shipped project. A comment above a block says more, `<!-- run: WORDS -->`, and `<!-- $ COMMAND -->` is
+what a reader does by hand before it:
+
+    in=empty          from here on in an empty folder
+    file=PATH         the block below is this file, and is written (with `append=PATH`: added to it)
+    ends=1            the last command ends with this code, not with 0
+    physics, broker   only where the simulator, RabbitMQ, is there
+    robot, network    not run by this script: a person does
+
+In an output `…` stands for any text, on a line of its own for any lines. Numbers may differ by a fifth, or by 1.
+"""
+
+import argparse
+import contextlib
+import importlib.util
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT))  # for tests/rabbitmq.py
+PROJECT = ("lumen.yaml", "behaviors", "fuzzy", "motions", "models", "schemas", "examples")
+BEFORE = r"(?:^<!-- \$ (?P<before>.+?) -->\n+)?(?:^<!-- run: (?P<words>.+?) -->\n+)?"
+BLOCK = re.compile(rf"(?m){BEFORE}^```(?P<language>\w+)[^\n]*\n(?P<text>[\s\S]*?)^```$")
+NUMBER = re.compile(r"\d+(?:,\d{3})*(?:\.\d+)?")
+END = "--- the end of a command:"
+LONGEST = 400.0
+"""How long one block may take [s]."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A block of a page: commands with their outputs, or a file."""
+
+    place: str
+    language: str
+    text: str
+    words: tuple[str, ...]
+    before: str = ""
+
+    def word(self, key: str) -> str:
+        return next((word.partition("=")[2] for word in self.words if word.startswith(f"{key}=")), "")
+
+    @property
+    def needs(self) -> set[str]:
+        return {"physics", "broker", "robot", "network"} & set(self.words)
+
+    @property
+    def runs(self) -> bool:
+        return self.language == "console" or bool(self.word("file") or self.word("append"))
+
+    def commands(self) -> list[tuple[str, list[str]]]:
+        """Each command, and the lines that it prints."""
+        parts = re.split(r"(?m)^\$ ", self.text)[1:]
+        return [(command, output.splitlines()) for command, _, output in (part.partition("\n") for part in parts)]
+
+
+def blocks(page: Path) -> Iterator[Shown]:
+    text = page.read_text(encoding="utf-8")
+    for found in BLOCK.finditer(text):
+        line = text.count("\n", 0, found.start("language")) + 1
+        words = tuple((found["words"] or "").split())
+        yield Shown(f"{page.relative_to(ROOT)}:{line}", found["language"], found["text"], words, found["before"] or "")
+
+
+def available() -> set[str]:
+    """What the machine has of what a block may need."""
+    there = {"physics"} if importlib.util.find_spec("mujoco") else set()
+    return there | ({"broker"} if shutil.which("rabbitmq-server") else set())
+
+
+def differing(expected: list[str], printed: list[str]) -> str | None:
+    """The first expected line that was not printed where it should be; None where all is as expected."""
+    at, free = 0, False
+    for line in expected:
+        if line.strip() == "…":
+            free = True
+            continue
+        places = range(at, len(printed) if free else min(at + 1, len(printed)))
+        place = next((n for n in places if same(line, printed[n])), None)
+        if place is None:
+            return line
+        at, free = place + 1, False
+    return None if free or at == len(printed) else f"only these lines, and not: {printed[at]}"
+
+
+def same(expected: str, printed: str) -> bool:
+    """Whether two lines are the same but for spaces, what `…` stands for, and small differences of numbers."""
+    wanted, line = " ".join(expected.split()), " ".join(printed.split())
+    pattern = ".*".join(NUMBER.sub("(\0)", re.escape(part).replace("\\ ", " ")) for part in _masked(wanted))
+    found = re.fullmatch(pattern.replace("\0", NUMBER.pattern), line)
+    return bool(found) and all(map(_near, NUMBER.findall(wanted.replace("…", " ")), found.groups()))
+
+
+def _masked(text: str) -> list[str]:
+    return text.split("…")
+
+
+def _near(expected: str, printed: str) -> bool:
+    a, b = (float(number.replace(",", "")) for number in (expected, printed))
+    return abs(a - b) <= max(1.0, abs(a) / 5)
+
+
+class Workplace:
+    """A folder in which the blocks of one page are run, one after another."""
+
+    def __init__(self, folder: Path, bus: str = "") -> None:
+        self.bus = bus
+        self.folder = folder / "lumen"
+        self.empty = folder / "empty"
+        self.empty.mkdir(parents=True)
+        self.folder.mkdir()
+        for source in (ROOT / name for name in PROJECT):
+            if source.is_dir():
+                shutil.copytree(source, self.folder / source.name, ignore=shutil.ignore_patterns(".lumen"))
+            else:
+                shutil.copy2(source, self.folder)
+        self.here = self.folder
+
+    def perform(self, block: Shown) -> Iterator[str]:
+        """Run a block or write its file; what is not as the page says, a line each."""
+        if block.word("in") == "empty":
+            self.here = self.empty
+        if name := block.word("file") or block.word("append"):
+            file = self.here / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            before = file.read_text(encoding="utf-8") if block.word("append") else ""
+            file.write_text(before + block.text, encoding="utf-8")
+            return
+        if block.before:
+            self._run([block.before])
+        commands = block.commands()
+        bus = {"LUMEN_BUS": self.bus} if "broker" in block.needs else {}
+        printed = self._run([command for command, _ in commands], bus)
+        for number, (command, expected) in enumerate(commands):
+            lines, code = printed[number] if number < len(printed) else ([], -1)
+            wanted = int(block.word("ends") or 0) if number == len(commands) - 1 else 0
+            if code != wanted:
+                yield f"{block.place}: `{command}` ended with {code}, not {wanted}:\n" + "\n".join(lines[-12:])
+            elif (line := differing([line for line in expected if line], [line for line in lines if line])) is not None:
+                yield f"{block.place}: `{command}` did not print\n    {line}\nbut\n" + "\n".join(lines[-30:])
+
+    def _run(
+        self, commands: list[str], variables: Mapping[str, str] = MappingProxyType({})
+    ) -> list[tuple[list[str], int]]:
+        """What each command printed, with its exit code; what was started in the background ends with the block."""
+        where = self.folder.parent / "where"
+        script = "".join(f"{command}\nprintf '\\n%s %d\\n' '{END}' $?\n" for command in commands) + f"pwd >{where}\n"
+        path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+        environment = os.environ | variables | {"PATH": path, "COLUMNS": "120", "NO_COLOR": "1", "LC_ALL": "C.UTF-8"}
+        with tempfile.TemporaryFile("w+", encoding="utf-8") as out:
+            process = subprocess.Popen(
+                ["bash", "-c", script], cwd=self.here, env=environment, stdin=subprocess.DEVNULL,
+                stdout=out, stderr=subprocess.STDOUT, start_new_session=True,
+            )  # fmt: skip
+            try:
+                process.wait(LONGEST)
+            except subprocess.TimeoutExpired:
+                print(f"{commands} took more than {LONGEST:.0f} s", file=sys.stderr)
+            finally:
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGTERM)
+                process.wait(10)
+            out.seek(0)
+            text = out.read()
+        if where.exists():
+            self.here = Path(where.read_text(encoding="utf-8").strip())
+        parts = re.split(rf"\n{re.escape(END)} (\d+)\n", text)
+        return [(lines.splitlines(), int(code)) for lines, code in zip(parts[::2], parts[1::2], strict=False)]
+
+
+@contextlib.contextmanager
+def broker() -> Iterator[str]:
+    """A RabbitMQ of our own on loopback, by its address."""
+    from tests.rabbitmq import RabbitMQ
+
+    rabbitmq = RabbitMQ()
+    try:
+        rabbitmq.start()
+        yield rabbitmq.url
+    finally:
+        rabbitmq.stop()
+
+
+def check(page: Path, there: set[str], bus: str = "") -> tuple[int, list[str], list[str]]:
+    """How many commands of a page were run, what was not as it says, and what was left out."""
+    shown = [block for block in blocks(page) if block.runs]
+    count, wrong, left = 0, [], []
+    if not any(block.language == "console" and block.needs <= there for block in shown):
+        return 0, [], [f"{block.place} ({', '.join(block.needs)})" for block in shown]
+    with tempfile.TemporaryDirectory(prefix="lumen-documented-") as folder:
+        place = Workplace(Path(folder), bus)
+        for block in shown:
+            if block.needs <= there:
+                count += len(block.commands()) if block.language == "console" else 0
+                wrong += place.perform(block)
+            else:
+                left.append(f"{block.place} ({', '.join(block.needs - there)})")
+    return count, wrong, left
+
+
+def all_pages() -> list[Path]:
+    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Run what the documentation shows, and compare what it prints.")
+    parser.add_argument("pages", nargs="*", type=Path, metavar="PAGE", help="README.md and docs/*.md, if not said")
+    began, there, count, bad = time.monotonic(), available(), 0, 0
+    pages = [path.resolve() for path in parser.parse_args().pages] or all_pages()
+    wanted = any("broker" in block.needs & there for page in pages for block in blocks(page))
+    with broker() if wanted else contextlib.nullcontext("") as bus:
+        for page in pages:
+            ran, wrong, left = check(page, there, bus)
+            count, bad = count + ran, bad + len(wrong)
+            print("\n".join(wrong + [f"not run: {block}" for block in left]), end="\n" if wrong or left else "")
+    print(f"{count} commands of the documentation, {bad} not as it says, {time.monotonic() - began:.0f} s")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,123 @@
+"""What bash, zsh and fish complete, each asked itself; and what the parser makes of words that are half written."""
+
+import os
+import pty
+import select
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from lumen.cli.main import VERBS, main
+from tests.guarded import Guarded, run_guarded
+
+ROOT = Path(__file__).parents[2]
+DEADLINE = 30.0
+
+
+def completed(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
+    assert main(["completion", "words", *(f".{word}" for word in words)]) == 0
+    return [line.partition("\t")[0] for line in capsys.readouterr().out.splitlines()]
+
+
+def test_verbs_are_completed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert completed(capsys, "") == [*VERBS, "--help", "--version"]
+    assert completed(capsys, "li") == ["lint"]
+
+
+def test_options_are_completed_but_those_that_are_there(capsys: pytest.CaptureFixture[str]) -> None:
+    assert completed(capsys, "lint", "--st") == ["--strict", "--stdin-filename"]
+    assert completed(capsys, "lint", "--strict", "--st") == ["--stdin-filename"]
+    assert completed(capsys, "lint", "--select", "speech", "--sel") == ["--select"]
+
+
+@pytest.mark.parametrize(
+    ("words", "some"),
+    [
+        (["lint", "--format", ""], "sarif"),
+        (["run", "--story", "v"], "visitor"),
+        (["run", "--speed", "4", "--story", "v"], "visitor"),
+        (["test", "shy", "vis"], "visitor"),
+        (["play", ""], "dance"),
+        (["explain", "unknown-st"], "unknown-state"),
+        (["run", "--language", ""], "id"),
+        (["topic", "p"], "pub"),
+        (["diff", ""], "live"),
+        (["graph", ""], "tour"),
+        (["graph", "--state", "go"], "goodbye"),
+        (["export", "scxml", ""], "tour"),
+    ],
+    ids=" ".join,
+)
+def test_names_and_choices_are_completed(
+    words: list[str], some: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    assert some in completed(capsys, *words)
+
+
+@pytest.mark.parametrize("words", [["frobnicate", ""], ["play", "dance", ""], ["lint", ""], ["plot", ""]])
+def test_where_files_are_meant_or_nothing_is_known_the_shell_is_left_alone(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert completed(capsys, *words) == []
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> str:
+    """A PATH with `lumen` on it, for shells without a user."""
+    lumen = tmp_path / "bin" / "lumen"
+    lumen.parent.mkdir()
+    lumen.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT / "engine"}" exec "{sys.executable}" -m lumen "$@"\n')
+    lumen.chmod(0o755)
+    return f"{lumen.parent}:/usr/local/bin:/usr/bin:/bin"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("shell", "begin"),
+    [
+        (["bash", "--norc", "--noprofile", "-i"], 'eval "$(lumen completion bash)"'),
+        (["zsh", "-f", "-i"], 'autoload -Uz compinit; compinit -D -u; eval "$(lumen completion zsh)"'),
+    ],
+    ids=["bash", "zsh"],
+)
+def test_a_shell_completes_what_is_typed(shell: list[str], begin: str, path: str, tmp_path: Path) -> None:
+    """On a terminal of its own: the verb, the option, and the story are each written by one press of Tab."""
+    master, slave = pty.openpty()
+    environment = {"PATH": path, "HOME": str(tmp_path), "TERM": "dumb", "PS1": "$ "}
+    with Guarded(shell, stdin=slave, stdout=slave, stderr=slave, env=environment, cwd=ROOT) as process:
+        os.close(slave)
+        os.write(master, f"{begin}; echo rea''dy\n".encode())
+        assert "ready" in until(master, "ready\r\n")
+        os.write(master, b"lumen li\t")
+        assert "lint" in until(master, "lint")
+        os.write(master, b"--stri\t")
+        assert "--strict" in until(master, "--strict")
+        os.write(master, b"\x15lumen run --story visi\t")
+        assert "visitor" in until(master, "visitor")
+        process.kill()
+    os.close(master)
+
+
+def until(terminal: int, wanted: str) -> str:
+    """What a terminal shows until that stands there, or the time is over."""
+    shown, end = "", time.monotonic() + DEADLINE
+    while wanted not in shown and time.monotonic() < end:
+        if select.select([terminal], [], [], end - time.monotonic())[0]:
+            shown += os.read(terminal, 65536).decode(errors="replace")
+    return shown
+
+
+@pytest.mark.slow
+def test_fish_completes_with_what_it_means(path: str, tmp_path: Path) -> None:
+    asked = (
+        "lumen completion fish | source; complete -C 'lumen li'; complete -C 'lumen lint --stri'; complete -C 'lumen '"
+    )
+    environment = {"PATH": path, "HOME": str(tmp_path), "TERM": "dumb"}
+    command = ["fish", "--no-config", "-c", asked]
+    done = run_guarded(command, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=DEADLINE)
+    lines = done.stdout.splitlines()
+    assert lines[:2] == ["lint\tsay what is wrong in a project, and where", "--strict\tcount warnings as errors"]
+    assert {line.partition("\t")[0] for line in lines[2:]} >= VERBS.keys()

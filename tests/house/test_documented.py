@@ -1,0 +1,82 @@
+"""What the documentation shows can be typed. `make docs` runs all of it; here is the quick part."""
+
+import argparse
+import importlib
+import re
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from scripts.documented import ROOT, all_pages, available, blocks, check, differing
+
+from lumen.cli.intermixed import Intermixed
+from lumen.cli.main import MODULES, VERBS
+
+BLOCK = re.compile(r"(?m)^```[\s\S]*?^```$")
+
+
+def commands(page: Path) -> Iterator[str]:
+    """Every `lumen …` of a page: between backticks, in an indented line, behind a `$`."""
+    text = page.read_text(encoding="utf-8")
+    yield from re.findall(r"(?m)^\$ (lumen .*)$", text)
+    prose = BLOCK.sub("", text)
+    yield from re.findall(r"`(lumen [^`\n]+)`", prose)
+    yield from re.findall(r"(?m)^ {4}(lumen .*)$", prose)
+
+
+def can_be_typed(command: str) -> bool:
+    """Whether a verb's own parser takes the rest of a command; for a placeholder in capitals a number does."""
+    words = shlex.split(re.split(r" [|>&] ?| && |;| 2>", command)[0], comments=True)[1:]
+    words = ["1" if re.fullmatch("[A-Z]+", word) else word for word in words if not word.startswith("…")]
+    if not words or words[0].startswith("-") or words[0] == "1":
+        return True
+    if words[0] not in VERBS:
+        return False
+    parser = Intermixed()
+    importlib.import_module(f"lumen.cli.{MODULES.get(words[0], words[0])}").configure(parser)
+    try:
+        parser.parse_args(words[1:])
+    except SystemExit as end:
+        return end.code == 0 or len(words) == 1
+    except argparse.ArgumentError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("page", all_pages(), ids=lambda page: page.name)
+def test_every_command_of_a_page_is_one_that_lumen_takes(page: Path) -> None:
+    assert [command for command in commands(page) if not can_be_typed(command)] == []
+
+
+@pytest.mark.parametrize("page", all_pages(), ids=lambda page: page.name)
+def test_blocks_say_nothing_that_the_runner_does_not_know(page: Path) -> None:
+    for block in blocks(page):
+        keys = {word.partition("=")[0] for word in block.words}
+        assert keys <= {"in", "file", "append", "ends", "physics", "broker", "robot", "network"}, block.place
+        assert block.language != "console" or block.text.startswith("$ "), block.place
+
+
+def test_what_the_tutorial_shows_is_printed() -> None:
+    count, wrong, _ = check(ROOT / "docs/change-the-tour.md", available() - {"physics", "broker"})
+    assert (count > 0, wrong) == (True, [])
+
+
+@pytest.mark.parametrize(
+    ("shown", "printed", "is_same"),
+    [
+        ("3 errors in 1 file", "3 errors in 1 file", True),
+        ("70 files checked", "80 files checked", True),
+        ("70 files checked", "700 files checked", False),
+        (" 0:02.1  robot  “Hello”", " 0:02.3 robot “Hello”", True),
+        (" 0:02.1  robot  “Hello”", " 0:02.1 robot “Bye”", False),
+        ("robot “…”", "robot “anything 3”", True),
+        ("a\n…\nd", "a\nb\nc\nd", True),
+        ("a\n…\nd", "a\nb\nc", False),
+        ("a", "a\nb", False),
+        ("a\n…", "a\nb", True),
+        ("a (b)?", "a (b)?", True),
+    ],
+)
+def test_an_output_is_compared_with_a_tolerance(shown: str, printed: str, is_same: bool) -> None:
+    assert (differing(shown.splitlines(), printed.splitlines()) is None) is is_same

@@ -1,0 +1,72 @@
+"""What an exhibition keeps in `.lumen/` is passed over by version control, whoever made the folder."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from lumen.cli.main import main
+from lumen.modules.memory import Store
+from lumen.robots.deduplication_log import DeduplicationLog
+from lumen.runtime.home import Home
+from lumen.upkeep.private_folder import private_folder
+from tests.guarded import run_guarded
+
+ENGINE = Path(__file__).parents[2] / "engine" / "lumen"
+MAKERS = {
+    "upkeep/private_folder.py": "the one function",
+    "app/lint/outcome_cache.py": "a folder within a private one",
+    "app/starting.py": "a project, which is to be committed",
+    "cli/writing.py": "where the user says",
+    "robots/simulation/shells.py": "the robot's shape",
+}
+"""Who makes folders that stay, and why that is no leak."""
+
+
+def staged(folder: Path) -> str:
+    """What `git add -A` takes of a folder."""
+    run_guarded(["git", "init", "-q", folder], check=True)
+    run_guarded(["git", "add", "-A"], cwd=folder, check=True)
+    return str(run_guarded(["git", "ls-files"], cwd=folder, check=True, capture_output=True, text=True).stdout)
+
+
+@pytest.mark.parametrize("first", ["home", "memory", "commands"])
+def test_git_takes_nothing_of_it_whoever_comes_first(first: str, tmp_path: Path) -> None:
+    folder = tmp_path / ".lumen"
+    match first:
+        case "home":
+            home = Home(folder)
+            home.hold()
+            home.write("door.json", b"{}")
+            home.release()
+        case "memory":
+            Store(folder / "memory.db").visitors()
+        case "commands":
+            DeduplicationLog(folder / "commands.jsonl").note("1")
+    assert len(list(folder.iterdir())) >= 2
+    assert staged(tmp_path) == ""
+
+
+def test_after_a_run_git_takes_only_the_project(copy: Path) -> None:
+    before = staged(copy)
+    main(["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "1s"])
+    assert (copy / ".lumen").is_dir()
+    assert staged(copy) == before
+
+
+def test_a_folder_of_before_is_mended_and_what_somebody_wrote_stays(tmp_path: Path) -> None:
+    (tmp_path / "faces.npz").touch()
+    private_folder(tmp_path)
+    assert (tmp_path / ".gitignore").read_text().endswith("\n*\n")
+    (tmp_path / ".gitignore").write_text("*.db\n")
+    private_folder(tmp_path)
+    assert (tmp_path / ".gitignore").read_text() == "*.db\n"
+
+
+def test_nobody_else_makes_a_folder_that_stays() -> None:
+    made = {
+        path.relative_to(ENGINE).as_posix()
+        for path in ENGINE.rglob("*.py")
+        if re.search(r"\.mkdir\(|makedirs\(", path.read_text())
+    }
+    assert made == MAKERS.keys()

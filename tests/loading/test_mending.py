@@ -1,0 +1,57 @@
+"""What slipped in a file that is not YAML: looked for in the lines before, and tried."""
+
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from lumen.loading.line_marks import marks_of
+from lumen.loading.mending import failure, mistake
+
+TOUR = (Path(__file__).parents[2] / "behaviors/tour.yaml").read_text()
+
+
+def test_a_line_says_what_it_leaves_open() -> None:
+    assert marks_of('en: ["a, b", c') == (None, None, (("[", 4),), (), 14, ())
+    assert marks_of("on: {guard: \"x != '', target: y}").quote == ('"', 12)
+    assert marks_of("- it's # a comment with [ and \"") == (None, None, (), (), 6, ())
+    assert marks_of("en: 'I'm sorry'").ended == (("'", 4), ("'", 6))
+    assert marks_of("x: [1, 2}]").surplus == (("}", 8),)
+    assert marks_of("say: {{ context.name }}").braces == (5,)
+
+
+def test_the_mended_text_is_yaml_and_has_the_same_lines() -> None:
+    broken = TOUR.replace("{guard: \"context.visitor != ''\", target", "{guard: \"context.visitor != '', target")
+    failed = failure(broken)
+    assert failed is not None
+    found = mistake(broken, failed, failed)
+    assert found is not None
+    slip, mended = found
+    assert broken.split("\n")[slip.line - 1][slip.column - 1] == '"'
+    assert failed - slip.line > 5  # it was noticed much later
+    assert failure(mended) is None
+    assert mended == TOUR
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_whatever_is_broken_nothing_but_its_lines_is_changed(seed: int) -> None:
+    random = Random(seed)
+    text = TOUR
+    for _ in range(random.randint(1, 3)):
+        at = random.randrange(len(text))
+        text = (
+            text[:at]
+            + random.choice(["", '"', "'", "{", "}", "[", "]", ":", "\n", " ", "- ", "#", "\t", "&", "*"])
+            + text[at + 1 :]
+        )
+    failed = failure(text)
+    if failed is None or (found := mistake(text, failed, failed)) is None:
+        return
+    slip, mended = found
+    before, after = text.split("\n"), mended.split("\n")
+    assert len(before) == len(after)
+    assert {i for i, (one, other) in enumerate(zip(before, after, strict=True)) if one != other} <= {*slip.meant}
+    further = failure(mended)
+    assert further is None or further > failed
+    assert 1 <= slip.line <= len(before)
+    assert slip.length > 0

@@ -1,0 +1,45 @@
+"""What lint says of a row, and how many rows it says the right thing of."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from lumen.language.diagnostics import Diagnostic
+from lumen.rules import check_files
+from tests.mistakes.rows import Row
+
+
+class Judged(NamedTuple):
+    """A row, what lint found, and whether that is at the line, names what to do, and is one thing."""
+
+    row: Row
+    found: tuple[Diagnostic, ...]
+    placed: bool
+    named: bool
+    single: bool
+
+
+class Score(NamedTuple):
+    """Rows of which each holds, of so many."""
+
+    placed: int
+    named: int
+    single: int
+    rows: int
+
+    def percent(self) -> tuple[float, float, float]:
+        return 100 * self.placed / self.rows, 100 * self.named / self.rows, 100 * self.single / self.rows
+
+
+def judge(row: Row) -> Judged:
+    """Whether the finding is at the right line and names the remedy there, and whether there is no other."""
+    _, found = check_files(row.root, row.files)
+    here = [d for d in found if d.place.file == row.file and d.place.line == row.line]
+    named = any(words.lower() in f"{d.message} {d.hint}".lower() for d in here for words in row.says)
+    return Judged(row, found, bool(here), named, len(found) == 1)
+
+
+def score(judged: Iterable[Judged]) -> Score:
+    several = list(judged)
+    return Score(
+        sum(j.placed for j in several), sum(j.named for j in several), sum(j.single for j in several), len(several)
+    )

@@ -1,0 +1,38 @@
+"""98 of 100 mistakes that people make are told at the line, with what to do, once; nothing is said of what is right."""
+
+from functools import cache
+
+import pytest
+
+from lumen.rules import check_files
+from tests.mistakes.__main__ import told
+from tests.mistakes.rows import PROJECTS, Row, rows, shipped
+from tests.mistakes.scores import Judged, judge, score
+
+
+@cache
+def judged() -> tuple[Judged, ...]:
+    return tuple(judge(row) for row in rows("table"))
+
+
+@pytest.mark.parametrize("project", PROJECTS)
+def test_nothing_is_said_of_what_is_shipped(project: str) -> None:
+    assert check_files(PROJECTS[project], shipped(project))[1] == ()
+
+
+def test_mistakes_are_told_where_they_are_with_what_to_do_and_once() -> None:
+    found = score(judged())
+    wrong = "\n".join(told(j) for j in judged() if not (j.placed and j.named and j.single))
+    assert found.rows >= 150
+    assert min(found.percent()) >= 98, wrong
+
+
+@pytest.mark.parametrize("row", list(rows("legal")), ids=lambda row: row.name)
+def test_nothing_is_said_of_what_is_right(row: Row) -> None:
+    assert [str(d) for d in check_files(row.root, row.files)[1]] == []
+
+
+def test_there_are_many_rows() -> None:
+    names = [row.name for row in rows("table")]
+    assert len(set(names)) == len(names) >= 150
+    assert sum(1 for _ in rows("legal")) >= 60

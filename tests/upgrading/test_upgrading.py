@@ -1,0 +1,161 @@
+"""Words change from one vocabulary to the next: files are rewritten where the word stands, and nowhere else."""
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+import yaml
+
+from lumen.cli.main import main
+from lumen.errors import UsageError
+from lumen.language.vocabulary import VOCABULARY
+from lumen.loading import settings
+from lumen.loading.document import Document
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+from lumen.rules.upgrading import MIGRATIONS, Migration, Rewriting, renamed_key, upgraded
+
+BASE = Path(__file__).parents[1] / "lint/base"
+ROOT = Path(__file__).parents[2]
+
+
+def polite(document: Document) -> Iterator[Rewriting]:
+    """A change that is more than a key: vocabulary 3 says `please` where 2 said `now`."""
+    if document.file.startswith("motions/") and document.data.get("when") == "now":
+        yield Rewriting(document.place(("when",)), "`when: now` is `when: please` now", "please")
+
+
+MADE_UP: Mapping[int, tuple[Migration, ...]] = {
+    1: (
+        renamed_key("behaviors/*.yaml", ("states", "*", "do"), "perform"),
+        renamed_key("lumen.yaml", ("hall",), "room"),
+    ),
+    2: (polite,),
+}
+"""Two steps of a vocabulary that nobody has: from 1 to 2, and from 2 to 3."""
+FILES = {
+    "lumen.yaml": b"# the museum\r\nbehavior: tour # the only one\r\nhall: hall.xml\r\n",
+    "behaviors/tour.yaml": (
+        b"states:\n  greet:   # at the door\n    'do': {say: do}\n    on: {do: bye}\n"
+        b"  bye: {do: [], entry: {}}   # do\n"
+    ),
+    "behaviors/stories/do.yaml": b"states: {a: {do: 1}}\n",
+    "motions/wave.yaml": b"when: now  # at once\n",
+    "schemas/messages/x.schema.json": b"{}",
+}
+
+
+def test_words_are_rewritten_where_they_stand_and_comments_stay() -> None:
+    after, done = upgraded(FILES, MADE_UP, 3)
+    assert after == FILES | {
+        "lumen.yaml": b"# the museum\r\nlumen: 3\r\nbehavior: tour # the only one\r\nroom: hall.xml\r\n",
+        "behaviors/tour.yaml": (
+            b"states:\n  greet:   # at the door\n    perform: {say: do}\n    on: {do: bye}\n"
+            b"  bye: {perform: [], entry: {}}   # do\n"
+        ),
+        "motions/wave.yaml": b"when: please  # at once\n",
+    }
+    assert [f"{each.place.file}:{each.place.line} {each.why}" for each in done] == [
+        "behaviors/tour.yaml:3 `do` is `perform` now",
+        "behaviors/tour.yaml:5 `do` is `perform` now",
+        "lumen.yaml:3 `hall` is `room` now",
+        "motions/wave.yaml:1 `when: now` is `when: please` now",
+        "lumen.yaml:2 says vocabulary 3 now",
+    ]
+
+
+def test_steps_begin_at_the_number_that_the_files_say_and_once_is_enough() -> None:
+    files = FILES | {"lumen.yaml": b"lumen: 2   # since spring\nhall: hall.xml\n"}
+    after, done = upgraded(files, MADE_UP, 3)
+    assert after["lumen.yaml"] == b"lumen: 3   # since spring\nhall: hall.xml\n"
+    assert after["behaviors/tour.yaml"] == files["behaviors/tour.yaml"]
+    assert len(done) == 2
+    assert upgraded(after, MADE_UP, 3) == (after, [])
+
+
+@pytest.mark.parametrize(
+    ("files", "said"),
+    [
+        ({"lumen.yaml": b"lumen: 4\n"}, "is written for vocabulary 4, and this Lumen reads 3: install a newer one"),
+        ({"lumen.yaml": b"lumen: soon\n"}, "says no vocabulary that there could be"),
+        ({"lumen.yaml": b"lumen: true\n"}, "says no vocabulary that there could be"),
+        ({"lumen.yaml": b"lumen: 0\n"}, "says no vocabulary that there could be"),
+        ({"lumen.yaml": b"- a\n"}, "says no vocabulary that there could be"),
+        ({"lumen.yaml": b"{}\n"}, "is empty"),
+        ({"lumen.yaml": b"a: [\n"}, "lumen.yaml can't be read, so nothing is rewritten"),
+        ({"lumen.yaml": b"? a\n: 1\n"}, "write `lumen: 3` as its first key, by hand"),
+        ({}, "lumen.yaml can't be read, so nothing is rewritten"),
+        ({**FILES, "behaviors/b.yaml": b'a: "\n'}, "behaviors/b.yaml can't be read, so nothing is rewritten"),
+        (
+            {**FILES, "lumen.yaml": b"hall: a\nroom: b\n"},
+            "lumen.yaml:1: `hall` is `room` now, and both stand here: delete one of them",
+        ),
+    ],
+)
+def test_what_can_not_be_rewritten_is_told_and_left(files: dict[str, bytes], said: str) -> None:
+    with pytest.raises(UsageError) as raised:
+        upgraded(files, MADE_UP, 3)
+    assert said in str(raised.value)
+
+
+@pytest.mark.parametrize("main", [b"a: 1\n", b"{a: 1}\n", b"---\n# x\n  a: 1\n  b: {c: 2}\n", b"\xef\xbb\xbfa: 1"])
+def test_the_number_is_written_before_all_else_however_the_file_is_laid_out(main: bytes) -> None:
+    after, _ = upgraded({"lumen.yaml": main})
+    was, now = (yaml.safe_load(text.decode("utf-8-sig")) for text in (main, after["lumen.yaml"]))
+    assert now == {"lumen": VOCABULARY} | was
+    assert next(iter(now)) == "lumen"
+
+
+@pytest.mark.parametrize("project", ["", "examples/museum", "examples/erratum"])
+def test_the_shipped_projects_say_what_they_are_written_for(project: str) -> None:
+    files = read_files(ROOT / project)
+    assert upgraded(files) == (files, [])
+
+
+def test_what_leads_to_the_vocabulary_of_this_lumen_is_known_from_every_older_one() -> None:
+    assert sorted(MIGRATIONS) == list(range(1, VOCABULARY))
+
+
+def test_a_file_without_the_number_is_of_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a Lumen of a later vocabulary finds it."""
+    files = read_files(BASE)
+    assert check_files(BASE, files)[1] == ()
+    monkeypatch.setattr(settings, "VOCABULARY", 2)
+    (found,) = check_files(BASE, files)[1]
+    assert (str(found.code), found.place.file) == ("other-vocabulary", "lumen.yaml")
+    assert "written for vocabulary 1; this Lumen reads 2" in found.message
+    assert found.hint == "`lumen upgrade` rewrites the files and says what it changed"
+    stated = files | {"lumen.yaml": b"lumen: 2\n" + files["lumen.yaml"]}
+    assert check_files(BASE, stated)[1] == ()
+
+
+def test_of_newer_files_nothing_else_is_said() -> None:
+    files = {"lumen.yaml": b"lumen: 2\nflavour: sweet\nbehavior: none\n", "behaviors/a.yaml": b"moods: {}\n"}
+    (found,) = check_files(BASE, files)[1]
+    assert (str(found.code), found.place[1:3]) == ("other-vocabulary", (1, 8))
+    assert "install a newer Lumen" in found.hint
+
+
+def test_the_command_says_what_it_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, content in read_files(BASE).items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(content)
+    before = (tmp_path / "lumen.yaml").read_bytes()
+    assert main(["upgrade", str(tmp_path), "--check"]) == 1
+    assert main(["upgrade", str(tmp_path), "--diff"]) == 0
+    assert "\n+lumen: 1\n" in capsys.readouterr().out
+    assert (tmp_path / "lumen.yaml").read_bytes() == before
+    assert main(["upgrade", str(tmp_path), "--check", "--format", "json"]) == 1
+    assert json.loads(capsys.readouterr().out) == {
+        "vocabulary": 1,
+        "rewritten": [{"file": "lumen.yaml", "line": 1, "why": "says vocabulary 1 now"}],
+        "errors": None,
+    }
+    assert main(["upgrade", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "says vocabulary 1 now\n1 place rewritten; the files are written for vocabulary 1\n" in said
+    assert (tmp_path / "lumen.yaml").read_bytes() != before
+    assert main(["upgrade", str(tmp_path), "--check"]) == 0
+    assert main(["lint", "--strict", str(tmp_path)]) == 0
+    assert main(["upgrade", str(tmp_path), "--check", "--diff"]) == 2
