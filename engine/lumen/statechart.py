@@ -210,11 +210,11 @@ class Interpreter(Generic[C]):
         Raises UsageError if `data` is not JSON data, because a snapshot could not hold it.
         """
         need(event, (str, Event), "an event", "its name, or an Event")
-        name, data, _, sendid = Event(event, data) if isinstance(event, str) else event
+        name, data, _, sendid, cause = Event(event, data) if isinstance(event, str) else event
         need_text(name, "the name of an event")
         data = plain(data, "event.data")
         self.wake()
-        taken = self._take(step(self.machine, self._now, Event(name, data, self.clock.now(), sendid)))
+        taken = self._take(step(self.machine, self._now, Event(name, data, self.clock.now(), sendid, cause)))
         self.wake()
         return taken
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from lumen.language.causes import Cause
 from lumen.language.modules import MODULES
 
 
@@ -10,13 +11,15 @@ class Event(NamedTuple):
     """Something that happened, named and timed; `event.name` and `event.data` in expressions.
 
     `data` is JSON data. `at` [s] is the time on the exhibition's clock, the only clock a step reads. `sendid` is
-    the id of the timer or delayed `send` that raised it (SCXML 5.10.1), empty for events from outside.
+    the id of the timer or delayed `send` that raised it (SCXML 5.10.1), empty for events from outside. `cause` says who
+    or what brought it about, None where nobody said; no expression reads it.
     """
 
     name: str
     data: Any = None
     at: float = 0.0
     sendid: str = ""
+    cause: Cause | None = None
 
 
 def _object(**fields: object) -> dict[str, object]:

@@ -98,7 +98,7 @@ class FastPaths:
             names, context, before, language, timers, doing, history, counters, generator, epoch, invoked, halted,
             place, zone, output,
         ) = snapshot  # fmt: skip
-        name, data, at, sendid = event
+        name, data, at, sendid, _ = event
         if sendid or invoked:
             return None
         try:
