@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+from lumen.language.causes import UNKNOWN_ORIGIN, Origin
 from lumen.language.commands import MotorCommand, Say
 from lumen.language.events import Event
 from lumen.language.motions import MotionDefinition
@@ -225,12 +226,21 @@ class Clock(Protocol):
 
 
 class Message(NamedTuple):
-    """A message as a subscriber receives it; `body` is JSON data."""
+    """A message as a subscriber receives it; `body` is JSON data.
+
+    `id` tells it from every other message, `sender` is the program it comes from, empty where that is not known. `time`
+    is when it was sent, as far as the sender said, else when it came [s since 1970, in UTC]. `cause` is what in a
+    behaviour asked for it, as in `Origin`.
+    """
 
     key: str
     body: Any
     reply_to: str = ""
     correlation_id: str = ""
+    id: str = ""
+    sender: str = ""
+    time: float = 0.0
+    cause: str = ""
 
 
 MessageHandler = Callable[[Message], None]
@@ -259,9 +269,18 @@ class Bus(Protocol):
         ...
 
     def publish(
-        self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
+        self,
+        key: str,
+        body: Any,
+        *,
+        reply_to: str = "",
+        correlation_id: str = "",
+        ttl: float | None = None,
+        origin: Origin = UNKNOWN_ORIGIN,
     ) -> None:
         """Send a body (JSON data); safe from any thread. Raises BusError after `close`, or if it is not JSON data.
+
+        The bus fills in what `origin` leaves empty: an id that no other message has, its own `sender`, and the time.
 
         It never waits for a handler on another thread, nor for the network. A bus without its own thread (`memory://`)
         may run handlers inside `publish`, if no other thread is delivering; so a handler should only enqueue.

@@ -40,8 +40,16 @@ def test_properties_are_read_as_pika_reads_them() -> None:
         user_id="u", app_id="a", cluster_id="x",
     )  # fmt: skip
     read = read_properties(b"".join(given.encode()))
-    assert read == MessageProperties("text/plain", "c", "lumen.a", "m", "t", 7)
+    assert read == MessageProperties("text/plain", "c", "lumen.a", "m", "t", 7, "a", 2)
     assert read_properties(b"".join(pika.BasicProperties(timestamp=7).encode())).timestamp == 7
+
+
+def test_of_the_headers_the_cause_is_read_where_texts_stand_before_it() -> None:
+    def read(headers: dict[str, object]) -> str:
+        return read_properties(b"".join(pika.BasicProperties(headers=headers).encode())).headers
+
+    assert read({"cause": "d3"}) == read({"reason": "x", "cause": "d3"}) == "d3"
+    assert read({}) == read({"cause": 3}) == read({"deep": {"cause": "d3"}, "cause": "d3"}) == ""
 
 
 def test_no_bytes_are_too_many_or_too_few() -> None:

@@ -23,6 +23,7 @@ from lumen.bus import connect
 from lumen.buses.validated import ValidatedBus, validated
 from lumen.errors import UsageError
 from lumen.interpreters.statechart import Step
+from lumen.language.causes import PROGRAM, Origin
 from lumen.language.commands import Say
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -35,8 +36,8 @@ from lumen.runtime.resuming import FreshStart, Resumption
 from lumen.runtime.sending import send
 from lumen.runtime.visitor import VisitorActor
 
-PROGRAM = "the program"
-"""Who stops an exhibition that is open in a program."""
+EXHIBITION = "exhibition"
+"""The sender of what the parts of an exhibition in one process say."""
 
 
 class Exhibition:
@@ -64,7 +65,7 @@ class Exhibition:
     ) -> None:
         url = bus if isinstance(bus, str) else "memory://"
         shared = not url.startswith("memory:")
-        opened = validated(connect(bus) if isinstance(bus, str) else bus, project)
+        opened = validated(connect(bus, sender=EXHIBITION) if isinstance(bus, str) else bus, project)
         self.node = WholeNode(project, setup, opened, story, narrator, language=language, shared=shared)
         behavior, directory = self.node.behavior, run_directory
         self.reloader: Reloader | None = None
@@ -158,7 +159,7 @@ class Exhibition:
 
     def send(self, route: str, body: Mapping[str, Any]) -> None:
         """Send a message on a route, as a module would. Raises UsageError where there is none, or it is not allowed."""
-        if reason := send(self.node.bus, self.project, route, body):
+        if reason := send(self.node.bus, self.project, route, body, Origin(sender=PROGRAM)):
             raise UsageError(f"can't send on `{route}`: {reason}")
 
     def say(self, text: str, language: str = "") -> None:

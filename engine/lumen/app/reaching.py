@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from lumen.bus import connect
 from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.errors import BusUnreachableError
+from lumen.language.causes import TERMINAL
 from lumen.language.routing_keys import default_key
 from lumen.loading.packaged import find_project
 from lumen.loading.project import main_settings
@@ -33,15 +34,15 @@ def reach_exhibition(project: str | None, bus: str | None) -> Reached:
     found = _running(root)
     url = bus or os.environ.get("LUMEN_BUS") or ("" if found is None else str(found.get("bus", "")))
     if url and not url.startswith("memory:"):
-        return Reached(connect(url), *_keys(root, found), url)
+        return Reached(connect(url, sender=TERMINAL), *_keys(root, found), url)
     if found is None:
         settings = main_settings(root)
         if settings and not settings.bus.startswith("memory:"):
-            return Reached(connect(settings.bus), *_keys(root, None), settings.bus)
+            return Reached(connect(settings.bus, sender=TERMINAL), *_keys(root, None), settings.bus)
         raise BusUnreachableError(
             f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`, or say --bus URL"
         )
-    return Reached(LocalBusClient(LocalAddress.of(found)), *_keys(root, found))
+    return Reached(LocalBusClient(LocalAddress.of(found), TERMINAL), *_keys(root, found))
 
 
 def _running(root: Path) -> dict[str, Any] | None:

@@ -8,19 +8,19 @@ made again, and what waits to be sent waits on. Where a route carries stops, the
 import logging
 import threading
 import time
-import uuid
 from collections import Counter
 from collections.abc import Callable, Mapping
-from itertools import count
 from typing import Any
 
 from lumen.buses.bodies import JSON, check_key, check_subscription, encode
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import OutageLog
+from lumen.buses.identities import filled
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of
 from lumen.buses.transport import Transport
 from lumen.errors import BusClosedError, BusError
+from lumen.language.causes import UNKNOWN_ORIGIN, Origin
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Message, MessageHandler
 
@@ -35,15 +35,15 @@ class AmqpBus:
 
     Raises BusError, saying what to do, where the broker can't be used. How a message travels is said by the route of
     its key (`carry`). One without a route waits in the outbox for a broker that is away, and is sent once; with a `ttl`
-    it is thrown away when that is over, here or on the broker.
+    it is thrown away when that is over, here or on the broker. `sender` is the program whose handle this is.
     """
 
-    def __init__(self, url: str) -> None:
+    def __init__(self, url: str, sender: str = "") -> None:
+        self.sender = sender
         self._address = BrokerAddress(url)
         self._outage = OutageLog(self._address)
         self._closed = False
         self._routes: Mapping[str, Route] = {}
-        self._name, self._numbers = uuid.uuid4().hex[:12], count(1)
         self._stop_transport: Transport | None = None
         self._watching, self._opening = False, threading.Lock()
         self._transport = Transport(self._address, self._outage)
@@ -102,21 +102,39 @@ class AmqpBus:
         return lambda: consumer.remove(subscription)
 
     def publish(
-        self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
+        self,
+        key: str,
+        body: Any,
+        *,
+        reply_to: str = "",
+        correlation_id: str = "",
+        ttl: float | None = None,
+        origin: Origin = UNKNOWN_ORIGIN,
     ) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: nothing can be published any more")
         for name in (key, reply_to, correlation_id):
             check_key(name)
         route, data = self._routes.get(key), encode(body)
-        keep, id = 0, ""
+        keep, must = 0, False
         if route is not None:
             ttl = route.lifetime if ttl is None else ttl
-            keep = 0 if route.must_arrive else route.keep or MAX_LENGTH_TELEMETRY
-            id = f"{self._name}-{next(self._numbers)}" if route.must_arrive else ""
+            must = route.must_arrive
+            keep = 0 if must else route.keep or MAX_LENGTH_TELEMETRY
         deadline = None if ttl is None else time.monotonic() + ttl
         self._transport_of(route).publisher.outbox.put(
-            OutgoingMessage(EXCHANGE, key, data, JSON, reply_to, correlation_id, deadline, keep=keep, id=id)
+            OutgoingMessage(
+                EXCHANGE,
+                key,
+                data,
+                JSON,
+                reply_to,
+                correlation_id,
+                deadline,
+                keep=keep,
+                must=must,
+                origin=filled(origin, self.sender),
+            )
         )
 
     def returns(self, handler: Callable[[str], None]) -> None:
@@ -130,7 +148,7 @@ class AmqpBus:
         if self._closed:
             raise BusClosedError("the bus is closed: nothing can be published any more")
         check_key(message.reply_to)
-        self._transport.answer(message.reply_to, message.correlation_id, body)
+        self._transport.answer(message.reply_to, message.correlation_id, body, self.sender)
 
     def close(self) -> None:
         """Deliver what was published, to our own subscribers too, within 5 s, and end."""

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 
 from lumen.buses.bodies import JSON, decode
+from lumen.buses.identities import believed
 from lumen.buses.queues import UNROUTED
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import Refused
@@ -118,7 +119,8 @@ class Dispatcher:
         except ValueError as error:
             self._drop(delivery, str(error))
             return
-        message = Message(delivery.key, body, properties.reply_to or "", properties.correlation_id or "")
+        origin = believed(properties.message_id, properties.app_id, properties.timestamp, properties.headers)
+        message = Message(delivery.key, body, properties.reply_to or "", properties.correlation_id or "", *origin)
         self._hand(subscription, delivery, message)
 
     def _hand(self, subscription: Subscription, delivery: Delivery, message: Message) -> None:

@@ -12,12 +12,15 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
+from time import time
 from typing import Any
 from weakref import WeakValueDictionary
 
 from lumen.buses.bodies import check_key, check_subscription, copied
+from lumen.buses.identities import filled, new_id
 from lumen.errors import BusClosedError, Refused
 from lumen.interpreters.routing import matches
+from lumen.language.causes import UNKNOWN_ORIGIN, Origin
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler
 from lumen.upkeep.drops import DropLog
@@ -30,6 +33,8 @@ MAX_QUEUED_MESSAGES = 100_000
 """Messages that wait for a subscriber; then the oldest give way."""
 
 _log = logging.getLogger(__name__)
+
+_new = tuple.__new__  # half the price of Message(…)
 
 
 class _Subscription:
@@ -85,7 +90,9 @@ class _Hub:
         """Answer a sender who wants an answer that nobody could use the message."""
         if message.reply_to and (listeners := self.find(message.reply_to)):
             text = f"message refused: {reason}"
-            self.queue.append((listeners, Message(message.reply_to, text, "", message.correlation_id)))
+            self.queue.append(
+                (listeners, Message(message.reply_to, text, "", message.correlation_id, new_id(), "", time()))
+            )
 
     def deliver(self) -> None:
         """Empty the queue, unless somebody is at it already.
@@ -133,10 +140,11 @@ class MemoryBus:
     """A handle on a bus inside this process: a new one, or with a `name` the one that all handles of that name share.
 
     Every subscriber is handed a copy of the body of its own. A message goes to who was subscribed when it was
-    published; there is no time to wait in, so `ttl` changes nothing.
+    published; there is no time to wait in, so `ttl` changes nothing. `sender` is the program whose handle this is.
     """
 
-    def __init__(self, name: str = "") -> None:
+    def __init__(self, name: str = "", sender: str = "") -> None:
+        self.sender = sender
         self._hub = _shared.setdefault(name, _Hub()) if name else _Hub()
         self._mine: dict[_Subscription, None] = {}
         self._closed = False
@@ -168,7 +176,14 @@ class MemoryBus:
         return undo
 
     def publish(
-        self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
+        self,
+        key: str,
+        body: Any,
+        *,
+        reply_to: str = "",
+        correlation_id: str = "",
+        ttl: float | None = None,
+        origin: Origin = UNKNOWN_ORIGIN,
     ) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: nothing can be published any more")
@@ -178,7 +193,11 @@ class MemoryBus:
         if listeners is None:
             listeners = hub.find(key)
         if listeners:
-            hub.queue.append((listeners, Message(key, own, reply_to, correlation_id)))
+            if origin is UNKNOWN_ORIGIN:  # nearly every message: nothing is made that it does not need
+                message = _new(Message, (key, own, reply_to, correlation_id, new_id(), self.sender, time(), ""))
+            else:
+                message = Message(key, own, reply_to, correlation_id, *filled(origin, self.sender))
+            hub.queue.append((listeners, message))
             if len(hub.queue) > MAX_QUEUED_MESSAGES:
                 hub.shed()
             hub.deliver()

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from lumen.errors import BusFullError
+from lumen.language.causes import UNKNOWN_ORIGIN, Origin
 from lumen.upkeep.drops import DropLog
 
 MAX_PENDING_MESSAGES = 50_000
@@ -24,8 +25,8 @@ _log = logging.getLogger(__name__)
 class OutgoingMessage(NamedTuple):
     """A message on its way out; after `deadline` [s, monotonic] nobody wants it any more.
 
-    Of those with the same key at most `keep` wait, the newest (0: all). One with an `id` must arrive: it is sent until
-    the broker has it, and who receives it twice knows it by its id. `headers` travel with it.
+    Of those with the same key at most `keep` wait, the newest (0: all). One that `must` arrive is sent until the broker
+    has it, and who receives it twice knows it by the id in its `origin`. `headers` travel with it.
     """
 
     exchange: str
@@ -37,7 +38,8 @@ class OutgoingMessage(NamedTuple):
     deadline: float | None = None
     type: str = ""
     keep: int = 0
-    id: str = ""
+    must: bool = False
+    origin: Origin = UNKNOWN_ORIGIN
     headers: dict[str, str] | None = None
 
     @property
@@ -66,7 +68,7 @@ class Outbox:
 
     def put(self, message: OutgoingMessage) -> None:
         with self._changed:
-            if message.id:
+            if message.must:
                 self._check_room(message)
                 self._must.append(message)
             elif message.keep:
@@ -102,7 +104,7 @@ class Outbox:
         """These could not be sent: they are the next again. What newer ones have replaced meanwhile is forgotten."""
         with self._changed:
             for message in reversed(list(messages)):
-                if message.id:
+                if message.must:
                     self._must.appendleft(message)
                 elif message.keep and len(self._newest.get(message.key, ())) >= message.keep:
                     continue
@@ -157,7 +159,7 @@ class Outbox:
         self._bytes[True] = sum(len(p.body) for p in self._must)
 
     def _weigh(self, message: OutgoingMessage, sign: int) -> None:
-        self._bytes[bool(message.id)] += sign * len(message.body)
+        self._bytes[message.must] += sign * len(message.body)
 
     def _pop(self) -> OutgoingMessage:
         message = self._must.popleft() if self._must else self._next()

@@ -1,8 +1,8 @@
 """What AMQP says of a message, read so that nothing in it can end the connection.
 
 pika reads every header that a sender may invent, deep tables and dates beyond its own, and raises inside its reading of
-frames: the connection is gone with one message. Nobody here needs headers, so they are passed over unread; of the rest
-what is no text is left out, and named.
+frames: the connection is gone with one message. Of the headers only a text called `cause` is read, where nothing but
+texts stands before it; the others are passed over unread. Of the rest what is no text is left out, and named.
 """
 
 from struct import error as struct_error
@@ -14,6 +14,8 @@ from pika import frame, spec
 
 _HEADER_START = spec.FRAME_HEADER_SIZE + 12
 """Where in a frame the properties begin: behind the class, the weight and the length of the body."""
+CAUSE_HEADER = "cause"
+"""The header that says what in a behaviour asked for a message."""
 _FIELDS = (
     ("content_type", "text"), ("content_encoding", "text"), ("headers", "table"), ("delivery_mode", "byte"),
     ("priority", "byte"), ("correlation_id", "text"), ("reply_to", "text"), ("expiration", "text"),
@@ -24,7 +26,10 @@ _FIELDS = (
 
 
 class MessageProperties(NamedTuple):
-    """What we go by of a message's properties; `unreadable` names those that were left out."""
+    """What we go by of a message's properties; `unreadable` names those that were left out.
+
+    `headers` is what the one that we read says: `CAUSE_HEADER`.
+    """
 
     content_type: str = ""
     correlation_id: str = ""
@@ -32,6 +37,9 @@ class MessageProperties(NamedTuple):
     message_id: str = ""
     type: str = ""
     timestamp: int = 0
+    app_id: str = ""
+    delivery_mode: int = 0
+    headers: str = ""
     unreadable: tuple[str, ...] = ()
 
 
@@ -86,7 +94,23 @@ def _text(data: bytes, at: int) -> tuple[str | None, int]:
 
 
 def _table(data: bytes, at: int) -> tuple[str | None, int]:
-    return "", at + 4 + unpack_from(">I", data, at)[0]
+    start = at + 4
+    end = start + unpack_from(">I", data, at)[0]
+    return _cause(data[start:end]), end
+
+
+def _cause(table: bytes) -> str:
+    """The text `cause` of a table, as long as texts come first: an entry is a name, an `S`, and a text."""
+    at = 0
+    while at < len(table):
+        named = at + 1 + table[at]
+        if table[named : named + 1] != b"S" or len(table) < named + 5:
+            break
+        said = named + 5
+        name, at = table[at + 1 : named], said + unpack_from(">I", table, named + 1)[0]
+        if name == CAUSE_HEADER.encode():
+            return table[said:at].decode(errors="replace")
+    return ""
 
 
 def _byte(data: bytes, at: int) -> tuple[int | None, int]:

@@ -11,6 +11,7 @@ from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.outbox import Outbox, OutgoingMessage
 from lumen.buses.polled import PolledConnection
+from lumen.buses.properties import CAUSE_HEADER
 from lumen.buses.queues import SIDE_QUEUES, UNROUTED, ChannelCall, Queue, declare_side_queues
 from lumen.language.diagnostics import did_you_mean
 from lumen.upkeep.drops import DropLog
@@ -90,7 +91,7 @@ class Publisher(BrokerConnection):
 
     def disconnect(self, connection: PolledConnection) -> None:
         lost, self._window, self._bytes = self._window, {}, 0
-        self.outbox.put_back([message for message in lost.values() if message.id])
+        self.outbox.put_back([message for message in lost.values() if message.must])
         connection.close()
 
     def end(self, timeout: float) -> bool:
@@ -113,6 +114,7 @@ class Publisher(BrokerConnection):
         return not busy and self.outbox.sleep() and not (self.ending.is_set() and not self._window)
 
     def _send(self, message: OutgoingMessage) -> None:
+        id, sender, time, cause = message.origin
         properties = pika.BasicProperties(
             content_type=message.content_type,
             content_encoding="utf-8",
@@ -120,12 +122,14 @@ class Publisher(BrokerConnection):
             correlation_id=message.correlation_id or None,
             expiration=message.expiration,
             type=message.type or None,
-            message_id=message.id or None,
-            delivery_mode=PERSISTENT_DELIVERY if message.id else None,
-            headers=message.headers,
+            message_id=id or None,
+            app_id=sender or None,
+            timestamp=int(time) or None,
+            delivery_mode=PERSISTENT_DELIVERY if message.must else None,
+            headers={CAUSE_HEADER: cause} if cause else message.headers,
         )
         try:
-            wanted = bool(message.id or (self.returned and message.exchange))
+            wanted = bool(message.must or (self.returned and message.exchange))
             self.channel.basic_publish(message.exchange, message.key, message.body, properties, mandatory=wanted)
         except (AMQPChannelError, AMQPConnectionError, OSError):
             raise
@@ -145,7 +149,7 @@ class Publisher(BrokerConnection):
         self._bytes -= sum(len(message.body) for message in messages)
         if isinstance(method, pika.spec.Basic.Nack):
             _log.warning("the broker at %s could not take %d messages", self.address, len(messages))
-            self.outbox.put_back([message for message in messages if message.id])
+            self.outbox.put_back([message for message in messages if message.must])
 
     def _returned(self, _: Any, method: Any, properties: Any, body: bytes) -> None:
         """Nobody is there for a message; one that must arrive is put where somebody can find it."""
@@ -154,7 +158,7 @@ class Publisher(BrokerConnection):
             return
         if self.returned:
             self.returned(key)
-        if not properties.message_id:
+        if properties.delivery_mode != PERSISTENT_DELIVERY:
             return
         self.warn_once(key)
         if self.has_side_queues:

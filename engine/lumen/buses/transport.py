@@ -9,10 +9,12 @@ from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import OutageLog
 from lumen.buses.consumer import Consumer
 from lumen.buses.dispatcher import FLUSH_MARK, Dispatcher
+from lumen.buses.identities import filled
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.publisher import Publisher
 from lumen.buses.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY
 from lumen.buses.subscriptions import Delivery
+from lumen.language.causes import UNKNOWN_ORIGIN
 from lumen.language.routing_keys import KEY_PREFIXES
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import RateLimiter
@@ -50,7 +52,7 @@ class Transport:
         self.consumer.begin_alone()
         self.publisher.begin_alone()
 
-    def answer(self, reply_to: str, correlation_id: str, body: Any) -> None:
+    def answer(self, reply_to: str, correlation_id: str, body: Any, sender: str = "") -> None:
         """Send to a key of ours, or to a queue: there a text as it is, as modules of 2015 expect it; else JSON."""
         ours = reply_to.split(".")[0] in KEY_PREFIXES and not reply_to.startswith("amq.")
         text = isinstance(body, str) and not ours
@@ -63,6 +65,7 @@ class Transport:
                 TEXT if text else JSON,
                 correlation_id=correlation_id,
                 deadline=deadline,
+                origin=filled(UNKNOWN_ORIGIN, sender),
             )
         )
 

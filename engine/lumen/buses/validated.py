@@ -7,6 +7,7 @@ from typing import Any
 from lumen.buses.bodies import check_subscription
 from lumen.buses.checking import BodyCheck, body_checks
 from lumen.errors import BadMessageError, Refused
+from lumen.language.causes import UNKNOWN_ORIGIN, Origin
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.language.routing_keys import KEY_PREFIXES
@@ -80,11 +81,18 @@ class ValidatedBus:
         return self._bus.subscribe(pattern, checked)
 
     def publish(
-        self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
+        self,
+        key: str,
+        body: Any,
+        *,
+        reply_to: str = "",
+        correlation_id: str = "",
+        ttl: float | None = None,
+        origin: Origin = UNKNOWN_ORIGIN,
     ) -> None:
         if reason := self._wrong(key, body):
             raise BadMessageError(f"a message on `{key}` can't be sent: {reason}")
-        self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl)
+        self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
 
     def reply(self, message: Message, body: Any) -> None:
         self._bus.reply(message, body)

@@ -171,7 +171,7 @@ def _processes(
     clock: Clock = setup.clock if setup else FollowingClock(speed)
     transcript = Transcript(clock.now, lambda: node.project.machine)
     how = ProcessOptions(url, speed, options.reload, language, options.fresh)
-    bus = validated(connect(url), project)
+    bus = validated(connect(url, sender="+".join(parts)), project)
     alerts = _alerts(project, parts, transcript, story)
     node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts)
     visitor = next((part for part in node.parts if isinstance(part, VisitorPart)), None)

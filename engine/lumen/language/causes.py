@@ -18,3 +18,25 @@ class Cause(NamedTuple):
     key: str = ""
     sender: str = ""
     time: float = 0.0
+
+
+class Origin(NamedTuple):
+    """Where a message says that it comes from: its `id`, the program that is its `sender`, and when it was sent.
+
+    `time` is in [s since 1970, in UTC]. `cause` is what in the behaviour asked for it: the id of a command (`d3`), or
+    the step that published it (`step 42`). What is empty, a bus fills in as far as it can.
+    """
+
+    id: str = ""
+    sender: str = ""
+    time: float = 0.0
+    cause: str = ""
+
+
+UNKNOWN_ORIGIN = Origin()
+"""Nothing is said: the bus gives the message an id, its own sender and the time."""
+
+PROGRAM, TERMINAL, VISITOR = "the program", "a terminal", "the visitor"
+"""Senders that are no part of an exhibition: who opened it in Python, who types commands, who stands before it."""
+PEOPLE = frozenset((TERMINAL, VISITOR))
+"""Senders behind whose messages stands a person."""

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from lumen.language.causes import UNKNOWN_ORIGIN, Origin
 from lumen.language.projects import Project
 from lumen.language.routing_keys import default_key
 from lumen.ports import Bus
@@ -17,9 +18,16 @@ def key_of(project: Project, route: str) -> str:
 
 
 def publish_on(
-    bus: Bus, project: Project, route: str, body: Any, *, reply_to: str = "", ttl: float | None = None
+    bus: Bus,
+    project: Project,
+    route: str,
+    body: Any,
+    *,
+    reply_to: str = "",
+    ttl: float | None = None,
+    origin: Origin = UNKNOWN_ORIGIN,
 ) -> None:
     """Publish on a route, for as long as it says, else for `ttl` [s]. Raises BusError where the bus refuses."""
     row = project.routes.get(route)
     lasting = row.ttl if row and row.ttl is not None else ttl
-    bus.publish(key_of(project, route), body, reply_to=reply_to, ttl=lasting)
+    bus.publish(key_of(project, route), body, reply_to=reply_to, ttl=lasting, origin=origin)

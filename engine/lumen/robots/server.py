@@ -9,6 +9,7 @@ from itertools import count
 from typing import Any
 
 from lumen.errors import BusError
+from lumen.language.causes import UNKNOWN_ORIGIN, Origin
 from lumen.language.commands import Say
 from lumen.language.events import RECORDED, Event
 from lumen.language.projects import Project
@@ -144,11 +145,11 @@ class RobotServer:
         self._tell(NOTICED_ROUTE, {"name": event.name, "data": event.data, "time": event.at})
         return False
 
-    def begins(self, command: RobotCommand) -> None:
-        """The robot starts this: what it says is on the bus as a text, too, for a voice of its own."""
+    def begins(self, command: RobotCommand, id: str = "") -> None:
+        """The robot starts this, under that id: what it says is on the bus as a text, too, for a voice of its own."""
         if isinstance(command, Say) and TEXT_ROUTE in self._project.routes:
             body = {"name": self._project.robot, "text": command.text, "date": self._date()}
-            self._tell(TEXT_ROUTE, {**body, "language": command.language})
+            self._tell(TEXT_ROUTE, {**body, "language": command.language}, Origin(cause=id))
 
     def close(self) -> None:
         """Publish what was taken and end the threads; harmless when repeated."""
@@ -163,11 +164,11 @@ class RobotServer:
 
     def _given(self, command: RobotCommand, id: str) -> None:
         self._started(command, id)
-        self.begins(command)
+        self.begins(command, id)
 
-    def _tell(self, route: str, body: dict[str, Any]) -> None:
+    def _tell(self, route: str, body: dict[str, Any], origin: Origin = UNKNOWN_ORIGIN) -> None:
         try:
-            publish_on(self._bus, self._project, route, body)
+            publish_on(self._bus, self._project, route, body, origin=origin)
         except BusError as error:
             _log.warning("what the robot publishes on `%s` was not sent: %s", route, error)
 

@@ -1,9 +1,11 @@
-"""From messages to events: what arrives on any thread waits here for the next tick."""
+"""From messages to events: what arrives on any thread waits here for the next tick, with whom it came from."""
 
 import logging
 from collections import deque
 from collections.abc import Callable
+from time import time
 
+from lumen.language.causes import PEOPLE, Cause, CauseKind
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
@@ -19,7 +21,7 @@ class Inbox:
 
     def __init__(self, bus: Bus) -> None:
         self._bus = bus
-        self._waiting: deque[tuple[str, object]] = deque(maxlen=MAX_WAITING_EVENTS)
+        self._waiting: deque[tuple[str, object, Cause]] = deque(maxlen=MAX_WAITING_EVENTS)
         self._drops = DropLog(_log, "events")
         self._undo: dict[tuple[str, str], Callable[[], None]] = {}
 
@@ -37,18 +39,20 @@ class Inbox:
         return not self._waiting
 
     def drain(self, now: float) -> list[Event]:
-        """Everything that has arrived, as events at `now` [s]."""
+        """Everything that has arrived, as events at `now` [s]; each is caused by its message."""
         events = []
         self._drops.tell()
         while self._waiting:
-            name, body = self._waiting.popleft()
-            events.append(Event(name, body, now))
+            name, body, cause = self._waiting.popleft()
+            events.append(Event(name, body, now, cause=cause))
         return events
 
     def _receiver(self, event: str) -> Callable[[Message], None]:
         def receive(message: Message) -> None:
+            kind: CauseKind = "person" if message.sender in PEOPLE else "message"
+            cause = Cause(kind, message.id, message.key, message.sender, time())
             self._drops.push(
-                self._waiting, (event, message.body), lambda waiting: waiting[0], "the behaviour is too slow"
+                self._waiting, (event, message.body, cause), lambda waiting: waiting[0], "the behaviour is too slow"
             )
 
         return receive

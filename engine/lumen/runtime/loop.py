@@ -10,6 +10,7 @@ from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, St
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot
+from lumen.runtime.causes import caused
 from lumen.runtime.cues import MotionCues
 from lumen.runtime.inbox import Inbox
 from lumen.runtime.performer import Performer
@@ -45,7 +46,8 @@ class BehaviorLoop:
     performed; `observers` are called. Where ticks stop for `patience` [s] of the clock the behaviour gets the event
     `brain.lost`. Where a tick fails for a fault of the bundle or of ours, `rescue` may go on with another bundle.
     `tracking` lets controllers follow what is seen; without one that is done here. `rests` is whether the behaviour has
-    let the robot rest. `wall_clock` says where the time of day has become another.
+    let the robot rest. `wall_clock` says where the time of day has become another. `step` is the number of the step
+    whose commands are being performed (`Runtime.steps`).
     """
 
     def __init__(
@@ -65,6 +67,7 @@ class BehaviorLoop:
         self._last = clock.now()
         self.patience = BRAIN_LOST_AFTER
         self.rests = False
+        self.step = 0
         self._lost_at = -inf
 
     @property
@@ -114,7 +117,8 @@ class BehaviorLoop:
             self._regulate(now)
         except Exception as error:
             self._recover(error, now)
-        self._perform(self.runtime.tick(now, self._gather(now)), now)
+        for emission in self.runtime.advance(now, self._gather(now)):
+            self._perform(emission.commands, now, step=emission.step)
         return now
 
     def take(self, step: Step) -> None:
@@ -196,18 +200,21 @@ class BehaviorLoop:
         heard = [event for event in answers if _ours(event) and not self._known(event, now)]
         if self.wall_clock and (clock_set := self.wall_clock.tick(self.clock.now(), self.runtime.snapshot)):
             happened = [clock_set, *happened]
-        own = [*heard, *(event._replace(at=now) for event in happened)]
+        own = [caused(event) for event in (*heard, *(event._replace(at=now) for event in happened))]
         own.sort(key=lambda event: event.name not in CAUSES)
         return [*own, *self.inbox.drain(now)]
 
-    def _perform(self, commands: Sequence[Command], now: float, project: Project | None = None) -> None:
+    def _perform(
+        self, commands: Sequence[Command], now: float, project: Project | None = None, step: int | None = None
+    ) -> None:
+        self.step = self.runtime.steps if step is None else step
         for command in commands:
             for observer in self.observers:
                 observer.performing(command, now)
             self._cues.performing(command)
             self._note_rest(command)
             try:
-                self.performer.perform(project or self.project, command, now)
+                self.performer.perform(project or self.project, command, now, self.step)
             except Exception as error:
                 self._recover(error, now)
 

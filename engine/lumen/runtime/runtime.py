@@ -2,11 +2,12 @@
 
 import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
 from lumen.interpreters.migration import MigrationVerdict, plan
 from lumen.interpreters.statechart import Snapshot, Step, elapse, initial, step
+from lumen.language.causes import Cause
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.people import PersonName
@@ -14,6 +15,14 @@ from lumen.language.projects import Project
 from lumen.runtime.forgetting import forgetful
 
 _log = logging.getLogger(__name__)
+
+
+class Emission(NamedTuple):
+    """Commands, and the number of the step that asked for them."""
+
+    step: int
+    commands: Sequence[Command]
+
 
 Rescue = Callable[[Exception], Sequence[Command] | None]
 """Called after a failure: goes on with another bundle, and returns the commands for that; None where it can't."""
@@ -25,8 +34,8 @@ class Runtime:
     Where a step fails, `rescue` may go on with another bundle, under which the event happens again. Without one, the
     event or timer is dropped, and logged: a message that a step can't bear must not end the exhibition.
 
-    `observe` is shown every step in the order taken. `epoch` is when time 0 was [s since 1970], `timezone`
-    where the clock on the wall hangs.
+    `observe` is shown every step in the order taken, and `steps` counts them: the first of a run is 1. `epoch` is when
+    time 0 was [s since 1970], `timezone` where the clock on the wall hangs.
     """
 
     def __init__(
@@ -38,6 +47,7 @@ class Runtime:
         self.project = project
         self._observe, self._rescue = observe, rescue
         self._snapshot: Snapshot | None = None
+        self.steps = 0
 
     @property
     def snapshot(self) -> Snapshot:
@@ -62,11 +72,16 @@ class Runtime:
 
     def tick(self, now: float, events: Iterable[Event] = ()) -> list[Command]:
         """Let everything happen that is due until `now` [s], timers and events in the order of their times."""
-        commands: list[Command] = []
+        return [command for emission in self.advance(now, events) for command in emission.commands]
+
+    def advance(self, now: float, events: Iterable[Event] = ()) -> list[Emission]:
+        """As `tick`, with the step that each command is from; steps that ask for nothing are left out."""
+        emitted: list[Emission] = []
         for event in sorted(events, key=lambda e: e.at):
-            commands += self._timers(min(event.at, now))
-            commands += self._hear(event)
-        return commands + self._timers(now)
+            self._timers(min(event.at, now), emitted)
+            self._hear(event, emitted)
+        self._timers(now, emitted)
+        return emitted
 
     def plan(self, project: Project, at: float, *, now: bool = False, back: bool = False) -> MigrationVerdict:
         """How the behaviour would go on under another bundle at `at` [s], or why it can't; nothing changes.
@@ -82,6 +97,7 @@ class Runtime:
     def take(self, taken: Step) -> list[Command]:
         """Go on with a step from where the behaviour stands; its commands."""
         self._snapshot = taken.snapshot
+        self.steps += 1
         self._observe(taken)
         return list(taken.commands)
 
@@ -91,33 +107,44 @@ class Runtime:
         self._snapshot = forgetful(self.project.machine, before, person)
         return self._snapshot is not before
 
-    def _hear(self, event: Event) -> list[Command]:
+    def _hear(self, event: Event, emitted: list[Emission]) -> None:
         try:
-            return self.take(step(self.project.machine, self.snapshot, event))
+            self._emit(step(self.project.machine, self.snapshot, event), emitted)
         except Exception as error:
             rescued = self._rescue(error)
             if rescued is not None:
-                return [*rescued, *self._hear(event)]
-            _log.error("the event `%s` is dropped: %s", event.name, error, exc_info=_ours(error))
-            return []
+                emitted.append(Emission(self.steps, rescued))
+                self._hear(event, emitted)
+            else:
+                _log.error("the event `%s` is dropped: %s", event.name, error, exc_info=_ours(error))
 
-    def _timers(self, until: float) -> list[Command]:
-        commands: list[Command] = []
+    def _timers(self, until: float, emitted: list[Emission]) -> None:
         try:
             for taken in elapse(self.project.machine, lambda: self.snapshot, until):
-                commands += self.take(taken)
+                self._emit(_timed(taken), emitted)
         except Exception as error:
             rescued = self._rescue(error)
             if rescued is not None:
-                return [*commands, *rescued, *self._timers(until)]
-            self._drop_timer(error)
-        return commands
+                emitted.append(Emission(self.steps, rescued))
+                self._timers(until, emitted)
+            else:
+                self._drop_timer(error)
+
+    def _emit(self, taken: Step, emitted: list[Emission]) -> None:
+        if commands := self.take(taken):
+            emitted.append(Emission(self.steps, commands))
 
     def _drop_timer(self, error: Exception) -> None:
         first = min(self.snapshot.timers, key=lambda t: t.due_ns)
         _log.error("the timer `%s` is dropped: %s", first.event, error, exc_info=_ours(error))
         kept = tuple(timer for timer in self.snapshot.timers if timer is not first)
         self._snapshot = self.snapshot._replace(timers=kept)
+
+
+def _timed(taken: Step) -> Step:
+    """A step that a timer caused, which says so; the core need not."""
+    event = taken.event
+    return taken._replace(event=event._replace(cause=Cause("timer", event.sendid))) if event else taken
 
 
 def _ours(error: Exception) -> Exception | None:

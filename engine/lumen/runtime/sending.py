@@ -3,16 +3,18 @@
 from typing import Any
 
 from lumen.errors import BusError
+from lumen.language.causes import UNKNOWN_ORIGIN, Origin
 from lumen.language.projects import Project
 from lumen.ports import Bus
 
 
-def send(bus: Bus, project: Project, route: str, body: Any) -> str:
+def send(bus: Bus, project: Project, route: str, body: Any, origin: Origin = UNKNOWN_ORIGIN) -> str:
     """Publish a body on the route of that name; empty, or why it could not be."""
     if route not in project.routes:
         return f"there is no route `{route}`"
     try:
-        bus.publish(project.routes[route].key_for(project.robot), body, ttl=project.routes[route].ttl)
+        row = project.routes[route]
+        bus.publish(row.key_for(project.robot), body, ttl=row.ttl, origin=origin)
     except BusError as error:
         return str(error)
     return ""

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 
 from lumen.interpreters.statechart import Snapshot
+from lumen.language.causes import Cause
 from lumen.language.events import CLOCK_SET, Event
 
 TOLERANCE = 1.0
@@ -27,4 +28,4 @@ class WallClockWatch:
             epoch = self._clock() - now
         if (epoch, zone) == (snapshot.epoch, snapshot.timezone):
             return None
-        return Event(CLOCK_SET, {"epoch": epoch, "timezone": zone}, now, CLOCK_SET)
+        return Event(CLOCK_SET, {"epoch": epoch, "timezone": zone}, now, CLOCK_SET, Cause("timer", CLOCK_SET))

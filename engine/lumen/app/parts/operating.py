@@ -12,6 +12,7 @@ from lumen.app.status import LastReload, status_of
 from lumen.errors import BusError, LumenError
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.ports import Message, Sense
 from lumen.robots.person_hold import StoppedBy
@@ -95,7 +96,7 @@ class OperatorPart(Part, Observer):
     def _goto(self, state: str, by: str, now: float, *, only: bool) -> dict[str, Any]:
         """Enter a state; with `only` say what that would leave and enter."""
         loop = self._behavior.loop
-        event = Event(GOTO, {"by": by, "state": state}, now)
+        event = Event(GOTO, {"by": by, "state": state}, now, cause=Cause("person", sender=by))
         try:
             step = entered_directly(loop.project.machine, loop.runtime.snapshot, state, event)
         except LumenError as error:

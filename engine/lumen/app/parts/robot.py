@@ -77,8 +77,8 @@ class RobotPart(Part, Observer):
 
     def performing(self, command: Command, now: float) -> None:
         match command:
-            case Start(_, Say() as said):
-                self.server.begins(said)
+            case Start(id, Say() as said):
+                self.server.begins(said, id)
 
     def answered(self, event: Event) -> None:
         self.server.answer(event)

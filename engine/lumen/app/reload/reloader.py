@@ -21,6 +21,7 @@ from lumen.app.status import LastReload
 from lumen.buses.validated import by_key
 from lumen.errors import BusError, UsageError
 from lumen.interpreters.changes import changes, live
+from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
@@ -166,7 +167,7 @@ class Reloader:
             return
         queue = self._queue
         if order.verb == "stop":
-            self._behavior.loop.happen(Event("stop", {}))
+            self._behavior.loop.happen(Event("stop", {}, cause=Cause("person", sender=message.sender)))
             order.answer(self._answer("stopped", "the behaviour is told to stop").to_json())
         elif order.verb == "status":
             order.answer(self._status().to_json())

@@ -12,6 +12,7 @@ from itertools import count
 from typing import Any
 
 from lumen.buses.bodies import check_key, check_subscription, encode
+from lumen.buses.identities import filled
 from lumen.buses.local.address import ANSWER_TIMEOUT, LocalAddress
 from lumen.buses.local.frames import (
     CLIENT,
@@ -27,6 +28,7 @@ from lumen.buses.local.frames import (
 )
 from lumen.buses.local.sendbuffer import SendBuffer
 from lumen.errors import BusClosedError, BusError, BusRefusedError, BusUnreachableError, Refused
+from lumen.language.causes import UNKNOWN_ORIGIN, Origin
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler
 from lumen.upkeep.drops import DropLog
@@ -44,10 +46,12 @@ class LocalBusClient:
     """The bus of a `LocalBusServer`; raises BusError where none listens, or does not know the key.
 
     A thread sends, one receives, one runs the handlers. Where a handler is too slow the oldest messages are dropped.
-    When the exhibition ends, `gone` is set and nothing can be published any more.
+    When the exhibition ends, `gone` is set and nothing can be published any more. `sender` is the program whose handle
+    this is.
     """
 
-    def __init__(self, address: LocalAddress) -> None:
+    def __init__(self, address: LocalAddress, sender: str = "") -> None:
+        self.sender = sender
         self.gone = threading.Event()
         self._wire, self._read = _connect(address)
         self._unsent, self._closed = SendBuffer(), False
@@ -90,7 +94,14 @@ class LocalBusClient:
         return undo
 
     def publish(
-        self, key: str, body: Any, *, reply_to: str = "", correlation_id: str = "", ttl: float | None = None
+        self,
+        key: str,
+        body: Any,
+        *,
+        reply_to: str = "",
+        correlation_id: str = "",
+        ttl: float | None = None,
+        origin: Origin = UNKNOWN_ORIGIN,
     ) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: nothing can be published any more")
@@ -98,7 +109,7 @@ class LocalBusClient:
             check_key(name)
         if self.gone.is_set():
             raise BusClosedError("the exhibition is gone")
-        self._put(framed(["publish", key, reply_to, correlation_id, ttl], encode(body)))
+        self._put(framed(["publish", key, reply_to, correlation_id, ttl, *filled(origin, self.sender)], encode(body)))
 
     def returns(self, handler: Callable[[str], None]) -> None:
         self._returned = handler
@@ -161,9 +172,11 @@ class LocalBusClient:
 
     def _take(self, words: list[Any]) -> None:
         match words:
-            case ["message", number, key, reply_to, correlation_id, body] if handler := self._handlers.get(number):
+            case ["message", number, key, reply_to, correlation_id, *origin, body] if handler := self._handlers.get(
+                number
+            ):
                 with self._arriving:
-                    arrived = (handler, number, Message(key, body, reply_to, correlation_id))
+                    arrived = (handler, number, Message(key, body, reply_to, correlation_id, *origin))
                     self._drops.push(self._arrived, arrived, lambda waiting: waiting[2].key, "its handler is too slow")
                     self._arriving.notify()
             case ["subscribed", number, reason] if waiting := self._answers.pop(number, None):

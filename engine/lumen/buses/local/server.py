@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.buses.bodies import check_key, check_ttl, encode
+from lumen.buses.identities import believed
 from lumen.buses.local import address as addresses
 from lumen.buses.local.frames import (
     CLIENT,
@@ -28,6 +29,7 @@ from lumen.buses.local.frames import (
     unframed,
 )
 from lumen.errors import BusError
+from lumen.language.causes import Origin
 from lumen.ports import Bus, Message
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
@@ -176,8 +178,8 @@ class LocalBusServer:
                 client.undo.pop(number)()
             case ["unsubscribe", int()]:
                 pass
-            case ["publish", str(key), str(reply_to), str(correlation_id), ttl, body]:
-                self._publish(client, key, body, reply_to, correlation_id, ttl)
+            case ["publish", str(key), str(reply_to), str(correlation_id), ttl, *origin, body]:
+                self._publish(client, Message(key, body, reply_to, correlation_id, *believed(*origin)), ttl)
             case ["returns"]:
                 client.returns = True
             case ["mark"]:
@@ -205,16 +207,16 @@ class LocalBusServer:
         except BusError as error:
             client.send(frame("subscribed", number, str(error)))
 
-    def _publish(
-        self, client: ClientConnection, key: str, body: Any, reply_to: str, correlation_id: str, ttl: Any
-    ) -> None:
+    def _publish(self, client: ClientConnection, message: Message, ttl: Any) -> None:
+        key, body, reply_to, correlation_id, id, sender, sent, cause = message
         try:
             for name in (key, reply_to, correlation_id):
                 check_key(name)
             check_ttl(ttl)
             if client.returns and not self._heard(key):
                 client.send(frame("returned", key))
-            self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl)
+            origin = Origin(id, sender, sent, cause)
+            self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
         except BusError as error:
             client.send(frame("refused", key, str(error)))
 
@@ -240,8 +242,8 @@ class LocalBusServer:
                 if number < 0:
                     client.send(frame("marked"))
                 else:
-                    head = ["message", number, message.key, message.reply_to, message.correlation_id]
-                    client.send(framed(head, encode(message.body)))
+                    key, body, *around = message
+                    client.send(framed(["message", number, key, *around], encode(body)))
             client.flush()
         except OSError:
             self._disconnect(client)

@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any
 
 from lumen.errors import BusError
+from lumen.language.causes import Origin
 from lumen.language.commands import Rest, Stop
 from lumen.language.events import CUE, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
@@ -174,7 +175,7 @@ class RemoteRobot:
         if delegable and isinstance(command, Perform) and self._delegate(whole, command):
             return
         way = STOP_ROUTE if isinstance(command, Rest | Stop) else COMMAND_ROUTE
-        self._send(way, {**encode_command(command), "id": whole}, COMMAND_TTL)
+        self._send(way, {**encode_command(command), "id": whole}, COMMAND_TTL, whole)
 
     def _stopping(self) -> bool:
         """Whether something that stops the robot is on its way to it."""
@@ -202,9 +203,9 @@ class RemoteRobot:
     def _ask(self, method: str, whole: str) -> None:
         self._send(COMMAND_ROUTE, {"type": "motion", "method": method, "parameter": {"id": whole}}, COMMAND_TTL)
 
-    def _send(self, way: str, body: dict[str, Any], ttl: float) -> None:
+    def _send(self, way: str, body: dict[str, Any], ttl: float, cause: str = "") -> None:
         try:
-            publish_on(self._bus, self._project, way, body, ttl=ttl)
+            publish_on(self._bus, self._project, way, body, ttl=ttl, origin=Origin(cause=cause))
         except BusError as error:
             _log.warning("a command was not sent to the robot: %s", error)
 

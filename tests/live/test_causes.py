@@ -1,0 +1,90 @@
+"""Every event of a running exhibition says who or what brought it about; every message says where it comes from."""
+
+from collections.abc import Iterator
+
+import pytest
+
+import lumen
+from lumen.bus import Bus, connect
+from lumen.interpreters.statechart import Step
+from lumen.language.causes import Cause, Origin
+from lumen.language.events import Event
+from lumen.runtime.causes import caused
+from tests.waiting import Collector
+
+
+@pytest.fixture
+def bus() -> Iterator[Bus]:
+    bus = connect("memory://causes", sender="ears")
+    yield bus
+    bus.close()
+
+
+def test_a_tour_knows_the_cause_of_each_event(bus: Bus) -> None:
+    steps: list[Step] = []
+    said = Collector()
+    bus.subscribe("lumen.audio.text.stream", said)
+    with lumen.open(robot="recording", bus="memory://causes", story="visitor") as show:
+        show.observe(steps.append)
+        show.run()
+    causes = {step.event.cause for step in steps if step.event}
+    assert None not in causes
+    assert {cause.kind for cause in causes if cause} >= {"message", "person", "timer", "command"}
+    heard = next(step.event for step in steps if step.event and step.event.name == "heard")
+    assert heard.cause is not None
+    assert heard.cause[0] == "person"
+    assert heard.cause.sender == "the visitor"
+    assert heard.cause.key.endswith("audio.speech.recognition")
+    assert heard.cause.id
+    done = next(step.event for step in steps if step.event and step.event.name.startswith("done.command."))
+    assert done.cause == Cause("command", done.name.removeprefix("done.command."))
+    timer = next(step.event for step in steps if step.event and step.event.sendid)
+    assert timer.cause == Cause("timer", timer.sendid)
+    texts = [message for message in said.messages if message.key.endswith("text.stream")]
+    assert texts
+    assert all(message.cause[0] in "cd" and message.sender == "exhibition" for message in texts)
+    assert len({message.id for message in said.messages}) == len(said.messages)
+
+
+def test_what_a_step_publishes_names_the_step(bus: Bus) -> None:
+    said = Collector()
+    bus.subscribe("museum.lamp.set", said)
+    with lumen.open("examples/museum", robot="recording", bus="memory://causes", story="visit") as show:
+        show.run()
+        steps = show.node.loop.runtime.steps
+    numbers = [int(message.cause.removeprefix("step ")) for message in said.messages]
+    assert numbers
+    assert numbers == sorted(numbers)
+    assert 1 <= numbers[0] <= numbers[-1] <= steps
+
+
+def test_a_message_of_a_module_is_the_cause(bus: Bus) -> None:
+    steps: list[Step] = []
+    with lumen.open(robot="recording", bus="memory://causes") as show:
+        show.observe(steps.append)
+        show.tick()
+        bus.publish("lumen.audio.speech.recognition", {"name": "", "result": "dance", "date": ""}, origin=Origin("m1"))
+        show.send("face", {"x": 160, "y": 120})
+        show.tick()
+        found = {step.event.name: step.event.cause for step in steps if step.event and step.event.cause}
+    assert found["heard"][:4] == ("message", "m1", "lumen.audio.speech.recognition", "ears")
+    assert found["heard"].time > 1.6e9
+    assert found["face"][0] == "message"
+    assert found["face"].sender == "the program"
+
+
+@pytest.mark.parametrize(
+    ("event", "cause"),
+    [
+        (Event("done.command.d3"), Cause("command", "d3")),
+        (Event("stop", {"by": "Ana"}), Cause("person", sender="Ana")),
+        (Event("resume", {}), Cause("person")),
+        (Event("touched", {"sensor": "FrontTactil"}), Cause("robot")),
+        (Event("fallen", {}), Cause("robot")),
+        (Event("lost.command.d7", {}), Cause("start", "d7")),
+        (Event("brain.lost", {"seconds": 7.0}), Cause("start")),
+        (Event("heard", {}, cause=Cause("message", "m")), Cause("message", "m")),
+    ],
+)
+def test_what_nobody_named_a_cause_of_has_one(event: Event, cause: Cause) -> None:
+    assert caused(event) == event._replace(cause=cause)
