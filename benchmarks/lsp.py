@@ -189,8 +189,10 @@ class Typist:
 
 
 def cpu(pid: int) -> float:
-    """The CPU time of all threads of a process [s]."""
-    return sum(int(each.read_text().split()[0]) for each in Path(f"/proc/{pid}/task").glob("*/schedstat")) / 1e9
+    """The CPU time of all threads of a process, and of those that it has begun [s]."""
+    tasks = [*Path(f"/proc/{pid}/task").iterdir()]
+    own = sum(int((task / "schedstat").read_text().split()[0]) for task in tasks) / 1e9
+    return own + sum(cpu(int(child)) for task in tasks for child in (task / "children").read_text().split())
 
 
 def shown(took: list[Took]) -> str:

@@ -13,7 +13,7 @@ from lumen.lsp.completion import complete
 from lumen.lsp.definitions import definitions, uses
 from lumen.lsp.hover import hover
 from lumen.lsp.names import NameKind
-from lumen.lsp.renaming import applied, renamable, rename
+from lumen.lsp.renaming import applied, refuse_harm, renamable, rename
 from lumen.lsp.symbols import symbols
 from tests.mutation.mutants import Nursery
 
@@ -249,3 +249,10 @@ def test_a_route_that_goes_to_a_device_is_one_of_the_route_table() -> None:
     assert analysis.text("lumen.yaml").splitlines()[known.line - 1].startswith("  state: {key: lumen.state")
     renamed, (_, line, column) = written("lumen.yaml", "modules:", devices.replace("st|ate", "|"))
     assert "state" in {item.text.removesuffix(": ") for item in complete(renamed, "lumen.yaml", line, column)}
+
+
+def test_a_renaming_that_would_break_the_project_is_refused() -> None:
+    before, after = SHIPPED.diagnostics, SHIPPED.changed(TOUR, SHIPPED.text(TOUR) + "\nnonsense: 1\n").diagnostics
+    refuse_harm(before, before)
+    with pytest.raises(UsageError, match="nonsense"):
+        refuse_harm(before, after)

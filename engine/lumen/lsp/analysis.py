@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, gathered
 from lumen.loading.document import Document
@@ -16,17 +17,34 @@ from lumen.lsp.index import NameIndex
 from lumen.rules import check_files
 
 
+class Judgement(NamedTuple):
+    """What is to be said of a project: everything wrong, and of files that are no YAML what can be read."""
+
+    diagnostics: tuple[Diagnostic, ...]
+    broken: Mapping[str, BrokenFile]
+
+
 class Analysis:
     """What can be said of these files; each part is worked out when it is first asked for. Nothing here raises.
 
     `before` is the same project some keys ago: what could be read of a file then stands for one that can't be read now.
+    To another process it travels without what was worked out of it.
     """
 
     def __init__(self, root: Path, files: Mapping[str, bytes], before: "Analysis | None" = None) -> None:
         self.root, self.files = root, dict(sorted(files.items()))
-        self._before = dict(before.readable) if before else {}
+        self._before: Mapping[str, bytes] = before.__dict__.get("readable", before._before) if before else {}
         self._last_index = before.known_index if before else None
         self._known: Known = before.known if before else frozenset()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {
+            "root": self.root,
+            "files": self.files,
+            "_before": self._before,
+            "_last_index": None,
+            "_known": self._known,
+        }
 
     @cached_property
     def broken(self) -> Mapping[str, BrokenFile]:
@@ -41,12 +59,23 @@ class Analysis:
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Everything wrong, as `lumen lint` says it; of a file that is no YAML also what is wrong elsewhere in it."""
-        return self._diagnostics(lambda: None)
+        return self.judged(lambda: None).diagnostics
 
-    def check(self, between: Callable[[], None]) -> None:
-        """Work the diagnostics out; what `between` raises from time to time ends that, and nothing is kept."""
-        if "diagnostics" not in self.__dict__:
-            self.__dict__["diagnostics"] = self._diagnostics(between)
+    def judged(self, between: Callable[[], None]) -> Judgement:
+        """What is to be said; what `between` raises from time to time ends that."""
+        found = tuple(check_files(self.root, self.readable, between)[1])
+        if self.broken:
+            said = [d for each in self.broken.values() for d in each.diagnostics]
+            found = tuple(gathered([*said, *(d for d in found if not follows(d, self.broken, self._known))]))
+        return Judgement(found, self.broken)
+
+    def accept(self, judgement: Judgement) -> None:
+        """Take over what was said of these very files elsewhere."""
+        self.__dict__.update(judgement._asdict())
+
+    def prepare(self) -> None:
+        """Work out what an editor is going to ask for."""
+        _ = self.draft, self.index.uses
 
     @property
     def known(self) -> Known:
@@ -65,13 +94,6 @@ class Analysis:
         last = self.known_index
         return last if last is not None and file in last.documents else self.index
 
-    def _diagnostics(self, between: Callable[[], None]) -> tuple[Diagnostic, ...]:
-        found = tuple(check_files(self.root, self.readable, between)[1])
-        if not self.broken:
-            return found
-        said = [d for each in self.broken.values() for d in each.diagnostics]
-        return tuple(gathered([*said, *(d for d in found if not follows(d, self.broken, self._known))]))
-
     @cached_property
     def draft(self) -> ProjectDraft:
         """What could be built."""
@@ -80,7 +102,8 @@ class Analysis:
     @cached_property
     def settings(self) -> ProjectDraft:
         """What could be built of lumen.yaml and the schemas of messages alone, which takes no time."""
-        return draft({f: content for f, content in self.readable.items() if kind_of(f) in ("lumen", "message")})
+        files = {f: content for f, content in self.files.items() if kind_of(f) in ("lumen", "message")}
+        return draft({**files, **{f: each.readable for f, each in broken_files(files, self._before).items()}})
 
     @cached_property
     def documents(self) -> Mapping[str, Document]:

@@ -31,7 +31,7 @@ class Item(NamedTuple):
 
 def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item]:
     """The proposals for a line and column, from 1; the nearest first."""
-    here = cursor(analysis.text(file), line, column, analysis.readable_text(file))
+    here = cursor(analysis.text(file), line, column, lambda: analysis.readable_text(file))
     kind = kind_of(file)
     if here is None or not kind:
         return []

@@ -1,6 +1,7 @@
 """Where in a file a cursor is while its line is still being written."""
 
 import re
+from collections.abc import Callable
 from typing import NamedTuple
 
 from lumen.language.diagnostics import NodePath
@@ -28,19 +29,21 @@ class Cursor(NamedTuple):
     document: Document
 
 
-def cursor(text: str, line: int, column: int, readable: str = "") -> Cursor | None:
+def cursor(text: str, line: int, column: int, readable: Callable[[], str]) -> Cursor | None:
     """The node at a line and column, from 1, of a text that need not be whole; None where it can't be told.
 
-    `readable` is what of all other lines can be read.
+    `readable` makes the text as far as it can be read, which is asked for only where the lines around do not tell.
     """
     lines = text.split("\n")
     if line > len(lines):
         return None
     near, at = fragment(lines, line - 1, column)
     found = _cursor(near, at + 1, column)
-    others = readable.split("\n") if readable else lines
-    if found or len(others) != len(lines) or near is others:
+    if found:
         return found
+    others = readable().split("\n")
+    if len(others) != len(lines):
+        return None
     return _cursor([*others[: line - 1], lines[line - 1], *others[line:]], line, column)
 
 

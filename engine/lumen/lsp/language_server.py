@@ -6,11 +6,13 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcContentModified
 from pygls.lsp import server as pygls_server
 
 import lumen
 from lumen.errors import LumenError
 from lumen.lsp.analysis import Analysis
+from lumen.lsp.judging import Judge
 from lumen.lsp.lenses import active_places
 from lumen.lsp.open_projects import OpenProjects, root_of
 from lumen.lsp.protocol import ProtocolEncoder
@@ -19,16 +21,12 @@ from lumen.lsp.running import RunningExhibitions
 from lumen.upkeep.threads import WatchedThread
 
 CHECK_DELAY = 0.03
-"""How long nothing may be typed before the project is checked [s]."""
+"""How long nothing may be typed before the project is judged [s]."""
 
 ACTIVE = "lumen/active"
 """The notification of the states in which a running exhibition is: `root`, `states`, and the `places` of their keys."""
 
 T = TypeVar("T")
-
-
-class OutdatedError(Exception):
-    """Something was written while the project was being checked."""
 
 
 class LanguageServer(pygls_server.LanguageServer):
@@ -40,6 +38,7 @@ class LanguageServer(pygls_server.LanguageServer):
         self.running = RunningExhibitions(self.projects.roots, self._moved)
         self._told: dict[Path, set[str]] = {}
         self._due: dict[Path, float] = {}
+        self._judges: dict[Path, Judge] = {}
         self._checking: dict[Path, asyncio.Task[None]] = {}
 
     def encoder(self, analysis: Analysis) -> ProtocolEncoder:
@@ -104,18 +103,38 @@ class LanguageServer(pygls_server.LanguageServer):
         """Check a file's project soon; a check that is under way starts anew."""
         if (root := root_of(path)) is None:
             return
+        self.judge(root).outdated()
         self._due[root] = asyncio.get_running_loop().time() + (0 if at_once else CHECK_DELAY)
         if root not in self._checking or self._checking[root].done():
             self._checking[root] = asyncio.ensure_future(self._check(root))
 
+    def judge(self, root: Path) -> Judge:
+        """Who judges the project in that folder."""
+        return self._judges.setdefault(root, Judge())
+
+    def close(self) -> None:
+        """Let go of what works beside it."""
+        self.running.close()
+        for judge in self._judges.values():
+            judge.close()
+
     async def settled(self, uri: str) -> tuple[Analysis, str] | None:
-        """Project and file of a document, once nothing is typed any more and the findings are known."""
-        root = root_of(Path(path_of(uri)))
+        """Project and file of a document, once nothing is typed any more and the findings are shown.
+
+        Raises JsonRpcContentModified where something was typed meanwhile: the editor asks anew.
+        """
+        root, asked = root_of(Path(path_of(uri))), self._version(uri)
         while (task := self._checking.get(root) if root else None) and not task.done():
             await asyncio.wait((task,))
+            if self._version(uri) != asked:
+                raise JsonRpcContentModified
         if found := self.file(uri):
-            await asyncio.get_running_loop().run_in_executor(None, lambda: found[0].diagnostics)
+            await asyncio.get_running_loop().run_in_executor(None, found[0].prepare)
         return found
+
+    def _version(self, uri: str) -> int | None:
+        document = self.workspace.text_documents.get(uri)
+        return document.version if document else None
 
     async def _check(self, root: Path) -> None:
         loop = asyncio.get_running_loop()
@@ -125,17 +144,10 @@ class LanguageServer(pygls_server.LanguageServer):
                 continue
             del self._due[root]
             analysis = self.projects.analysis(root)
-            try:
-                await loop.run_in_executor(None, analysis.check, lambda: self._go_on(root))
-            except OutdatedError:
-                continue
-            if root not in self._due:
+            if (found := await self.judge(root).judge(analysis)) and root not in self._due:
+                analysis.accept(found)
                 self._tell(root, analysis)
-                await loop.run_in_executor(None, lambda a: a.index.uses, analysis)  # what completion proposes next
-
-    def _go_on(self, root: Path) -> None:
-        if root in self._due:
-            raise OutdatedError
+                await loop.run_in_executor(None, analysis.prepare)
 
     def _tell(self, root: Path, analysis: Analysis) -> None:
         """Publish what was found, file by file; of an open one also that nothing was, or nothing is any more."""
@@ -144,8 +156,7 @@ class LanguageServer(pygls_server.LanguageServer):
             found.setdefault(diagnostic.place.file, []).append(encoder.diagnostic(diagnostic))
         for file in sorted(self._told.get(root, set()) | found.keys()):
             uri = encoder.uri(file)
-            version = self.workspace.text_documents[uri].version if uri in self.workspace.text_documents else None
             self.text_document_publish_diagnostics(
-                lsp.PublishDiagnosticsParams(uri, found.get(file, []), version=version)
+                lsp.PublishDiagnosticsParams(uri, found.get(file, []), version=self._version(uri))
             )
         self._told[root] = set(found)

@@ -1,9 +1,11 @@
 """Another name for a thing, wherever it stands in the project."""
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from lumen.errors import UsageError
+from lumen.language.diagnostics import Diagnostic
 from lumen.language.routes import MEANINGS
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.names import KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse
@@ -45,7 +47,7 @@ def renamable(analysis: Analysis, file: str, line: int, column: int) -> NameUse 
 def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
     """What gives the thing that is named there another name. Raises UsageError where it can't have that one.
 
-    A state keeps its `id` where that is another name than its key.
+    A state keeps its `id` where that is another name than its key. What is wrong afterwards is for `refuse_harm`.
     """
     if analysis.broken:
         said = next(d for each in analysis.broken.values() for d in each.diagnostics)
@@ -59,7 +61,7 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
         raise UsageError(f"there is a {use.kind} `{name}` already")
     uses = [other for other in analysis.index.of(use) if other.text == use.text]
     edits = tuple(Edit(other.place, name) for other in uses)
-    return _sound(analysis, Renaming(edits, _moved(analysis, use, name)))
+    return Renaming(edits, _moved(analysis, use, name))
 
 
 def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
@@ -73,14 +75,12 @@ def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
     return Analysis(analysis.root, files)
 
 
-def _sound(analysis: Analysis, renaming: Renaming) -> Renaming:
-    """The renaming, where it leaves no more errors than there were."""
-    before, after = len(analysis.diagnostics), applied(analysis, renaming).diagnostics
-    if len(after) > before:
-        known = {(d.code, d.message) for d in analysis.diagnostics}
+def refuse_harm(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> None:
+    """Raises UsageError where more is wrong with the project after a renaming than was before it."""
+    if len(after) > len(before):
+        known = {(d.code, d.message) for d in before}
         new = next((d for d in after if (d.code, d.message) not in known), after[0])
         raise UsageError(f"that would break the project: {new}")
-    return renaming
 
 
 def _taken(analysis: Analysis, use: NameUse, name: str) -> bool:

@@ -1,7 +1,7 @@
 """What an editor may write in our name: another name for a thing, and repairs."""
 
 from lsprotocol import types as lsp
-from pygls.exceptions import JsonRpcInvalidParams
+from pygls.exceptions import JsonRpcContentModified, JsonRpcInvalidParams
 
 from lumen.errors import LumenError
 from lumen.lsp import renaming
@@ -23,17 +23,23 @@ def prepare(server: LanguageServer, params: lsp.PrepareRenameParams) -> lsp.Prep
     return server.asked(params, word)
 
 
-def rename(server: LanguageServer, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    def edit(analysis: Analysis, file: str, line: int, column: int) -> lsp.WorkspaceEdit:
-        word = renaming.renamable(analysis, file, line, column)
-        if word is None:
-            raise JsonRpcInvalidParams("there is nothing here that can be renamed")
-        try:
-            return server.encoder(analysis).renaming(renaming.rename(analysis, word, params.new_name))
-        except LumenError as error:
-            raise JsonRpcInvalidParams(str(error)) from None
-
-    return server.asked(params, edit)
+async def rename(server: LanguageServer, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+    """The edits; refused where the project would say more is wrong after them."""
+    await server.settled(params.text_document.uri)
+    if (found := server.at(params.text_document.uri, params.position)) is None:
+        return None
+    analysis, file, line, column = found
+    if (word := renaming.renamable(analysis, file, line, column)) is None:
+        raise JsonRpcInvalidParams("there is nothing here that can be renamed")
+    try:
+        renamed = renaming.rename(analysis, word, params.new_name)
+        after = await server.judge(analysis.root).judge(renaming.applied(analysis, renamed))
+        if after is None:
+            raise JsonRpcContentModified
+        renaming.refuse_harm(analysis.diagnostics, after.diagnostics)
+    except LumenError as error:
+        raise JsonRpcInvalidParams(str(error)) from None
+    return server.encoder(analysis).renaming(renamed)
 
 
 async def repair(server: LanguageServer, params: lsp.CodeActionParams) -> list[lsp.CodeAction]:

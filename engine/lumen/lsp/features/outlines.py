@@ -9,8 +9,8 @@ from lumen.lsp.protocol import icon
 MAX_FOUND_SYMBOLS = 300
 
 
-def outline(server: LanguageServer, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
-    if (found := server.file(params.text_document.uri)) is None:
+async def outline(server: LanguageServer, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
+    if (found := await server.settled(params.text_document.uri)) is None:
         return []
     encoder = server.encoder(found[0])
     return [encoder.symbol(symbol) for symbol in symbols.symbols(*found)]
@@ -29,8 +29,8 @@ def search(server: LanguageServer, params: lsp.WorkspaceSymbolParams) -> list[ls
     return found
 
 
-def fold(server: LanguageServer, params: lsp.FoldingRangeParams) -> list[lsp.FoldingRange]:
-    found = server.file(params.text_document.uri)
+async def fold(server: LanguageServer, params: lsp.FoldingRangeParams) -> list[lsp.FoldingRange]:
+    found = await server.settled(params.text_document.uri)
     document = found[0].documents.get(found[1]) if found else None
     kinds = (None, lsp.FoldingRangeKind.Comment)
     return [
@@ -39,8 +39,8 @@ def fold(server: LanguageServer, params: lsp.FoldingRangeParams) -> list[lsp.Fol
     ]
 
 
-def link(server: LanguageServer, params: lsp.DocumentLinkParams) -> list[lsp.DocumentLink]:
-    if (found := server.file(params.text_document.uri)) is None:
+async def link(server: LanguageServer, params: lsp.DocumentLinkParams) -> list[lsp.DocumentLink]:
+    if (found := await server.settled(params.text_document.uri)) is None:
         return []
     encoder = server.encoder(found[0])
     ranges = encoder.ranges(found[1])

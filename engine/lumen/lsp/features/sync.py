@@ -13,7 +13,7 @@ def begun(server: LanguageServer, params: lsp.InitializedParams) -> None:
 
 
 def ended(server: LanguageServer, params: None) -> None:
-    server.running.close()
+    server.close()
 
 
 def opened(server: LanguageServer, params: lsp.DidOpenTextDocumentParams) -> None:
