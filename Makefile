@@ -40,10 +40,10 @@ quick: .venv/test
 
 test: setup check
 	@$(BIN)/lumen lint --strict
-	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -rs -m "not soak"
+	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder -rs -m "not soak"
 
 soak: setup check
-	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -rs -m soak -p tests.soaking
+	@$(WITH) $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder -rs -m soak -p tests.soaking
 
 broker: .venv/test
 	@echo rabbitmq-server | sh scripts/packages.sh /dev/stdin

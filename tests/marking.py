@@ -8,6 +8,7 @@ ones.
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import cache
+from itertools import chain, zip_longest
 from operator import attrgetter
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
@@ -24,7 +25,7 @@ SHARED = frozenset(("broker", "speaker"))
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     for item in items:
         if isinstance(item, pytest.Function):
             fixtures = item._fixtureinfo.name2fixturedefs.values()
@@ -32,18 +33,35 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             used += [value for value in parameters(item) if isinstance(value, FunctionType | type)]
             for mark in {mark for thing in used for mark in marks(thing)}:
                 item.add_marker(mark)
-        if group := shared(item):
-            item.add_marker(pytest.mark.xdist_group(group))
+    if config.getoption("loadgroup", False):
+        items[:] = grouped(items)
+
+
+def grouped(items: Iterable[pytest.Item]) -> list[pytest.Item]:
+    """Tests for several workers: those that share something belong to one, and what takes long begins first.
+
+    Tests with a broker wait most of the time, the others calculate: they take turns.
+    """
+    groups: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        own = item.get_closest_marker("xdist_group")
+        if own is None:
+            item.add_marker(pytest.mark.xdist_group(shared(item)))
+        groups.setdefault(own.args[0] if own else shared(item), []).append(item)
+    waiting = [group for group in groups.values() if has(group, "broker")]
+    busy = sorted((group for group in groups.values() if not has(group, "broker")), key=lambda g: not has(g, "slow"))
+    turns = chain.from_iterable(zip_longest(waiting, busy, fillvalue=[]))
+    return list(chain.from_iterable(turns))
+
+
+def has(group: Iterable[pytest.Item], mark: str) -> bool:
+    return any(item.get_closest_marker(mark) for item in group)
 
 
 def shared(item: pytest.Item) -> str:
     """With which tests one is to have a worker, since they share what is dear: a folder its broker, a file the rest."""
-    if brokers := SHARED.intersection(getattr(item, "fixturenames", ())):
-        return f"{min(brokers)} {item.path.parent.name}"
-    definitions = item._fixtureinfo.name2fixturedefs.values() if isinstance(item, pytest.Function) else ()
-    return (
-        f"{item.path.parent.name} {item.path.stem}" if any(found[-1].scope == "module" for found in definitions) else ""
-    )
+    brokers = SHARED.intersection(getattr(item, "fixturenames", ()))
+    return f"{min(brokers)} {item.path.parent.name}" if brokers else item.nodeid.partition("::")[0]
 
 
 def parameters(item: pytest.Function) -> Iterable[Any]:

@@ -42,7 +42,7 @@ def assert_sound(machine: Machine, snapshot: Snapshot) -> None:
 
 
 @pytest.mark.slow
-@settings(PATIENT, max_examples=30)
+@settings(PATIENT, max_examples=15)
 @given(st.data(), machine_data(deeds=True), happenings, happenings)
 def test_a_plan_is_legal_and_goes_on(data: st.DataObject, old: Data, events: Happenings, later: Happenings) -> None:
     legal(data, old, events, later)

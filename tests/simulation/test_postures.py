@@ -129,7 +129,7 @@ def test_it_rests_with_its_motors_off(robot: SimulatedRobot, do: Do, body: Body,
     robot.advance(3.0)
     legs = [i for name, i in robot.motors.index.items() if "Hip" in name or "Knee" in name]
     before, tilt = robot.world.angles[legs], robot.world.tilt
-    robot.advance(60.0)
+    robot.advance(20.0)
     assert np.abs(robot.world.angles[legs] - before).max() < 0.05
     assert np.abs(robot.world.angles[legs] - [body.postures[posture][robot.motors.names[i]] for i in legs]).max() < 0.15
     assert abs(robot.world.tilt - tilt) < 0.05

@@ -140,48 +140,54 @@ def next_step(machine: Machine, snapshot: Snapshot, what: str, through_disk: boo
 
 
 @pytest.mark.slow
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(machines(), HAPPENINGS)
-def test_the_same_events_give_the_same_steps(machine: Machine, happenings: list[str]) -> None:
+def test_a_run_keeps_the_laws(machine: Machine, happenings: list[str]) -> None:
+    keeps_the_laws(machine, happenings)
+
+
+@pytest.mark.soak
+@settings(max_examples=1000, deadline=None)
+@given(machines(), HAPPENINGS)
+def test_a_thousand_runs_keep_the_laws(machine: Machine, happenings: list[str]) -> None:
+    keeps_the_laws(machine, happenings)
+
+
+def keeps_the_laws(machine: Machine, happenings: list[str]) -> None:
     steps = run(machine, happenings)
-    assert run(machine, happenings) == steps
-    assert run(machine, happenings, through_disk=True) == steps
+    assert run(machine, happenings) == steps, "the same events give the same steps"
+    assert run(machine, happenings, through_disk=True) == steps, "and so they do through a disk"
+    for taken in steps:
+        for inner, snapshot in running(machine, taken.snapshot):
+            is_legal(inner, snapshot.configuration)
+            waits_in_active_states(inner, snapshot)
+    ends_once(steps)
 
 
-@pytest.mark.slow
-@settings(max_examples=30, deadline=None)
-@given(machines(), HAPPENINGS)
-def test_every_configuration_is_legal(machine: Machine, happenings: list[str]) -> None:
-    for inner, snapshot in (r for taken in run(machine, happenings) for r in running(machine, taken.snapshot)):
-        names = snapshot.configuration
-        for state in inner.states.values():
-            active = [c for c in state.children if inner.states[c].name in names]
-            if state.path and state.name not in names:
-                assert not active
-            elif state.kind is StateKind.COMPOUND:
-                assert len(active) == 1
-            elif state.kind is StateKind.PARALLEL:
-                assert active == [c for c in state.children if inner.states[c].kind is not StateKind.HISTORY]
+def is_legal(machine: Machine, names: frozenset[str]) -> None:
+    """Compound states have one active child, parallel ones all, what is not active none."""
+    for state in machine.states.values():
+        active = [c for c in state.children if machine.states[c].name in names]
+        if state.path and state.name not in names:
+            assert not active
+        elif state.kind is StateKind.COMPOUND:
+            assert len(active) == 1
+        elif state.kind is StateKind.PARALLEL:
+            assert active == [c for c in state.children if machine.states[c].kind is not StateKind.HISTORY]
 
 
-@pytest.mark.slow
-@settings(max_examples=20, deadline=None)
-@given(machines(), HAPPENINGS)
-def test_what_waits_belongs_to_an_active_state(machine: Machine, happenings: list[str]) -> None:
-    for inner, snapshot in (r for taken in run(machine, happenings) for r in running(machine, taken.snapshot)):
-        active = {path for path, s in inner.states.items() if not path or s.name in snapshot.configuration}
-        assert snapshot.doing.keys() <= active
-        assert {timer.state for timer in snapshot.timers if timer.kind != "send"} <= active
-        assert {child.state for child in snapshot.invoked.values()} <= active
+def waits_in_active_states(machine: Machine, snapshot: Snapshot) -> None:
+    active = {path for path, s in machine.states.items() if not path or s.name in snapshot.configuration}
+    assert snapshot.doing.keys() <= active
+    assert {timer.state for timer in snapshot.timers if timer.kind != "send"} <= active
+    assert {child.state for child in snapshot.invoked.values()} <= active
 
 
-@pytest.mark.slow
-@settings(max_examples=20, deadline=None)
-@given(machines(), HAPPENINGS)
-def test_what_began_ends_once_and_ids_are_never_used_again(machine: Machine, happenings: list[str]) -> None:
+def ends_once(steps: list[Step]) -> None:
+    """What began ends once, and ids are never used again."""
     begun: list[str] = []
     ended: list[str] = []
-    for taken in run(machine, happenings):
+    for taken in steps:
         begun += [command.id for command in taken.commands if isinstance(command, Start)]
         ended += [command.id for command in taken.commands if isinstance(command, Cancel)]
         assert set(ended) <= set(begun)

@@ -1,5 +1,6 @@
 """The shipped stories on the recording robot, in virtual time."""
 
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
@@ -7,6 +8,7 @@ import pytest
 
 from lumen.app.exploring import explored
 from lumen.language.projects import Project
+from lumen.language.stories import Arrive, Expect, Story, StoryStep, Visitor
 from lumen.loading.schedules import read_schedule
 from lumen.runtime.coverage import Coverage
 from tests.tour.names import GUIDE, ROOT, SAFETY
@@ -102,8 +104,6 @@ def test_in_indonesian_only_indonesian_is_said(run) -> None:  # type: ignore[no-
     ],
 )
 def test_the_greeting_suits_the_hour(project: Project, clock: str, english: str, indonesian: str) -> None:
-    from dataclasses import replace
-
-    story = project.stories["unknown_visitor"]
+    story = Story("hour", "Somebody comes at some hour", (StoryStep(Arrive(Visitor())), StoryStep(Expect(("greet",)))))
     for language, greeting in (("en", english), ("id", indonesian)):
         assert play(project, replace(story, clock=read_schedule(clock), language=language)).said[0][1] == greeting
