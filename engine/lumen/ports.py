@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-from lumen.language.causes import UNKNOWN_ORIGIN, Origin
+from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.commands import MotorCommand, Say
 from lumen.language.events import Event
 from lumen.language.motions import MotionDefinition
@@ -230,7 +230,7 @@ class Message(NamedTuple):
 
     `id` tells it from every other message, `sender` is the program it comes from, empty where that is not known. `time`
     is when it was sent, as far as the sender said, else when it came [s since 1970, in UTC]. `cause` is what in a
-    behaviour asked for it, as in `Origin`.
+    behaviour asked for it, as in `MessageOrigin`.
     """
 
     key: str
@@ -276,7 +276,7 @@ class Bus(Protocol):
         reply_to: str = "",
         correlation_id: str = "",
         ttl: float | None = None,
-        origin: Origin = UNKNOWN_ORIGIN,
+        origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
         """Send a body (JSON data); safe from any thread. Raises BusError after `close`, or if it is not JSON data.
 

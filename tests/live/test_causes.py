@@ -7,7 +7,7 @@ import pytest
 import lumen
 from lumen.bus import Bus, connect
 from lumen.interpreters.statechart import Step
-from lumen.language.causes import Cause, Origin
+from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.events import Event
 from lumen.runtime.causes import caused
 from tests.waiting import Collector
@@ -63,7 +63,9 @@ def test_a_message_of_a_module_is_the_cause(bus: Bus) -> None:
     with lumen.open(robot="recording", bus="memory://causes") as show:
         show.observe(steps.append)
         show.tick()
-        bus.publish("lumen.audio.speech.recognition", {"name": "", "result": "dance", "date": ""}, origin=Origin("m1"))
+        bus.publish(
+            "lumen.audio.speech.recognition", {"name": "", "result": "dance", "date": ""}, origin=MessageOrigin("m1")
+        )
         show.send("face", {"x": 160, "y": 120})
         show.tick()
         found = {step.event.name: step.event.cause for step in steps if step.event and step.event.cause}

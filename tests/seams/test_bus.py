@@ -10,7 +10,7 @@ import pytest
 
 from lumen.bus import BusError, Message, Refused, connect
 from lumen.buses.local import LocalBusClient, LocalBusServer
-from lumen.language.causes import Origin
+from lumen.language.causes import MessageOrigin
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus
 from tests.waiting import Collector
@@ -358,7 +358,7 @@ def test_every_message_has_an_id_a_sender_and_a_time(bus: Bus) -> None:
     before = int(time.time())
     for i in range(100):
         bus.publish("lumen.a", i)
-    bus.publish("lumen.a", 100, origin=Origin("mine", "ears", 12345.0, "d3"))
+    bus.publish("lumen.a", 100, origin=MessageOrigin("mine", "ears", 12345.0, "d3"))
     seen.wait(101)
     *own, last = seen.messages
     assert len({message.id for message in own}) == 100

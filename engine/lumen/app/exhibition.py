@@ -23,7 +23,7 @@ from lumen.bus import connect
 from lumen.buses.validated import ValidatedBus, validated
 from lumen.errors import UsageError
 from lumen.interpreters.statechart import Step
-from lumen.language.causes import PROGRAM, Origin
+from lumen.language.causes import PROGRAM, MessageOrigin
 from lumen.language.commands import Say
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -159,7 +159,7 @@ class Exhibition:
 
     def send(self, route: str, body: Mapping[str, Any]) -> None:
         """Send a message on a route, as a module would. Raises UsageError where there is none, or it is not allowed."""
-        if reason := send(self.node.bus, self.project, route, body, Origin(sender=PROGRAM)):
+        if reason := send(self.node.bus, self.project, route, body, MessageOrigin(sender=PROGRAM)):
             raise UsageError(f"can't send on `{route}`: {reason}")
 
     def say(self, text: str, language: str = "") -> None:

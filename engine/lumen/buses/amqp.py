@@ -20,7 +20,7 @@ from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of
 from lumen.buses.transport import Transport
 from lumen.errors import BusClosedError, BusError
-from lumen.language.causes import UNKNOWN_ORIGIN, Origin
+from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Message, MessageHandler
 
@@ -109,7 +109,7 @@ class AmqpBus:
         reply_to: str = "",
         correlation_id: str = "",
         ttl: float | None = None,
-        origin: Origin = UNKNOWN_ORIGIN,
+        origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: nothing can be published any more")

@@ -4,7 +4,7 @@ import secrets
 from itertools import count
 from time import time as now
 
-from lumen.language.causes import Origin
+from lumen.language.causes import MessageOrigin
 
 MAX_IDENTITY_BYTES = 255
 """How long an id or a sender may be [bytes]: AMQP's bound on a short string."""
@@ -20,15 +20,15 @@ def new_id() -> str:
     return f"{_prefix}-{next(_numbers)}"
 
 
-def filled(origin: Origin, sender: str) -> Origin:
+def filled(origin: MessageOrigin, sender: str) -> MessageOrigin:
     """What a message of ours says of itself; what `origin` leaves empty is filled in."""
     id, own, time, cause = origin
-    return Origin(id or new_id(), own or sender, time or now(), cause)
+    return MessageOrigin(id or new_id(), own or sender, time or now(), cause)
 
 
-def believed(id: object = "", sender: object = "", time: object = 0.0, cause: object = "") -> Origin:
+def believed(id: object = "", sender: object = "", time: object = 0.0, cause: object = "") -> MessageOrigin:
     """What somebody said, who may say anything: what can't be is left out; without an id the message gets one."""
-    return Origin(_text(id) or new_id(), _text(sender), _moment(time) or now(), _text(cause))
+    return MessageOrigin(_text(id) or new_id(), _text(sender), _moment(time) or now(), _text(cause))
 
 
 def _text(said: object) -> str:

@@ -20,7 +20,7 @@ from lumen.buses.bodies import check_key, check_subscription, copied
 from lumen.buses.identities import filled, new_id
 from lumen.errors import BusClosedError, Refused
 from lumen.interpreters.routing import matches
-from lumen.language.causes import UNKNOWN_ORIGIN, Origin
+from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler
 from lumen.upkeep.drops import DropLog
@@ -183,7 +183,7 @@ class MemoryBus:
         reply_to: str = "",
         correlation_id: str = "",
         ttl: float | None = None,
-        origin: Origin = UNKNOWN_ORIGIN,
+        origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: nothing can be published any more")

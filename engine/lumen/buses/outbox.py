@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from lumen.errors import BusFullError
-from lumen.language.causes import UNKNOWN_ORIGIN, Origin
+from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.upkeep.drops import DropLog
 
 MAX_PENDING_MESSAGES = 50_000
@@ -39,7 +39,7 @@ class OutgoingMessage(NamedTuple):
     type: str = ""
     keep: int = 0
     must: bool = False
-    origin: Origin = UNKNOWN_ORIGIN
+    origin: MessageOrigin = UNKNOWN_ORIGIN
     headers: dict[str, str] | None = None
 
     @property

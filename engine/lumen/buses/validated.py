@@ -7,7 +7,7 @@ from typing import Any
 from lumen.buses.bodies import check_subscription
 from lumen.buses.checking import BodyCheck, body_checks
 from lumen.errors import BadMessageError, Refused
-from lumen.language.causes import UNKNOWN_ORIGIN, Origin
+from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.language.routing_keys import KEY_PREFIXES
@@ -88,7 +88,7 @@ class ValidatedBus:
         reply_to: str = "",
         correlation_id: str = "",
         ttl: float | None = None,
-        origin: Origin = UNKNOWN_ORIGIN,
+        origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
         if reason := self._wrong(key, body):
             raise BadMessageError(f"a message on `{key}` can't be sent: {reason}")

@@ -20,7 +20,7 @@ class Cause(NamedTuple):
     time: float = 0.0
 
 
-class Origin(NamedTuple):
+class MessageOrigin(NamedTuple):
     """Where a message says that it comes from: its `id`, the program that is its `sender`, and when it was sent.
 
     `time` is in [s since 1970, in UTC]. `cause` is what in the behaviour asked for it: the id of a command (`d3`), or
@@ -33,7 +33,7 @@ class Origin(NamedTuple):
     cause: str = ""
 
 
-UNKNOWN_ORIGIN = Origin()
+UNKNOWN_ORIGIN = MessageOrigin()
 """Nothing is said: the bus gives the message an id, its own sender and the time."""
 
 PROGRAM, TERMINAL, VISITOR = "the program", "a terminal", "the visitor"

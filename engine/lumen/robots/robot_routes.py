@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lumen.language.causes import UNKNOWN_ORIGIN, Origin
+from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.projects import Project
 from lumen.language.routing_keys import default_key
 from lumen.ports import Bus
@@ -25,7 +25,7 @@ def publish_on(
     *,
     reply_to: str = "",
     ttl: float | None = None,
-    origin: Origin = UNKNOWN_ORIGIN,
+    origin: MessageOrigin = UNKNOWN_ORIGIN,
 ) -> None:
     """Publish on a route, for as long as it says, else for `ttl` [s]. Raises BusError where the bus refuses."""
     row = project.routes.get(route)

@@ -9,7 +9,7 @@ from itertools import count
 from typing import Any
 
 from lumen.errors import BusError
-from lumen.language.causes import UNKNOWN_ORIGIN, Origin
+from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.commands import Say
 from lumen.language.events import RECORDED, Event
 from lumen.language.projects import Project
@@ -149,7 +149,7 @@ class RobotServer:
         """The robot starts this, under that id: what it says is on the bus as a text, too, for a voice of its own."""
         if isinstance(command, Say) and TEXT_ROUTE in self._project.routes:
             body = {"name": self._project.robot, "text": command.text, "date": self._date()}
-            self._tell(TEXT_ROUTE, {**body, "language": command.language}, Origin(cause=id))
+            self._tell(TEXT_ROUTE, {**body, "language": command.language}, MessageOrigin(cause=id))
 
     def close(self) -> None:
         """Publish what was taken and end the threads; harmless when repeated."""
@@ -166,7 +166,7 @@ class RobotServer:
         self._started(command, id)
         self.begins(command, id)
 
-    def _tell(self, route: str, body: dict[str, Any], origin: Origin = UNKNOWN_ORIGIN) -> None:
+    def _tell(self, route: str, body: dict[str, Any], origin: MessageOrigin = UNKNOWN_ORIGIN) -> None:
         try:
             publish_on(self._bus, self._project, route, body, origin=origin)
         except BusError as error:

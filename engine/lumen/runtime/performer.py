@@ -4,7 +4,7 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
-from lumen.language.causes import Origin
+from lumen.language.causes import MessageOrigin
 from lumen.language.commands import (
     BodyCommand,
     Cancel,
@@ -45,7 +45,7 @@ class Performer:
         self.refuse: Callable[[RobotCommand], str] = lambda _: ""
 
     def perform(self, project: Project, command: Command, now: float, step: int = 0) -> None:
-        """Begin a command, which the step of that number asked for; what it publishes says so (`Origin.cause`)."""
+        """Begin a command, which the step of that number asked for; what it publishes names it."""
         match command:
             case Start(id, wanted):
                 self._start(project, id, wanted, now)
@@ -53,7 +53,7 @@ class Performer:
                 if not self.navigator.cancel(id):
                     self._robot.cancel(id)
             case Publish(name, body):
-                if reason := send(self._bus, project, name, body, Origin(cause=f"step {step}" if step else "")):
+                if reason := send(self._bus, project, name, body, MessageOrigin(cause=f"step {step}" if step else "")):
                     self.events.append(Event("error.communication", {"route": name, "reason": reason}, now))
             case Log(text):
                 _log.info(text)

@@ -3,12 +3,12 @@
 from typing import Any
 
 from lumen.errors import BusError
-from lumen.language.causes import UNKNOWN_ORIGIN, Origin
+from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.projects import Project
 from lumen.ports import Bus
 
 
-def send(bus: Bus, project: Project, route: str, body: Any, origin: Origin = UNKNOWN_ORIGIN) -> str:
+def send(bus: Bus, project: Project, route: str, body: Any, origin: MessageOrigin = UNKNOWN_ORIGIN) -> str:
     """Publish a body on the route of that name; empty, or why it could not be."""
     if route not in project.routes:
         return f"there is no route `{route}`"

@@ -9,7 +9,7 @@ from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.interpreters.statechart.property_monitor import Violation, monitors
 from lumen.interpreters.wall_clock import MICROSECONDS, next_moment
-from lumen.language.causes import VISITOR, Cause, Origin
+from lumen.language.causes import VISITOR, Cause, MessageOrigin
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
@@ -253,7 +253,9 @@ class StoryPlayer(Observer):
             case Happen(name, data):
                 self._exhibition.happen(Event(name, data, now, cause=Cause("person", sender=VISITOR)))
             case SendMessage(name, body):
-                if reason := send(self._exhibition.bus, self._exhibition.project, name, body, Origin(sender=VISITOR)):
+                if reason := send(
+                    self._exhibition.bus, self._exhibition.project, name, body, MessageOrigin(sender=VISITOR)
+                ):
                     self.fail(UnmetExpectation(f"to send on `{name}`", reason))
             case _:
                 assert_never(action)

@@ -3,7 +3,7 @@
 import logging
 from dataclasses import replace
 
-from lumen.language.causes import VISITOR, Origin
+from lumen.language.causes import VISITOR, MessageOrigin
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, Hall
@@ -58,7 +58,7 @@ class VisitorActor:
     def speak(self, text: str, language: str = "") -> None:
         """Say something the speech module understands at once."""
         body = {"name": "visitor", "result": text, "date": "", "language": language}
-        if reason := send(self._bus, self._project, SPEECH_ROUTE, body, Origin(sender=VISITOR)):
+        if reason := send(self._bus, self._project, SPEECH_ROUTE, body, MessageOrigin(sender=VISITOR)):
             _log.warning("nobody hears the visitor: %s", reason)
 
     def touch(self, sensor: str, pressed: bool) -> None:

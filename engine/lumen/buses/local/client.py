@@ -28,7 +28,7 @@ from lumen.buses.local.frames import (
 )
 from lumen.buses.local.sendbuffer import SendBuffer
 from lumen.errors import BusClosedError, BusError, BusRefusedError, BusUnreachableError, Refused
-from lumen.language.causes import UNKNOWN_ORIGIN, Origin
+from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.routes import Route
 from lumen.ports import Message, MessageHandler
 from lumen.upkeep.drops import DropLog
@@ -101,7 +101,7 @@ class LocalBusClient:
         reply_to: str = "",
         correlation_id: str = "",
         ttl: float | None = None,
-        origin: Origin = UNKNOWN_ORIGIN,
+        origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: nothing can be published any more")

@@ -29,7 +29,7 @@ from lumen.buses.local.frames import (
     unframed,
 )
 from lumen.errors import BusError
-from lumen.language.causes import Origin
+from lumen.language.causes import MessageOrigin
 from lumen.ports import Bus, Message
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
@@ -215,7 +215,7 @@ class LocalBusServer:
             check_ttl(ttl)
             if client.returns and not self._heard(key):
                 client.send(frame("returned", key))
-            origin = Origin(id, sender, sent, cause)
+            origin = MessageOrigin(id, sender, sent, cause)
             self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
         except BusError as error:
             client.send(frame("refused", key, str(error)))

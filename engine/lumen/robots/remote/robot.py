@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from lumen.errors import BusError
-from lumen.language.causes import Origin
+from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Stop
 from lumen.language.events import CUE, ROBOT_EVENTS, Event
 from lumen.language.projects import Project
@@ -205,7 +205,7 @@ class RemoteRobot:
 
     def _send(self, way: str, body: dict[str, Any], ttl: float, cause: str = "") -> None:
         try:
-            publish_on(self._bus, self._project, way, body, ttl=ttl, origin=Origin(cause=cause))
+            publish_on(self._bus, self._project, way, body, ttl=ttl, origin=MessageOrigin(cause=cause))
         except BusError as error:
             _log.warning("a command was not sent to the robot: %s", error)
 
