@@ -6,6 +6,7 @@ LumenError
  ├── UsageError        a flag, a name or a path given to Lumen is wrong; MissingExtraError: packages are not installed
  ├── ExpressionError   an expression can't be read, or has no value here
  ├── SnapshotError     a snapshot belongs to another machine
+ ├── JournalError      a journal, or an entry of it, can't be read
  ├── RobotError        the robot can't be used, or can't do what it should
  │    ├── RobotUnreachableError   there is no robot at the address
  │    ├── RobotLostError          the connection broke, or the robot does not answer any more
@@ -78,6 +79,10 @@ class ExpressionError(LumenError):
 
 class SnapshotError(LumenError):
     """A snapshot does not fit the machine that should be restored from it; the message names the difference."""
+
+
+class JournalError(LumenError):
+    """A journal of inputs, or an entry of it, can't be read by this Lumen."""
 
 
 class RobotError(LumenError):

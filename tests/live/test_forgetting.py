@@ -20,6 +20,8 @@ from lumen.bus import Bus
 from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.cli.main import main
 from lumen.errors import BusError
+from lumen.runtime.inputs.frames import unpack
+from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX
 from lumen.runtime.journal import Journal
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web
@@ -114,6 +116,9 @@ def _contents(path: Path) -> Iterator[tuple[str, bytes]]:
     except FileNotFoundError:
         return  # a draft, which is the file by now
     yield path.name, content
+    if path.suffix == JOURNAL_SUFFIX:
+        texts = (text for text, _ in unpack(content, content.index(b"\n") + 1))
+        yield "journal", b"".join(texts)
     if zipfile.is_zipfile(io.BytesIO(content)):
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             yield from ((f"{path.name}: {member}", archive.read(member)) for member in archive.namelist())
@@ -140,7 +145,7 @@ def test_no_byte_of_a_forgotten_name_is_left_after_a_crash(copy: Path, capsys: p
     home = copy / ".lumen"
     with running(copy) as (process, bus):
         hear(bus, "my name is Ünal Çelik")
-        kept = ("memory.db-wal", "posts.jsonl", "snapshot.json")
+        kept = ("memory.db-wal", "posts.jsonl", "snapshot.json", "journal")
         until(lambda: set(kept) <= set(found(copy, "Ünal Çelik")))
         process.send_signal(signal.SIGKILL)
         process.wait()
@@ -151,7 +156,7 @@ def test_no_byte_of_a_forgotten_name_is_left_after_a_crash(copy: Path, capsys: p
     assert main(["memory", "forget", _nfd("ünal çelik"), "--project", str(copy), "--format", "json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert {place["where"] for place in told["deleted"]} == {
-        *("memory.db", "faces.npz", "posts.jsonl", "journal.jsonl", "snapshot.json")
+        *("memory.db", "faces.npz", "posts.jsonl", "journal.jsonl", "snapshot.json", "journal")
     }
     assert (told["visitors"], told["pictures"], told["left"]) == (1, 1, [])
     assert found(copy, "Ünal Çelik") == []

@@ -11,6 +11,7 @@ from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
 from lumen.app.parts.kept_hold import keep_hold
 from lumen.app.parts.operating import OperatorPart
+from lumen.app.recovery.recording import record_inputs
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.alerting import RefusalPart
 from lumen.app.reload.records import RunRecords
@@ -69,8 +70,10 @@ class Exhibition:
         self.node = WholeNode(project, setup, opened, story, narrator, language=language, shared=shared)
         behavior, directory = self.node.behavior, run_directory
         self.reloader: Reloader | None = None
-        written = [directory.records.forget] if directory else []
-        self.node.add(ForgettingPart(project, opened, behavior.forget, *written))
+        records = directory.records if directory else RunRecords(None)
+        self.node.add(ForgettingPart(project, opened, behavior.forget, records.forget))
+        record_inputs(behavior, records, story=story, rehearsed=story is not None or directory is None)
+        self.node.closing.append(records.close_inputs)
         if reload:
             taken_by = directory.reloader if directory else Reloader
             self.reloader = taken_by(behavior, self.node.narrator, mode=reload)
@@ -84,7 +87,7 @@ class Exhibition:
             record=directory.records.write if directory else lambda _: None,
         )
         self.node.add(self._operator)
-        watch = self._alert(alerts, opened, directory) if alerts else None
+        watch = self._alert(alerts, opened, records) if alerts else None
         if directory:
             fresh = fresh or story is not None
 
@@ -102,9 +105,8 @@ class Exhibition:
                 log = DeduplicationLog(home_of(directory.root) / DEDUPLICATION_FILE)
                 self.node.robot.server.recall(log)
 
-    def _alert(self, desk: AlertDesk, bus: ValidatedBus, directory: RunDirectory | None) -> AlertPart:
+    def _alert(self, desk: AlertDesk, bus: ValidatedBus, records: RunRecords) -> AlertPart:
         """Have people told of what goes wrong."""
-        records = directory.records if directory else RunRecords(None)
         root = Path(self.node.project.root)
         parts, presence = (ROBOT_PART, BRAIN), self.node.presence
         watch = AlertPart(desk, bus, home_of(root), parts, presence, lambda: records.trouble)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from lumen.app.local_timezone import local_timezone
 from lumen.app.setup import Setup
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
+from lumen.interpreters.replay.entries import JumpKind
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -73,7 +74,7 @@ class LiveBehavior:
         begun()
         self.loop.perform(plan, old)
 
-    def switch(self, project: Project, plan: MigrationPlan) -> None:
+    def switch(self, project: Project, plan: MigrationPlan, kind: JumpKind = "reload") -> None:
         """Go on with another bundle, and leave undone what that asks for.
 
         Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
@@ -81,7 +82,7 @@ class LiveBehavior:
         old, new = self.project, staged(project, self._story)
         try:
             self.adopt(new)
-            self.loop.switch(new, plan)
+            self.loop.switch(new, plan, kind)
         except Exception:
             self.adopt(old)
             raise

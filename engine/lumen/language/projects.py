@@ -10,6 +10,7 @@ from lumen.language.hall_places import HallPlace
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import ModuleSettings
 from lumen.language.motions import MotionDefinition
+from lumen.language.retention import JournalRetention
 from lumen.language.robots import Body
 from lumen.language.routes import Route
 from lumen.language.show import Show
@@ -35,7 +36,7 @@ class Project:
     default first; `messages` maps a message's name to its JSON Schema; `documents` know where in each file what
     stands. `timezone` is where it is, empty for wherever it runs. `patience` [s] is how long saved files wait for what
     is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by name;
-    `show` is what goes to lamps, screens and sound desks.
+    `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened.
     """
 
     root: str
@@ -60,6 +61,7 @@ class Project:
     alerts: Alerts = field(default_factory=Alerts)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
     show: Show = field(default_factory=Show)
+    journal: JournalRetention = field(default_factory=JournalRetention)
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

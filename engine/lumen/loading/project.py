@@ -109,6 +109,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         show=settings.show,
         alerts=settings.alerts,
         places=settings.places,
+        journal=settings.journal,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )

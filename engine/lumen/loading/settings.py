@@ -13,6 +13,7 @@ from lumen.language.diagnostics import ERROR, Code, Diagnostic, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.modules import SHOW, ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
+from lumen.language.retention import JournalRetention
 from lumen.language.routes import Route
 from lumen.language.show import Show
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
@@ -49,6 +50,7 @@ class Settings:
     alerts: Alerts = field(default_factory=Alerts)
     places: Mapping[str, HallPlace] = field(default_factory=dict)
     show: Show = field(default_factory=Show)
+    journal: JournalRetention = field(default_factory=JournalRetention)
 
 
 def build_settings(data: Any, report: DocumentReport) -> Settings:
@@ -74,6 +76,7 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         alerts=build_alerts(data.get("alerts", {}), report),
         places=_places(data, report),
         show=build_show(modules.get(SHOW, {})),
+        journal=_journal(data, report),
     )
 
 
@@ -127,6 +130,11 @@ def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:
             return None
         spans.append((low * unit, high * unit))
     return Stage(*spans)
+
+
+def _journal(data: Mapping[str, Any], report: DocumentReport) -> JournalRetention:
+    said = data.get("journal", {})
+    return JournalRetention(**{key: value for key, value in said.items() if finite(value, report, ("journal", key))})
 
 
 def _places(data: Mapping[str, Any], report: DocumentReport) -> Mapping[str, HallPlace]:

@@ -5,6 +5,7 @@ from math import inf
 from typing import Any
 
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
+from lumen.interpreters.replay.entries import JumpKind
 from lumen.interpreters.statechart import Step, due
 from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event
@@ -92,7 +93,7 @@ class BehaviorLoop:
         """Listen, and go on from where this project's behaviour stood before the engine was away."""
         self._last = self.clock.now()
         self.inbox.listen(self.project)
-        self.runtime.apply(self.project, resumption.snapshot)
+        self.runtime.apply(self.project, resumption.snapshot, "resume", resumption.commands)
         for name in resumption.tracking:
             self._track(Track(name))
         self._perform(resumption.commands, self._last)
@@ -148,7 +149,7 @@ class BehaviorLoop:
         self.switch(project, plan)
         self.perform(plan, old)
 
-    def switch(self, project: Project, plan: MigrationPlan) -> None:
+    def switch(self, project: Project, plan: MigrationPlan, kind: JumpKind = "reload") -> None:
         """What `apply` does, but for what has to be performed.
 
         Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
@@ -158,7 +159,7 @@ class BehaviorLoop:
             self.inbox.listen(project)
             self.tracking.reload(project)
             self.regulation.reload(project)
-            self.runtime.apply(project, plan.snapshot)
+            self.runtime.apply(project, plan.snapshot, kind, plan.commands)
             self.performer.navigator.renew()
         except Exception:
             self.inbox.listen(old)

@@ -2,10 +2,11 @@
 
 import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from lumen.errors import LumenError
 from lumen.interpreters.migration import MigrationVerdict, plan
+from lumen.interpreters.replay.entries import How, JumpKind
 from lumen.interpreters.statechart import Snapshot, Step, elapse, initial, step
 from lumen.language.causes import Cause
 from lumen.language.commands import Command
@@ -28,6 +29,18 @@ Rescue = Callable[[Exception], Sequence[Command] | None]
 """Called after a failure: goes on with another bundle, and returns the commands for that; None where it can't."""
 
 
+class InputRecorder(Protocol):
+    """Who keeps what happened to a behaviour: called before the commands of a step go out, and never waited for."""
+
+    def stepped(self, step: Step, how: How) -> None:
+        """It took a step."""
+
+    def jumped(
+        self, kind: JumpKind, project: Project, snapshot: Snapshot, commands: Sequence[Command] = (), **said: Any
+    ) -> None:
+        """It goes on from this snapshot of this project, and no step led there."""
+
+
 class Runtime:
     """A running behaviour: its bundle, its snapshot, and what happens to them at a tick.
 
@@ -35,7 +48,8 @@ class Runtime:
     event or timer is dropped, and logged: a message that a step can't bear must not end the exhibition.
 
     `observe` is shown every step in the order taken, and `steps` counts them: the first of a run is 1. `epoch` is when
-    time 0 was [s since 1970], `timezone` where the clock on the wall hangs.
+    time 0 was [s since 1970], `timezone` where the clock on the wall hangs. A `recorder` keeps what is needed to take
+    the steps again.
     """
 
     def __init__(
@@ -47,6 +61,7 @@ class Runtime:
         self.project = project
         self._observe, self._rescue = observe, rescue
         self._snapshot: Snapshot | None = None
+        self.recorder: InputRecorder | None = None
         self.steps = 0
 
     @property
@@ -67,8 +82,9 @@ class Runtime:
     ) -> list[Command]:
         """Enter the initial states; the commands to perform. `context` gives keys other first values."""
         language = language or self.project.languages[0]
-        machine = self.project.machine
-        return self.take(initial(machine, at=now, input=context, language=language, epoch=epoch, timezone=timezone))
+        arguments: dict[str, Any] = {"at": now, "input": context, "language": language, "epoch": epoch}
+        arguments["timezone"] = timezone
+        return self._begin(initial(self.project.machine, **arguments), arguments)
 
     def tick(self, now: float, events: Iterable[Event] = ()) -> list[Command]:
         """Let everything happen that is due until `now` [s], timers and events in the order of their times."""
@@ -90,26 +106,48 @@ class Runtime:
         """
         return plan(self.project, project, self.snapshot, at=at, now=now, back=back)
 
-    def apply(self, project: Project, planned: Snapshot) -> None:
-        """Go on with another bundle as planned, between two macrosteps."""
+    def apply(
+        self, project: Project, planned: Snapshot, kind: JumpKind = "reload", commands: Sequence[Command] = ()
+    ) -> None:
+        """Go on with another bundle as planned, between two macrosteps; `commands` are those that it asks for."""
         self.project, self._snapshot = project, planned
+        self._record(kind, commands)
 
     def take(self, taken: Step) -> list[Command]:
-        """Go on with a step from where the behaviour stands; its commands."""
-        self._snapshot = taken.snapshot
-        self.steps += 1
-        self._observe(taken)
-        return list(taken.commands)
+        """Go on with the step by which somebody enters a state; its commands."""
+        return self._take(taken, "goto")
 
     def forget(self, person: PersonName) -> bool:
         """Take somebody's name out of what is remembered; whether it was there."""
         before = self.snapshot
         self._snapshot = forgetful(self.project.machine, before, person)
-        return self._snapshot is not before
+        if self._snapshot is before:
+            return False
+        self._record("forget")
+        return True
+
+    def _begin(self, first: Step, arguments: Mapping[str, Any]) -> list[Command]:
+        self._snapshot = first.snapshot
+        self.steps += 1
+        self._record("start", first.commands, arguments=arguments)
+        self._observe(first)
+        return list(first.commands)
+
+    def _take(self, taken: Step, how: How) -> list[Command]:
+        self._snapshot = taken.snapshot
+        self.steps += 1
+        if self.recorder:
+            self.recorder.stepped(taken, how)
+        self._observe(taken)
+        return list(taken.commands)
+
+    def _record(self, kind: JumpKind, commands: Sequence[Command] = (), **said: Any) -> None:
+        if self.recorder:
+            self.recorder.jumped(kind, self.project, self.snapshot, commands, step=self.steps, **said)
 
     def _hear(self, event: Event, emitted: list[Emission]) -> None:
         try:
-            self._emit(step(self.project.machine, self.snapshot, event), emitted)
+            self._emit(step(self.project.machine, self.snapshot, event), "heard", emitted)
         except Exception as error:
             rescued = self._rescue(error)
             if rescued is not None:
@@ -117,11 +155,12 @@ class Runtime:
                 self._hear(event, emitted)
             else:
                 _log.error("the event `%s` is dropped: %s", event.name, error, exc_info=_ours(error))
+                self._record("dropped event", event=event.name)
 
     def _timers(self, until: float, emitted: list[Emission]) -> None:
         try:
             for taken in elapse(self.project.machine, lambda: self.snapshot, until):
-                self._emit(_timed(taken), emitted)
+                self._emit(_timed(taken), "timer", emitted)
         except Exception as error:
             rescued = self._rescue(error)
             if rescued is not None:
@@ -130,8 +169,8 @@ class Runtime:
             else:
                 self._drop_timer(error)
 
-    def _emit(self, taken: Step, emitted: list[Emission]) -> None:
-        if commands := self.take(taken):
+    def _emit(self, taken: Step, how: How, emitted: list[Emission]) -> None:
+        if commands := self._take(taken, how):
             emitted.append(Emission(self.steps, commands))
 
     def _drop_timer(self, error: Exception) -> None:
@@ -139,6 +178,7 @@ class Runtime:
         _log.error("the timer `%s` is dropped: %s", first.event, error, exc_info=_ours(error))
         kept = tuple(timer for timer in self.snapshot.timers if timer is not first)
         self._snapshot = self.snapshot._replace(timers=kept)
+        self._record("dropped timer", event=first.event)
 
 
 def _timed(taken: Step) -> Step:

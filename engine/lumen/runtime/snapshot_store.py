@@ -12,6 +12,7 @@ from lumen.interpreters.statechart import Snapshot, serialize
 from lumen.language.projects import Project
 from lumen.loading.files import MAX_PROJECT_BYTES, fingerprint
 from lumen.runtime.home import Home
+from lumen.runtime.inputs.journal_folder import named_bundles
 
 SNAPSHOT_FILE, ALIVE_FILE = "snapshot.json", "alive.json"
 LAST_GOOD_FILE = "good.json"
@@ -153,8 +154,8 @@ class SnapshotStore:
             return ""
 
     def prune(self, *hashes: str) -> None:
-        """Delete the files of all bundles but these."""
-        names = {_name(hash) for hash in hashes}
+        """Delete the files of all bundles but these, and those that the journal needs."""
+        names = {_name(hash) for hash in {*hashes, *named_bundles(self._home.folder)}}
         for path in self._home.folder.glob("bundle-*.zip"):
             if path.name not in names:
                 self._home.remove(path.name)

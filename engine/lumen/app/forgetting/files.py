@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from lumen.app.forgetting.report import Forgetting, ForgottenPlace
-from lumen.errors import ModuleError
+from lumen.errors import JournalError, ModuleError
 from lumen.language.people import PersonName, name_key
 from lumen.loading.json_lines import forget_lines, line_names
 from lumen.modules.eyes.eyes import FACES_FILE
@@ -17,6 +17,9 @@ from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
 from lumen.runtime.forgetting import forgetful_data
 from lumen.runtime.home import Home
+from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, read_journal
+from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, newest
+from lumen.runtime.inputs.redaction import names, redact
 from lumen.runtime.snapshot_store import DAMAGED_BUNDLE, SNAPSHOT_FILE
 
 DRAFT_AGE = 5.0
@@ -36,9 +39,10 @@ def forget_in(folder: Path, name: str, found: Forgetting) -> None:
     for file in sorted(folder.glob("*.jsonl*")):
         _attempt(found, file, lambda file=file: _lines(file, person, found))  # type: ignore[misc]
     if home.held():
-        _await(lambda: not _names(folder / SNAPSHOT_FILE, person))
+        _await(lambda: not _names(folder / SNAPSHOT_FILE, person) and not _names_in_journal(folder, person))
     else:
         _snapshot(home, person, found)
+    _attempt(found, folder / JOURNAL_FOLDER, lambda: _journal(folder, person, found))
     _drafts(folder)
     found.left += _left(folder, person)
     found.elsewhere += _own_files(folder, person)
@@ -81,6 +85,22 @@ def _lines(file: Path, person: PersonName, found: Forgetting) -> None:
         found.deleted.append(ForgottenPlace(file.name, f"lines: {gone}"))
 
 
+def _journal(folder: Path, person: PersonName, found: Forgetting) -> None:
+    """What happened, but for the file that a running exhibition writes."""
+    files, held = sorted((folder / JOURNAL_FOLDER).rglob(f"*{JOURNAL_SUFFIX}")), Home(folder).held()
+    if named := sum(redact(file, person) for file in files if not (held and file == newest(folder))):
+        found.deleted.append(ForgottenPlace(JOURNAL_FOLDER, f"the name, in entries: {named}"))
+
+
+def _names_in_journal(folder: Path, person: PersonName) -> bool:
+    """Whether the file says the name that a running exhibition writes, and nobody else can."""
+    file = newest(folder)
+    try:
+        return file is not None and any(names(entry, person) for entry in read_journal(file).entries)
+    except JournalError:
+        return False
+
+
 def _snapshot(home: Home, person: PersonName, found: Forgetting) -> None:
     """Where the behaviour stood when it ended without notice."""
     content = home.read(SNAPSHOT_FILE)
@@ -102,7 +122,7 @@ def _snapshot(home: Home, person: PersonName, found: Forgetting) -> None:
 
 def _drafts(folder: Path) -> None:
     """What a crash left half written may name anybody."""
-    for draft in folder.glob("*.new"):
+    for draft in folder.rglob("*.new"):
         with suppress(OSError):  # whoever writes it has just done so
             if not Home(folder).held() or time.time() - draft.stat().st_mtime > DRAFT_AGE:
                 draft.unlink()
@@ -115,6 +135,8 @@ def _left(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
             held = file.name == SNAPSHOT_FILE and Home(folder).held()
             why = "the exhibition that runs has not forgotten the name" if held else "it still says the name"
             yield ForgottenPlace(str(file.relative_to(folder)), why)
+    if Home(folder).held() and _names_in_journal(folder, person):
+        yield ForgottenPlace(JOURNAL_FOLDER, "the exhibition that runs has not forgotten the name")
 
 
 def _own_files(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:

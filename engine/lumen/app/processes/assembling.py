@@ -19,6 +19,7 @@ from lumen.app.parts.operating import OperatorPart
 from lumen.app.parts.remote_brain import RemoteBody, RemoteBrainPart
 from lumen.app.parts.visitor import RemoteVisitorPart
 from lumen.app.processes.bundles import BundleFollower
+from lumen.app.recovery.recording import record_inputs
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.alerting import RefusalPart
 from lumen.app.reload.saved_files import RecordsPart, ReloadPart
@@ -96,6 +97,8 @@ def assemble(
             return watch.recovered(found) if watch else found
 
         brain.recover = recover
+        record_inputs(behavior, records, story=story, rehearsed=story is not None)
+        node.closing.append(records.close_inputs)
 
         def adopt(bundle: Project) -> None:
             body.robot.use(bundle)

@@ -11,6 +11,7 @@ from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.crash_counter import CrashCounter
 from lumen.runtime.home import Home
+from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.journal import Journal
 from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.snapshot_store import SnapshotStore
@@ -36,12 +37,14 @@ class RunRecords:
         self.keeper = SnapshotStore(home) if home else None
         self.trials = CrashCounter(home) if home else None
         self.journal = Journal(home.folder if home else None)
+        self.inputs: JournalWriter | None = None
 
     @property
     def trouble(self) -> str:
-        """Why where the behaviour stands can't be written, empty where it can."""
-        why = self.keeper.trouble if self.keeper else ""
-        return f"where the behaviour stands can't be written: {why}" if why else ""
+        """What can't be written of where the behaviour stands and what happened, and why; empty where all can."""
+        if why := self.keeper.trouble if self.keeper else "":
+            return f"where the behaviour stands can't be written: {why}"
+        return self.inputs.trouble if self.inputs else ""
 
     def write(self, entry: Mapping[str, Any]) -> None:
         self.journal.write(entry)
@@ -80,9 +83,9 @@ class RunRecords:
         self._trial = ""
 
     def prune(self, *projects: Project | None) -> None:
-        """Forget all bundles but these."""
+        """Forget all bundles but these, and those that the journal needs."""
         if self.keeper:
-            self.keeper.prune(*(project.hash for project in projects if project))
+            self._desk.submit(self.keeper.prune, *(project.hash for project in projects if project))
 
     def keep(self, exhibition: BehaviorLoop) -> None:
         """Have it written where the behaviour stands, where that is news and what was to be written before is."""
@@ -97,11 +100,19 @@ class RunRecords:
             self._keeping = self._desk.submit(self.keeper.beat)
 
     def forget(self, person: PersonName) -> None:
-        """Have what names somebody taken out of the journal; where they stand is written anew by `keep`."""
+        """Have what names somebody taken out of the journals; where they stand is written anew by `keep`."""
         self._desk.submit(self.journal.forget, person)
+        if self.inputs:
+            self.inputs.forget(person)
+
+    def close_inputs(self) -> None:
+        """Write what is left of what happened."""
+        if self.inputs:
+            self.inputs.close()
 
     def close(self) -> None:
         """Wait for what is being written; nothing is written any more."""
+        self.close_inputs()
         self._desk.shutdown()
         self._settled()
 

@@ -57,7 +57,7 @@ class RollbackGuard:
         good = live(bad, self.good)
         _log.debug("a reload failed", exc_info=error)
         plan = self._plan(good)
-        self._behavior.switch(good, plan)
+        self._behavior.switch(good, plan, "rollback")
         self.before = _lean(bad)
         self._back(str(error) or repr(error), bad, time.perf_counter() - began)
         return plan.commands

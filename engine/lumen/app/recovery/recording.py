@@ -1,0 +1,51 @@
+"""The journal of inputs of an exhibition that begins: where it is written, and which files it needs kept."""
+
+from pathlib import Path
+
+from lumen.app.live_behavior import LiveBehavior
+from lumen.app.reload.records import RunRecords
+from lumen.errors import LumenError
+from lumen.language.retention import JournalRetention
+from lumen.language.stories import Story
+from lumen.loading.files import fingerprint, read_files
+from lumen.runtime.home import Home, home_of
+from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER, JournalFolder
+from lumen.runtime.inputs.journal_writer import JournalWriter
+from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.upkeep.private_folder import private_folder
+
+REHEARSED = JournalRetention(keep=7.0, size=50.0)
+"""How much is kept of what stories and programs played."""
+
+
+def record_inputs(behavior: LiveBehavior, records: RunRecords, *, story: Story | None, rehearsed: bool) -> None:
+    """Have it kept from now on what happens to a behaviour.
+
+    What visitors did is in the home of the run that has it. What a story or a program plays is `rehearsed`, and beside
+    it: nobody's visit is pushed out by it. Nothing is kept where the project wants none.
+    """
+    project = behavior.project
+    folder = home_of(Path(project.root)) / JOURNAL_FOLDER
+    if not project.journal.wanted or not (rehearsed or records.keeper):
+        return
+    retention = project.journal
+    if rehearsed:
+        folder, retention = folder / REHEARSED_FOLDER, REHEARSED
+        _keep_files(project.root, project.hash)
+    writer = JournalWriter(
+        JournalFolder(folder, retention.keep, retention.size), story=story.name if story else "", rehearsed=rehearsed
+    )
+    records.inputs = behavior.loop.runtime.recorder = writer
+    writer.start()
+
+
+def _keep_files(root: str, hash: str) -> None:
+    """Keep the files that run, where those that are there now are still the same."""
+    home = Home(home_of(Path(root)))
+    try:
+        files = read_files(Path(root))
+        private_folder(home.folder)
+    except (OSError, LumenError):
+        return  # then it can't be replayed; the run itself goes on
+    if fingerprint(files) == hash:
+        SnapshotStore(home).store(files)

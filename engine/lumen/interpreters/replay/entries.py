@@ -1,0 +1,102 @@
+"""The entries of a journal of inputs: what happened to a behaviour, in order, and as JSON data."""
+
+from collections.abc import Mapping
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+from lumen.errors import JournalError
+from lumen.language.causes import Cause
+from lumen.language.events import Event
+
+How = Literal["heard", "timer", "goto"]
+"""An event from outside, a timer that ran out, and the wish of an operator to enter a state."""
+
+JumpKind = Literal[
+    "start", "reload", "rollback", "resume", "forget", "dropped timer", "dropped event", "gap", "keyframe"
+]
+"""Where a behaviour went on from, by no step: begun, under other files, under those before again, after a crash,
+without somebody's name, without a timer or an event that it could not bear, after entries that were lost. A `keyframe`
+changes nothing.
+"""
+
+HOWS: tuple[How, ...] = ("heard", "timer", "goto")
+
+
+class JournalInput(NamedTuple):
+    """An event and the step that it made, at its `position` in the journal.
+
+    `commands` are JSON data (`command_data`), `digest` is that of the step, empty where it was `redacted`: the name of
+    somebody who is forgotten was taken out.
+    """
+
+    position: int
+    how: How
+    event: Event
+    exited: tuple[str, ...] = ()
+    entered: tuple[str, ...] = ()
+    commands: tuple[Any, ...] = ()
+    digest: str = ""
+    redacted: bool = False
+
+
+class JournalJump(NamedTuple):
+    """The behaviour goes on from `snapshot` (frozen, None where it could not be written) at `at` [s].
+
+    It is that of `behavior` in the bundle of that hash. `commands` are those performed for it; `said` holds what is
+    known besides: the arguments of a start, who asked for it, how many entries were lost.
+    """
+
+    position: int
+    kind: JumpKind
+    at: float
+    bundle: str
+    behavior: str
+    snapshot: Mapping[str, Any] | None
+    commands: tuple[Any, ...] = ()
+    said: Mapping[str, Any] = {}
+    redacted: bool = False
+
+
+RecordedEntry: TypeAlias = JournalInput | JournalJump
+
+
+def entry_data(entry: RecordedEntry) -> dict[str, Any]:
+    """The entry as JSON data, without its position; what is empty is left out."""
+    match entry:
+        case JournalInput(_, how, event, exited, entered, commands, digest, redacted):
+            timer = how == "timer"  # which one it was the snapshot before says
+            found: dict[str, Any] = {how: event.name, "at": event.at}
+            if event.data is not None and not timer:
+                found["data"] = event.data
+            more: dict[str, Any] = {
+                "id": event.sendid,
+                "cause": list(event.cause) if event.cause and not timer else None,
+                "exited": list(exited),
+                "entered": list(entered),
+                "commands": list(commands),
+                "digest": digest,
+                "redacted": redacted,
+            }
+            return found | {key: value for key, value in more.items() if value}
+        case JournalJump(_, kind, at, bundle, behavior, snapshot, commands, said, redacted):
+            besides: dict[str, Any] = {"commands": list(commands), "said": dict(said), "redacted": redacted}
+            jump = {"jump": kind, "at": at, "bundle": bundle, "behavior": behavior, "snapshot": snapshot}
+            return jump | {key: value for key, value in besides.items() if value}
+
+
+def read_entry(data: Any, position: int) -> RecordedEntry:
+    """The entry in JSON data, at that position. Raises JournalError where it is none."""
+    try:
+        commands = tuple(data.get("commands", ()))
+        redacted = data.get("redacted") is True
+        if "jump" in data:
+            return JournalJump(
+                position, data["jump"], data["at"], data["bundle"], data["behavior"], data["snapshot"],
+                commands, data.get("said", {}), redacted,
+            )  # fmt: skip
+        how = next(how for how in HOWS if how in data)
+        cause = Cause(*data["cause"]) if "cause" in data else None
+        event = Event(data[how], data.get("data"), data["at"], data.get("id", ""), cause)
+        states = tuple(data.get("exited", ())), tuple(data.get("entered", ()))
+        return JournalInput(position, how, event, *states, commands, data.get("digest", ""), redacted)
+    except (KeyError, TypeError, AttributeError, StopIteration):
+        raise JournalError(f"entry {position} of the journal is none that this Lumen knows") from None

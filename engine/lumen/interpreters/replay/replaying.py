@@ -1,0 +1,164 @@
+"""The steps of a journal, taken again: entries and bundles in, compared steps out."""
+
+import json
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
+
+from lumen.errors import LumenError, SnapshotError
+from lumen.interpreters.replay.command_data import command_data
+from lumen.interpreters.replay.digest import StepDigest
+from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
+from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.language.machines import MachineDefinition
+
+MachineSource = Callable[[str, str], MachineDefinition | None]
+"""The machine of a behaviour in the bundle of a hash, None where it was not kept."""
+
+
+class StepOutcome(NamedTuple):
+    """What a step did, as it was recorded or as it is now; in words, `str`."""
+
+    exited: tuple[str, ...]
+    entered: tuple[str, ...]
+    commands: tuple[Any, ...]
+    digest: str = ""
+    trouble: str = ""
+
+    def __str__(self) -> str:
+        if self.trouble:
+            return self.trouble
+        ways = [f"leaves {', '.join(self.exited)}"] if self.exited else []
+        ways += [f"enters {', '.join(self.entered)}"] if self.entered else []
+        ways += [json.dumps(command, ensure_ascii=False) for command in self.commands]
+        return "; ".join(ways) or f"changes no state and asks for nothing ({self.digest})"
+
+
+class ReplayedStep(NamedTuple):
+    """An entry, the step taken again from the snapshot `before`, and whether it is the same: then `was` equals `now`.
+
+    `step` is None for a jump that is no step, and where it could not be taken: then `unknown` says why, as for what
+    somebody was forgotten in.
+    """
+
+    entry: RecordedEntry
+    machine: MachineDefinition | None = None
+    before: Snapshot | None = None
+    step: Step | None = None
+    was: StepOutcome | None = None
+    now: StepOutcome | None = None
+    unknown: str = ""
+
+    @property
+    def differs(self) -> bool:
+        return self.was != self.now
+
+    @property
+    def after(self) -> Snapshot | None:
+        """Where the behaviour stands then, None where that is not known."""
+        return self.step.snapshot if self.step else self.before
+
+
+def replay(entries: Iterable[RecordedEntry], machines: MachineSource) -> Iterator[ReplayedStep]:
+    """Each entry with its step, taken again with the bundle that ran then.
+
+    A difference is followed by others until the next keyframe that says where the behaviour stood.
+    """
+    replayer = Replayer(machines)
+    for entry in entries:
+        yield replayer.take(entry)
+
+
+class Replayer:
+    """Where a behaviour stands in its journal; `take` the next entry."""
+
+    def __init__(self, machines: MachineSource) -> None:
+        self._machines, self._digest = machines, StepDigest()
+        self._machine: MachineDefinition | None = None
+        self._snapshot: Snapshot | None = None
+        self._unknown = "what came before is not in the journal"
+
+    def take(self, entry: RecordedEntry) -> ReplayedStep:
+        """The entry, and what came of it now. Nothing is raised for what stands in a journal."""
+        return self._step(entry) if isinstance(entry, JournalInput) else self._jump(entry)
+
+    def _step(self, entry: JournalInput) -> ReplayedStep:
+        machine, before = self._machine, self._snapshot
+        if entry.redacted:
+            self._lose("somebody who is forgotten was named")
+        if machine is None or before is None or entry.redacted:
+            return ReplayedStep(entry, machine, unknown=self._unknown)
+        was = StepOutcome(entry.exited, entry.entered, entry.commands, entry.digest)
+        try:
+            taken = _taken(machine, before, entry)
+        except LumenError as error:
+            return ReplayedStep(entry, machine, before, None, was, StepOutcome((), (), (), trouble=str(error)))
+        self._snapshot = taken.snapshot
+        return ReplayedStep(entry, machine, before, taken, was, self._outcome(taken))
+
+    def _outcome(self, taken: Step) -> StepOutcome:
+        commands = tuple(command_data(command) for command in taken.commands)
+        return StepOutcome(taken.exited, taken.entered, commands, self._digest(taken))
+
+    def _jump(self, entry: JournalJump) -> ReplayedStep:
+        before = self._snapshot if entry.kind == "keyframe" else None
+        self._machine = machine = self._machines(entry.bundle, entry.behavior)
+        if machine is None:
+            self._lose(f"the files of the bundle {entry.bundle[:16]} were not kept")
+            return ReplayedStep(entry, unknown=self._unknown)
+        if entry.snapshot is None:
+            self._lose("where the behaviour stood could not be written")
+            return ReplayedStep(entry, machine, unknown=self._unknown)
+        try:
+            stands = deserialize(machine, entry.snapshot)
+        except SnapshotError as error:
+            self._lose(str(error))
+            return ReplayedStep(entry, machine, unknown=self._unknown)
+        if entry.kind == "start" and "arguments" in entry.said and not entry.redacted:
+            self._snapshot = stands
+            return self._began(entry, machine, entry.said["arguments"])
+        if before is None or entry.redacted:
+            self._snapshot = stands
+            return ReplayedStep(entry, machine, stands)
+        was, now = _standing(entry.snapshot, serialize(machine, before))
+        if was != now:
+            self._snapshot = stands
+        return ReplayedStep(entry, machine, stands, None, was, now)
+
+    def _began(self, entry: JournalJump, machine: MachineDefinition, said: dict[str, Any]) -> ReplayedStep:
+        try:
+            taken = initial(machine, **said)
+        except (LumenError, TypeError) as error:
+            return ReplayedStep(
+                entry, machine, None, None, StepOutcome((), (), ()), StepOutcome((), (), (), trouble=str(error))
+            )
+        was, now = _standing(entry.snapshot, serialize(machine, taken.snapshot))
+        commands = tuple(map(command_data, taken.commands))
+        return ReplayedStep(
+            entry, machine, None, taken, was._replace(commands=entry.commands), now._replace(commands=commands)
+        )
+
+    def _lose(self, why: str) -> None:
+        self._snapshot, self._unknown = None, why
+
+
+def _taken(machine: MachineDefinition, before: Snapshot, entry: JournalInput) -> Step:
+    """The step of an entry. Raises LumenError where it can't be taken."""
+    event = entry.event
+    if entry.how == "heard":
+        return step(machine, before, event)
+    if entry.how == "goto":
+        wanted = event.data.get("state") if isinstance(event.data, dict) else None
+        return entered_directly(machine, before, str(wanted), event)
+    timer = due(before)
+    if timer is None or timer.sendid != event.sendid:
+        raise LumenError(f"the timer `{event.name}` does not run out then")
+    return step(machine, before, timer)
+
+
+def _standing(was: Any, now: Any) -> tuple[StepOutcome, StepOutcome]:
+    """What of two frozen snapshots is not the same; the same twice where all is."""
+    was, now = json.loads(json.dumps(was)), json.loads(json.dumps(now))
+    keys = [key for key in {**was, **now} if was.get(key) != now.get(key)]
+    told = [", ".join(f"{key} {json.dumps(one.get(key), ensure_ascii=False)}" for key in keys) for one in (was, now)]
+    return StepOutcome((), (), (), trouble=told[0]), StepOutcome((), (), (), trouble=told[1])

@@ -1,0 +1,115 @@
+"""One file of the journal of inputs: a line that says what it is, then frames of entries, a line of JSON each."""
+
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import orjson
+
+from lumen.errors import JournalError
+from lumen.interpreters.replay.entries import RecordedEntry, entry_data, read_entry
+from lumen.loading.regular_files import read_regular
+from lumen.runtime.inputs.frames import unpack
+
+JOURNAL_VERSION = 1
+JOURNAL_SUFFIX = ".journal"
+MAX_HEADER_BYTES = 10_000
+MAX_FILE_BYTES = 256_000_000
+"""Of one file; a new one is begun long before."""
+
+encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
+
+
+class JournalHeader(NamedTuple):
+    """What the first line of a file says.
+
+    `first` is the position of its first entry, which says where the behaviour stood; `run` names the run that wrote it,
+    `bundle` the files that ran, `began` when it was opened [s since 1970], `story` what was played, if anything.
+    """
+
+    first: int
+    run: str
+    bundle: str
+    began: float
+    story: str = ""
+    version: int = JOURNAL_VERSION
+
+    def line(self) -> bytes:
+        said = self._asdict()
+        return encode({"lumen-journal": said.pop("version"), **said}).encode() + b"\n"
+
+
+class JournalContent(NamedTuple):
+    """A file of the journal: its header, its entries, and whether it was readable to its last byte."""
+
+    header: JournalHeader
+    entries: tuple[RecordedEntry, ...]
+    whole: bool
+
+
+def read_header(line: bytes, name: str) -> JournalHeader:
+    """Raises JournalError that says what to do, where it is none, or another Lumen's."""
+    try:
+        data = json.loads(line)
+        version = data.pop("lumen-journal")
+        header = JournalHeader(
+            int(data["first"]), str(data["run"]), str(data["bundle"]), float(data["began"]), str(data.get("story", ""))
+        )
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        raise JournalError(f"{name} is no journal, or was cut in its first line: nothing in it can be read") from None
+    if version != JOURNAL_VERSION:
+        raise JournalError(
+            f"{name} was written by another Lumen (the journal's version {version}, this one reads {JOURNAL_VERSION}): "
+            "replay it with that one"
+        )
+    return header
+
+
+def header_of(file: Path) -> JournalHeader:
+    """The header of a file, without reading the rest. Raises JournalError where it can't be read."""
+    try:
+        with file.open("rb") as opened:
+            return read_header(opened.readline(MAX_HEADER_BYTES), file.name)
+    except OSError as error:
+        raise JournalError(f"{file} can't be read: {error.strerror}") from None
+
+
+def read_journal(file: Path) -> JournalContent:
+    """What a file holds, as far as it can be read. Raises JournalError where it is none."""
+    try:
+        data = read_regular(file, MAX_FILE_BYTES, follow=False)
+    except OSError as error:
+        raise JournalError(f"{file} can't be read: {error.strerror or error}") from None
+    return read_content(data, file.name)
+
+
+def read_content(data: bytes, name: str) -> JournalContent:
+    """The same of bytes."""
+    end = data.find(b"\n", 0, MAX_HEADER_BYTES) + 1
+    header = read_header(data[:end], name)
+    entries, read = list[RecordedEntry](), end
+    try:
+        for text, until in unpack(data, end):
+            read = until
+            for line in text.split(b"\n")[:-1]:
+                entries.append(read_entry(_decoded(line), header.first + len(entries)))
+    except JournalError:
+        return JournalContent(header, tuple(entries), whole=False)
+    return JournalContent(header, tuple(entries), whole=read == len(data))
+
+
+def line_of(entry: RecordedEntry) -> bytes:
+    """An entry as it stands in a frame. Raises TypeError, ValueError or RecursionError where it is no JSON data."""
+    return encode(entry_data(entry)).encode("utf-8", "surrogatepass") + b"\n"
+
+
+def _decoded(line: bytes) -> Any:
+    """orjson is quick, and reads neither NaN nor half characters."""
+    try:
+        return orjson.loads(line)
+    except ValueError:
+        pass
+    try:
+        return json.loads(line.decode("utf-8", "surrogatepass"))
+    except (ValueError, RecursionError):
+        return {}

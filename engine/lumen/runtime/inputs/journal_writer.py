@@ -1,0 +1,216 @@
+"""Who writes the journal of inputs: on a thread of its own, so that no step waits for a disk."""
+
+import logging
+import os
+import threading
+import time
+import uuid
+from collections import deque
+from collections.abc import Sequence
+from typing import Any, BinaryIO
+
+from lumen.errors import ModuleError
+from lumen.interpreters.replay.entries import How, JumpKind
+from lumen.interpreters.statechart import Snapshot, Step
+from lumen.language.commands import Command
+from lumen.language.people import PersonName
+from lumen.language.projects import Project
+from lumen.runtime.inputs.frames import FramePacker
+from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, JournalHeader
+from lumen.runtime.inputs.journal_folder import JournalFolder
+from lumen.runtime.inputs.journal_pen import JournalPen, Jumped, Stepped
+from lumen.runtime.inputs.redaction import redact
+from lumen.upkeep.threads import WatchedThread
+
+MAX_WAITING = 20_000
+"""Entries that wait for the disk at a time; what happens then is lost, and counted."""
+WRITE_PERIOD = 0.25
+"""How long a step that asks for nothing may wait to be written [s]; any other is written at once."""
+SYNC_PERIOD = 0.5
+"""How often the system is asked to bring it to the disk [s], at most."""
+MAX_LINES = 1000
+"""Entries in one frame."""
+FILE_BYTES = 1_000_000
+"""After which a new file is begun."""
+RETRY_PERIOD = 5.0
+"""How long after a disk has refused something it is tried again [s]."""
+
+_log = logging.getLogger(__name__)
+
+
+class JournalWriter:
+    """Keeps what it is told in the files of a folder, as an `InputRecorder`; `story` is what is played, if anything.
+
+    Where the disk refuses, or is too slow for `MAX_WAITING` entries, entries are lost: that is counted in `lost`, a gap
+    says so in the journal, and `trouble` says why. What is `rehearsed` has time: a
+    step waits for a slow disk, and a power cut may take what was written last.
+    """
+
+    def __init__(self, folder: JournalFolder, *, story: str = "", rehearsed: bool = False) -> None:
+        self._folder, self._story, self._rehearsed = folder, story, rehearsed
+        self.run = uuid.uuid4().hex
+        self.lost, self.trouble = 0, ""
+        self._waiting: deque[Stepped | Jumped | PersonName] = deque()
+        self._overflow, self._gone = 0, 0
+        self._project: Project | None = None
+        self._wake, self._idle, self._closing = threading.Event(), threading.Event(), False
+        self._pen = JournalPen()
+        self._file: BinaryIO | None = None
+        self._packer, self._bytes, self._synced, self._day = FramePacker(), 0, 0.0, ""
+        self._position = -1
+        self._retry = 0.0
+        self._thread = WatchedThread("lumen-inputs", self._run)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stepped(self, step: Step, how: How) -> None:
+        """A step was taken; from the thread that takes it."""
+        if self._rehearsed and len(self._waiting) >= MAX_WAITING:
+            self.flush()
+        if len(self._waiting) >= MAX_WAITING or (self._overflow and len(self._waiting) > MAX_WAITING // 2):
+            self._overflow += 1
+        elif self._overflow and self._project:
+            self._overflow += 1  # what led there is lost, too
+            self.jumped("gap", self._project, step.snapshot, step.commands)
+        else:
+            self._waiting.append(Stepped(step, how))
+            if step.commands:
+                self._wake.set()
+
+    def jumped(
+        self, kind: JumpKind, project: Project, snapshot: Snapshot, commands: Sequence[Command] = (), **said: Any
+    ) -> None:
+        """The behaviour goes on from somewhere else; from the thread that takes its steps."""
+        if self._overflow:
+            said, self._overflow = {**said, "lost": self._overflow}, 0
+        self._project = project
+        self._waiting.append(Jumped(kind, project, snapshot, commands, said))
+        self._wake.set()
+
+    def forget(self, person: PersonName) -> None:
+        """Have somebody's name taken out of all files; any thread may."""
+        self._waiting.append(person)
+        self._wake.set()
+
+    def flush(self, patience: float = 5.0) -> bool:
+        """Wait until what was told is written, at most so long [s]; whether it is."""
+        self._idle.clear()
+        self._wake.set()
+        return self._idle.wait(patience)
+
+    def close(self, patience: float = 5.0) -> None:
+        """Write what is left, at most so long [s], and end."""
+        self._closing = True
+        self._wake.set()
+        if self._thread.started:
+            self._thread.join(patience)
+
+    def _run(self) -> None:
+        self._end_file()  # after a fault of ours a new one begins with where the behaviour stands
+        while True:
+            self._wake.wait(WRITE_PERIOD)
+            self._wake.clear()
+            idle, closing = not self._idle.is_set(), self._closing
+            while self._waiting:
+                self._write_next()
+            self._bring_to_disk(closing)
+            if idle:
+                self._idle.set()
+            if closing and not self._waiting:
+                self._end_file()
+                return
+
+    def _write_next(self) -> None:
+        """What waits, in one frame; a file is about one bundle, and begins with where the behaviour stands."""
+        lines = list[bytes]()
+        if self._bytes > FILE_BYTES or time.strftime("%j") != self._day:
+            self._end_file()
+        while self._waiting and len(lines) < MAX_LINES:
+            told = self._waiting.popleft()
+            if isinstance(told, PersonName):
+                self._put(lines)
+                lines = []
+                self._forget(told)
+                continue
+            if isinstance(told, Jumped) and self._pen.bundle not in ("", told.project.hash):
+                self._put(lines)
+                lines = []
+                self._end_file()
+            if self._file is None and self._begin_file(told):
+                lines += self._pen.keyframe(gone=self._gone) if isinstance(told, Stepped) else []
+                self._gone = 0
+            lines += self._pen.write(told)
+        self._put(lines)
+
+    def _put(self, lines: list[bytes]) -> None:
+        if self._file is None:
+            self._lose(len(lines))
+        elif lines:
+            try:
+                frame = self._packer.pack(b"".join(lines))
+                self._write_all(self._file, frame)
+                self._bytes += len(frame)
+                self._position += len(lines)
+            except OSError as error:
+                self._fail(error)
+                self._lose(len(lines))
+
+    def _begin_file(self, told: Stepped | Jumped) -> bool:
+        """Open the next file; false where the disk refuses, or has just refused."""
+        if time.monotonic() < self._retry:
+            return False
+        bundle = told.project.hash if isinstance(told, Jumped) else self._pen.bundle
+        try:
+            if self._position < 0:
+                self._position = self._folder.next_position()
+            header = JournalHeader(self._position, self.run, bundle, time.time(), self._story)
+            self._file = self._folder.open(header)
+        except OSError as error:
+            self._fail(error)
+            return False
+        self._packer, self._bytes, self._day = FramePacker(), 0, time.strftime("%j")
+        self._folder.prune(time.time())
+        return True
+
+    def _write_all(self, file: BinaryIO, data: bytes) -> None:
+        while data:
+            data = data[file.write(data) :]
+
+    def _bring_to_disk(self, now: bool) -> None:
+        if self._file is None or self._rehearsed:
+            return
+        if now or time.monotonic() - self._synced >= SYNC_PERIOD:
+            self._synced = time.monotonic()
+            try:
+                os.fsync(self._file.fileno())
+            except OSError as error:
+                self._fail(error)
+
+    def _fail(self, error: OSError) -> None:
+        """The disk refuses: entries are lost until it does no more."""
+        self._retry = time.monotonic() + RETRY_PERIOD
+        if not self.trouble:
+            self.trouble = f"the journal can't be written: {(error.strerror or str(error)).lower()}"
+            _log.warning("%s: what happens now can't be replayed", self.trouble)
+        self._end_file()
+
+    def _lose(self, count: int) -> None:
+        self.lost += count
+        self._gone += count
+
+    def _end_file(self) -> None:
+        file, self._file = self._file, None
+        if file:
+            try:
+                file.close()
+            except OSError:
+                return
+
+    def _forget(self, person: PersonName) -> None:
+        self._end_file()
+        for file in self._folder.folder.rglob(f"*{JOURNAL_SUFFIX}"):
+            try:
+                redact(file, person)
+            except ModuleError as error:
+                _log.warning("the journal still names somebody who was to be forgotten: %s", error)

@@ -1,0 +1,100 @@
+"""Behaviours that run with a journal: random machines, events, other files, and starts after a crash."""
+
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import lumen
+from lumen.errors import LumenError
+from lumen.interpreters.migration import MigrationPlan
+from lumen.interpreters.replay.entries import RecordedEntry
+from lumen.interpreters.replay.replaying import ReplayedStep, replay
+from lumen.interpreters.statechart import Step, deserialize, due, serialize
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition
+from lumen.language.nanoseconds import to_the_nanosecond
+from lumen.language.projects import Project
+from lumen.runtime.inputs.journal_file import read_journal
+from lumen.runtime.inputs.journal_folder import JournalFolder
+from lumen.runtime.inputs.journal_writer import JournalWriter
+from lumen.runtime.resuming import Resumption, resume
+from lumen.runtime.runtime import Runtime
+
+ROOT = Path(__file__).parents[2]
+
+
+@cache
+def minimal() -> Project:
+    return lumen.load(ROOT / "examples" / "minimal")
+
+
+def bundle(machine: MachineDefinition) -> Project:
+    """A project in which this is the behaviour that runs."""
+    return replace(minimal(), behaviors={machine.id: machine}, behavior=machine.id, hash=machine.hash)
+
+
+@dataclass
+class Recorded:
+    """A run that is written into `folder`; `again` is what its journal comes to."""
+
+    folder: Path
+    steps: list[Step] = field(default_factory=list)
+    bundles: dict[str, Project] = field(default_factory=dict)
+
+    def begin(self, machine: MachineDefinition) -> None:
+        self.now = 1.0
+        self._run(bundle(machine))
+        self.runtime.start(self.now, epoch=1_700_000_000.0, timezone="Europe/Berlin")
+
+    def happen(self, happening: tuple[str, Any] | None, number: int) -> None:
+        """An event from outside; or by turns time that passes, an answer and a refusal of what is awaited."""
+        if happening is None and number % 3 == 0 and (event := due(self.runtime.snapshot)):
+            self.now = max(self.now, to_the_nanosecond(event.at + 0.001))
+            self.runtime.tick(self.now)
+            return
+        self.now = to_the_nanosecond(self.now + 0.05)
+        kind = "done" if number % 3 == 1 else "error"
+        name, data = happening or (f"{kind}.command.d{self.runtime.snapshot.counters.awaited}", None)
+        self.runtime.tick(self.now, [Event(name, data, to_the_nanosecond(self.now - 0.02 * (number % 2)))])
+
+    def reload(self, machine: MachineDefinition) -> None:
+        """Go on under another machine, where that can be."""
+        project = bundle(machine)
+        self.bundles[project.hash] = project
+        with suppress(LumenError):
+            plan = self.runtime.plan(project, self.now, now=True)
+            if isinstance(plan, MigrationPlan):
+                self.runtime.apply(project, plan.snapshot, "reload", plan.commands)
+
+    def crash(self) -> None:
+        """End without notice, and go on from where it stood when that was written."""
+        project, frozen = self.runtime.project, serialize(self.runtime.project.machine, self.runtime.snapshot)
+        self.writer.flush()
+        self._run(project)
+        found = resume(project, project, deserialize(project.machine, frozen), 3.0, (), 0.5)
+        assert isinstance(found, Resumption)
+        self.now = 0.0
+        self.runtime.apply(project, found.snapshot, "resume", found.commands)
+
+    def end(self) -> None:
+        self.writer.close()
+
+    def entries(self) -> list[RecordedEntry]:
+        files = JournalFolder(self.folder, 30.0, 100.0).files()
+        return [entry for file in files for entry in read_journal(file).entries]
+
+    def again(self, entries: Iterable[RecordedEntry] | None = None) -> list[ReplayedStep]:
+        return list(replay(self.entries() if entries is None else entries, self.machine))
+
+    def machine(self, hash: str, behavior: str) -> MachineDefinition:
+        return self.bundles[hash].behaviors[behavior]
+
+    def _run(self, project: Project) -> None:
+        self.bundles[project.hash] = project
+        self.writer = JournalWriter(JournalFolder(self.folder, 30.0, 100.0), rehearsed=True)
+        self.writer.start()
+        self.runtime = Runtime(project, self.steps.append)
+        self.runtime.recorder = self.writer

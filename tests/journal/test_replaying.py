@@ -1,0 +1,134 @@
+"""What was journaled replays to the same steps: random machines and events, other files, and starts after a crash."""
+
+import json
+import logging
+import os
+import sys
+from collections.abc import Iterator
+from copy import deepcopy
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from lumen.errors import LumenError
+from lumen.interpreters.replay.entries import JournalInput, entry_data, read_entry
+from lumen.language.causes import Cause
+from lumen.language.events import Event
+from lumen.statechart import Machine
+from tests.guarded import PIPE, run_guarded
+from tests.journal.making import Recorded
+from tests.reload.editing import Happenings, built, edits
+from tests.statechart.oracle.generating import Data, happenings, machine_data
+
+PATIENT = settings(
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much],
+)
+MOVES = st.lists(st.sampled_from(["go", "go", "reload", "crash"]), min_size=1, max_size=4)
+
+
+@pytest.fixture(autouse=True)
+def quiet() -> Iterator[None]:
+    """A machine that never comes to rest is told of: that is not what is looked at here."""
+    logging.disable(logging.ERROR)
+    yield
+    logging.disable(logging.NOTSET)
+
+
+def same(data: st.DataObject, machine: Data, events: Happenings, moves: list[str]) -> None:
+    with TemporaryDirectory() as folder:
+        recorded = Recorded(Path(folder))
+        try:
+            recorded.begin(Machine.from_dict(deepcopy(machine)))
+        except LumenError:
+            recorded.end()
+            return
+        for move in moves:
+            for number, event in enumerate(events):
+                recorded.happen(event, number)
+            other = built(data.draw(edits(machine) | machine_data(deeds=True))) if move == "reload" else None
+            if other:
+                recorded.reload(other)
+            elif move == "crash":
+                recorded.crash()
+        recorded.end()
+        again = recorded.again()
+        taken = [row.step for row in again if row.step]
+        assert [(row.entry, row.was, row.now) for row in again if row.differs] == []
+        assert [row.unknown for row in again if row.unknown] == []
+        assert [(s.event, s.entered, s.exited) for s in taken] == [
+            (s.event, s.entered, s.exited) for s in recorded.steps
+        ]
+
+
+@settings(PATIENT, max_examples=12)
+@given(st.data(), machine_data(deeds=True), happenings, MOVES)
+def test_random_runs_replay_to_the_same_steps(
+    data: st.DataObject, machine: Data, events: Happenings, moves: list[str]
+) -> None:
+    same(data, machine, events, moves)
+
+
+@pytest.mark.soak
+@settings(PATIENT, max_examples=1000)
+@given(st.data(), machine_data(deeds=True), happenings, MOVES)
+def test_a_thousand_runs_replay_to_the_same_steps(
+    data: st.DataObject, machine: Data, events: Happenings, moves: list[str]
+) -> None:
+    same(data, machine, events, moves)
+
+
+BRANCHES = {
+    "context": {"n": 0},
+    "type": "parallel",
+    "states": {name: {"states": {"a": {"on": {"go": {"target": "b", "actions": {"assign": {"n": "context.n + 1"}}}}},
+                                 "b": {"on": {"go": "a"}, "after": {"1s": "a"}}}} for name in "uvwxyz"},
+}  # fmt: skip
+SCRIPT = """
+import sys, json
+from pathlib import Path
+from lumen.statechart import Machine
+from tests.journal.making import Recorded
+recorded = Recorded(Path(sys.argv[1]))
+machine = Machine.from_dict(json.loads(sys.argv[2]))
+if sys.argv[3] == "record":
+    recorded.begin(machine)
+    for number in range(6):
+        recorded.happen(("go", {"k": number}) if number % 2 else None, number)
+    recorded.end()
+else:
+    recorded.bundles[machine.hash] = type("B", (), {"behaviors": {machine.id: machine}})
+    again = recorded.again()
+    print(len(again), sum(row.differs for row in again), sum(bool(row.unknown) for row in again))
+"""
+
+
+@pytest.mark.slow
+def test_another_process_with_another_seed_of_hashes_replays_the_same(tmp_path: Path) -> None:
+    data, root = json.dumps(BRANCHES), Path(__file__).parents[2]
+    said = []
+    for seed, what in (("1", "record"), ("2", "replay"), ("33", "replay")):
+        command = [sys.executable, "-c", SCRIPT, tmp_path, data, what]
+        here = {**os.environ, "PYTHONHASHSEED": seed}
+        ended = run_guarded(command, env=here, cwd=root, stdout=PIPE, text=True, check=True, timeout=60)
+        said.append(ended.stdout.strip())
+    assert said[1] == said[2]
+    assert said[1].endswith(" 0 0")
+
+
+EVENTS = [
+    Event("a"),
+    Event("a", 0, 1.5),
+    Event("a", "", 0.1 + 0.2),
+    Event("a", False, 1e-9, "s3"),
+    Event("a", {"k": [1.0, 1, -0.0, 10**30, {"ä\ud800": None}]}, 2.0, "", Cause("message", "x", "k", "Budi", 1.5)),
+]
+
+
+@pytest.mark.parametrize("event", EVENTS, ids=str)
+def test_an_entry_is_read_as_it_was_written(event: Event) -> None:
+    entry = JournalInput(7, "heard", event, ("a",), ("b", "c"), ({"Log": {"text": "x"}},), "0123abcd")
+    assert read_entry(entry_data(entry), 7) == entry

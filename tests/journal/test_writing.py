@@ -1,0 +1,180 @@
+"""The writer of the journal: no step waits for it, a disk that refuses is told once, and what is lost is counted."""
+
+import errno
+import threading
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import pytest
+
+from lumen.interpreters.replay.entries import JournalJump
+from lumen.interpreters.statechart import Step, initial, step
+from lumen.language.events import Event
+from lumen.language.people import PersonName
+from lumen.runtime.inputs import journal_writer
+from lumen.runtime.inputs.journal_file import JournalHeader, read_journal
+from lumen.runtime.inputs.journal_folder import JournalFolder
+from lumen.runtime.inputs.journal_writer import JournalWriter
+from lumen.statechart import Machine
+from tests.journal.making import Recorded, bundle
+from tests.waiting import until
+
+MACHINE = Machine.from_dict(
+    {
+        "context": {"who": ""},
+        "states": {
+            "idle": {"entry": {"assign": {"who": "''"}}, "on": {"come": "busy"}},
+            "busy": {
+                "on": {"heard": {"actions": [{"assign": {"who": "event.data.name"}}, {"say": "Hi"}]}, "go": "idle"}
+            },
+        },
+    }
+)
+PROJECT = bundle(MACHINE)
+
+
+class Disk(JournalFolder):
+    """A disk that does not answer while it is `held`, and refuses what is written while it is `full`."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder, 30.0, 100.0)
+        self.free, self.full = threading.Event(), False
+        self.free.set()
+
+    def open(self, header: JournalHeader) -> BinaryIO:
+        return Slow(super().open(header), self)  # type: ignore[return-value]  # what of a file is used
+
+
+class Slow:
+    def __init__(self, file: BinaryIO, disk: Disk) -> None:
+        self.file, self.disk = file, disk
+
+    def write(self, data: bytes) -> int:
+        assert self.disk.free.wait(20.0)
+        if self.disk.full:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return self.file.write(data[:100])  # as a system may
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.file, name)
+
+
+def steps(count: int) -> list[Step]:
+    found = [initial(MACHINE)]
+    for number in range(count):
+        found.append(step(MACHINE, found[-1].snapshot, Event("come" if number % 2 else "go", None, number * 0.1)))
+    return found[1:]
+
+
+def tell(writer: JournalWriter, told: list[Step]) -> None:
+    for each in told:
+        writer.stepped(each, "heard")
+
+
+@pytest.fixture
+def disk(tmp_path: Path) -> Disk:
+    return Disk(tmp_path)
+
+
+def begun(disk: Disk) -> JournalWriter:
+    writer = JournalWriter(disk)
+    writer.start()
+    writer.jumped("start", PROJECT, initial(MACHINE).snapshot)
+    return writer
+
+
+def read(disk: Disk) -> list[Any]:
+    return [entry for file in disk.files() for entry in read_journal(file).entries]
+
+
+def test_a_slow_disk_keeps_nobody_waiting_and_what_does_not_fit_is_a_gap(
+    disk: Disk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(journal_writer, "MAX_WAITING", 50)
+    disk.free.clear()
+    writer, made = begun(disk), steps(200)
+    tell(writer, made[:150])  # returns, though nothing can be written
+    disk.free.set()
+    assert writer.flush()
+    tell(writer, made[150:])
+    writer.close()
+    (gap,) = [entry for entry in read(disk) if isinstance(entry, JournalJump) and entry.kind == "gap"]
+    kept = len([entry for entry in read(disk) if not isinstance(entry, JournalJump)])
+    assert gap.said["lost"] + kept == len(made)
+    assert not writer.trouble
+    again = Recorded(disk.folder, bundles={PROJECT.hash: PROJECT}).again()
+    assert not [row for row in again if row.differs or row.unknown]
+
+
+def test_a_full_disk_is_told_once_and_costs_entries(
+    disk: Disk, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(journal_writer, "RETRY_PERIOD", 0.0)
+    writer, made = begun(disk), steps(30)
+    tell(writer, made[:10])
+    assert writer.flush()
+    disk.full = True
+    for at in (10, 15):
+        tell(writer, made[at : at + 5])
+        assert writer.flush()
+    disk.full = False
+    tell(writer, made[20:])
+    writer.close()
+    assert writer.trouble == "the journal can't be written: no space left on device"
+    assert [record.levelname for record in caplog.records] == ["WARNING"]
+    assert writer.lost
+    kinds = [entry.kind for entry in read(disk) if isinstance(entry, JournalJump)]
+    assert "gap" in kinds
+    again = Recorded(disk.folder, bundles={PROJECT.hash: PROJECT}).again()
+    assert not [row for row in again if row.differs or row.unknown]
+    assert again[-1].after == made[-1].snapshot
+
+
+def test_a_folder_that_can_not_be_made_costs_the_journal_and_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    writer = begun(Disk(tmp_path / "file" / "journal"))
+    tell(writer, steps(5))
+    assert writer.flush()
+    writer.close()
+    assert writer.trouble.startswith("the journal can't be written: ")
+    assert writer.lost >= 5
+
+
+def test_a_step_that_asks_for_something_is_on_the_disk_soon_and_in_order(disk: Disk) -> None:
+    writer = begun(disk)
+    busy = step(MACHINE, initial(MACHINE).snapshot, Event("come"))
+    said = step(MACHINE, busy.snapshot, Event("heard", {"name": "Ada"}, 1.0))
+    tell(writer, [busy, said])
+    until(lambda: len(read(disk)) >= 3)  # nobody flushes, nobody closes
+    assert [entry.position for entry in read(disk)] == list(range(len(read(disk))))
+    writer.close()
+
+
+def test_another_bundle_begins_another_file(disk: Disk) -> None:
+    writer = begun(disk)
+    other = bundle(Machine.from_dict({"states": {"idle": {}}}))
+    writer.jumped("reload", other, initial(other.machine).snapshot)
+    writer.close()
+    assert [read_journal(file).header.bundle for file in disk.files()] == [PROJECT.hash, other.hash]
+
+
+def test_somebody_who_is_forgotten_is_in_no_file_and_nothing_else_is_lost(disk: Disk) -> None:
+    writer = begun(disk)
+    told = [initial(MACHINE)]
+    events = [("come", None), ("heard", {"name": "Budi"}), ("go", None), ("come", None), ("heard", {"name": "Ada"})]
+    for number, (name, data) in enumerate(events):
+        told.append(step(MACHINE, told[-1].snapshot, Event(name, data, number + 1.0)))
+    tell(writer, told[1:])
+    writer.forget(PersonName("budi"))
+    writer.close()
+    entries = read(disk)
+    texts = str(entries)
+    assert "Budi" not in texts
+    assert "Ada" in texts
+    marked = [entry.event.name for entry in entries if not isinstance(entry, JournalJump) and entry.redacted]
+    assert marked == ["heard", "go"]
+    assert not [entry for entry in entries if entry.redacted and getattr(entry, "digest", "")]
+    again = Recorded(disk.folder, bundles={PROJECT.hash: PROJECT}).again()
+    assert not [row for row in again if row.differs]
+    assert [row.unknown for row in again if row.unknown] == ["somebody who is forgotten was named"] * 2
+    assert again[-1].step is not None
