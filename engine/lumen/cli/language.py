@@ -14,7 +14,8 @@ from lumen.loading.files import read_files
 from lumen.loading.own_project import own_project
 from lumen.loading.project import draft
 from lumen.rules import check_files
-from lumen.rules.translation import TO_DO, LanguageEntry, Untranslated, language_entries, untranslated, with_language
+from lumen.rules.new_language import with_language
+from lumen.rules.translation import TO_DO, LanguageEntry, Untranslated, language_entries, untranslated
 
 CODE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
 VERBS = {

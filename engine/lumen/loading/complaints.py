@@ -94,7 +94,8 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
         here, message = (*path, key), f"`{key}` is not a key of {node(path)}"
         yield Complaint(UNKNOWN_KEY, here, message, "", path, here, True)
     for key in unknown[:MAX_UNKNOWN_KEYS]:
-        meant = also if (also := _ALSO.get(key, "")) in free else nearest(key, free)
+        meant = next((also for also in _ALSO.get(key, "").split() if also in free), "") or nearest(key, free)
+        torn = _torn(error.instance, key)
         first, _, rest = key.partition(" ")
         if rest and first in known and key not in known:
             meant = first
@@ -102,6 +103,8 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
         if rest and meant == first:
             value = rest if error.instance[key] is None else f"{rest}: …"
             hint = f"`{first}` has no colon behind it: write `{first}: {value}`"
+        elif torn:
+            meant, hint = "", f'a comma ends a text within braces: put quotes around the whole text: "{torn}"'
         elif key == "<<":
             hint = "YAML 1.2 has no merge keys: write the keys themselves"
         elif key.isdecimal() and not meant:
@@ -113,14 +116,24 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
         yield Complaint(UNKNOWN_KEY, here, message, hint, path, here, True, suggestion=meant)
 
 
+def _torn(instance: Mapping[str, Any], key: str) -> str:
+    """The text of which that key is the rest behind a comma, if it is: `{say: Oh, step back}`."""
+    keys = list(instance)
+    before = instance[keys[keys.index(key) - 1]] if keys.index(key) else None
+    whole = isinstance(before, str) and instance[key] is None and " " in f"{before}{key}"
+    return f"{before}, {key}" if whole else ""
+
+
 _ALSO = {
-    "next": "onDone", "goto": "target", "to": "target", "transitions": "on", "events": "on", "timeout": "after",
+    "next": "onDone", "goto": "target walk", "to": "target", "transitions": "on", "events": "on", "timeout": "after",
     "onEntry": "entry", "onExit": "exit", "enter": "entry", "cond": "guard", "if": "guard", "when": "guard",
+    "unless": "guard", "condition": "guard",
     "speak": "say", "tell": "say", "talk": "say", "text": "say", "sleep": "wait", "pause": "wait", "delay": "wait",
     "move": "play", "motion": "play", "gesture": "play", "animation": "play", "led": "leds", "lights": "leds",
+    "after": "wait", "go": "walk", "drive": "walk", "place": "to", "destination": "to",
     "time": "at", "angles": "joints", "pin": "key", "topic": "key", "exchange": "key",
 }  # fmt: skip
-"""What other tools call our keys."""
+"""What other tools, or other words of ours, call our keys: the first of them that can stand there is meant."""
 
 
 def _owner(key: str, root: Any) -> str:

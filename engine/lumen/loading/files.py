@@ -22,6 +22,17 @@ MAX_FOLDER_FILES = 5_000
 
 LEADS_OUT = b"it is a link that leads out of the project"
 
+MISTAKEN_FOLDERS: Mapping[str, str] = {
+    "stories": "behaviors/stories",
+    "words": "behaviors/words",
+    "behaviours": "behaviors",
+    "behavior": "behaviors",
+    "motion": "motions",
+    "gestures": "motions",
+    "controllers": "fuzzy",
+}
+"""Folders beside lumen.yaml of which nothing is built, and the ones that were probably meant: lint says so."""
+
 _READ: Mapping[str, tuple[str, ...]] = {
     "behaviors": (".yaml", ".yml"),
     "behaviors/stories": (".yaml", ".yml"),
@@ -31,6 +42,7 @@ _READ: Mapping[str, tuple[str, ...]] = {
     "models": (".yaml", ".yml", ".xml"),
     "models/passages": (".yaml", ".yml"),
     "schemas/messages": (".json",),
+    **dict.fromkeys(MISTAKEN_FOLDERS, (".yaml",)),
 }
 
 FOLDERS = frozenset((*PROJECT_FOLDERS, *_READ))
@@ -51,7 +63,8 @@ def read_files(root: Path) -> dict[str, bytes]:
     found = {MAIN_FILE: content} if (content := read.file(MAIN_FILE)) is not None else {}
     for folder, endings in _READ.items():
         if outside := next((each for each in _within(folder) if read.leads_out(each)), None):
-            found[outside] = Unreadable(LEADS_OUT)
+            if folder not in MISTAKEN_FOLDERS:
+                found[outside] = Unreadable(LEADS_OUT)
             continue
         for name in _names(root / folder, endings):
             content = read.file(f"{folder}/{name}")

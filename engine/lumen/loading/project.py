@@ -16,7 +16,7 @@ from lumen.loading.bodies import build_body, build_likes
 from lumen.loading.built_file import Build, BuiltFile, read_file
 from lumen.loading.controllers import build_controller
 from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import FOLDERS, Unreadable, fingerprint, read_main_file
+from lumen.loading.files import FOLDERS, MISTAKEN_FOLDERS, Unreadable, fingerprint, read_main_file
 from lumen.loading.lending import MESSAGES, MODELS, PASSAGES, lend
 from lumen.loading.linking import link
 from lumen.loading.messages import SCHEMA_SUFFIX, build_message
@@ -27,7 +27,7 @@ from lumen.loading.stories import build_story
 from lumen.loading.words import WORDS_FOLDER, build_words
 
 MISSING_FILE = Code("missing-file", "text", ERROR, "a file that is needed is not there")
-NOT_READ = Code("not-read", "text", WARNING, "a file ends in .yml and is not read")
+NOT_READ = Code("not-read", "text", WARNING, "a file is not read, because of its ending or its folder")
 UNREADABLE_FILE = Code("unreadable-file", "text", ERROR, "a file can't be opened")
 
 
@@ -172,6 +172,10 @@ def _folders(found: ProjectDraft) -> None:
             hint = "put a folder of the project in its place: what lies elsewhere is not read"
             found.say(UNREADABLE_FILE, name, f"this can't be read: {content.decode()}", hint)
             found.missing |= {folder for folder in FOLDERS if folder == name or folder.startswith(f"{name}/")}
+    for folder, meant in MISTAKEN_FOLDERS.items():
+        if astray := next((name for name in found.files if name.startswith(f"{folder}/")), ""):
+            hint = f"move the files that belong to the exhibition to {meant}/"
+            found.say(NOT_READ, astray, f"files in {folder}/ are not read", hint)
 
 
 def _read(

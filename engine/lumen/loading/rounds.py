@@ -77,7 +77,8 @@ class Rounds:
             hint = "put it into a state within the region"
             self.report(BAD_FOR, where, f"{entry.title} is a region of a parallel state", hint, key=True)
             return False
-        if not any(child.kind is StateKind.FINAL for child in entry.children.values()):
+        broken = any(self.report.broken((*child.where, "type")) for child in entry.children.values())
+        if not broken and not any(child.kind is StateKind.FINAL for child in entry.children.values()):
             hint = "add a state with `type: final`: reaching it takes the next entry"
             self.report(
                 BAD_FOR, where, f"{entry.title} never comes to a second entry: nothing in it is final", hint, key=True

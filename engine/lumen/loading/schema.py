@@ -1,6 +1,7 @@
 """Documents against the JSON Schema of their kind: every error at its node, and the data without its broken nodes."""
 
 import json
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any
@@ -108,12 +109,13 @@ def _judge(found: list[Complaint], report: DocumentReport, said: set[NodePath]) 
         follows = any(path[: len(about)] == about for path in report.pruned) if about else False
         lost = bool(complaint.missing) and (*about, complaint.missing) in report.pruned
         meant = bool(complaint.missing) and (about, complaint.missing) in suggested
-        if not (follows or lost or meant or complaint.path in spoken or complaint.path in said):
-            hint = (
-                f"indent what follows it further: {complaint.hint}"
-                if complaint.path in emptied.values()
-                else complaint.hint
-            )
+        tagged = complaint.code == WRONG_TYPE and _begins(report, complaint.path, "!")  # its tag is told
+        if not (follows or lost or meant or tagged or complaint.path in spoken or complaint.path in said):
+            hint = complaint.hint
+            if complaint.path in emptied.values():
+                hint = f"indent what follows it further: {hint}"
+            elif complaint.code == WRONG_TYPE and (comment := _comment(report, complaint.path)):
+                hint = f'`#` begins a comment: put quotes around it: "{comment}"'
             cause = _cause(complaint, report)
             report(complaint.code, complaint.path, complaint.message, hint=hint, key=complaint.key, cause=cause)
         spoken.add(complaint.path)
@@ -153,6 +155,22 @@ def _cause(complaint: Complaint, report: DocumentReport) -> str:
     if not complaint.about and complaint.hint:  # of the root's keys each may be a mistake of its own
         return ""
     return f"{report.document.file} keys of {complaint.about}"
+
+
+def _begins(report: DocumentReport, path: NodePath, sign: str) -> bool:
+    """Whether what stands at that path begins with a sign, as it is written."""
+    if path not in report.document.spans:
+        return False
+    place = report.document.place(path)
+    return report.document.text.split("\n")[place.line - 1][place.column - 1 :].startswith(sign)
+
+
+def _comment(report: DocumentReport, path: NodePath) -> str:
+    """The comment that stands in place of a value, where it may have been meant for one: `onDone: #offer`."""
+    place = report.document.place(path, key=True)
+    line = report.document.text.split("\n")[place.line - 1] if path in report.document.spans else ""
+    found = re.match(r": +(#[\w.-]+)\s*$", line[place.end_column - 1 :])
+    return found[1] if found and _at(report, path) is None else ""
 
 
 def _at(report: DocumentReport, path: NodePath) -> Any:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
+from lumen.interpreters.json_schema import occurs
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.durations import duration_hint
 from lumen.loading.units import seconds
@@ -64,11 +65,15 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
                 value, wanted, error.schema
             ) or hint
         case "enum" | "const":
-            allowed = [str(v) for v in (bound if error.validator == "enum" else [bound])]
+            choices = bound if error.validator == "enum" else [bound]
+            allowed = [_short(v) for v in choices if v is not None]
+            if True in choices and (truth := _truth(value)) in allowed:
+                return f"{name} can't be `{value}`", f"write `{truth}`: in YAML 1.2 `{value}` is a text"
             hint = _colour(value, allowed) or did_you_mean(_short(value), allowed, "it is one of")
             return f"{name} can't be `{_short(value)}`", hint
         case "pattern":
-            return f"{name} can't be `{_short(value)}`", hint
+            small = f"write it in small letters: `{value.lower()}`" if occurs(bound, value.lower()) else hint
+            return f"{name} can't be `{_short(value)}`", small
         case "minimum":
             return f"{name} is {value:g}, it should be at least {bound:g}", hint
         case "maximum":
@@ -113,7 +118,7 @@ def _flow(value: Any) -> str:
 
 def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> str:
     """What to write in place of a value of the wrong type that is nearly right."""
-    if "boolean" in wanted and isinstance(value, str) and (truth := _TRUTHS.get(value.lower())):
+    if "boolean" in wanted and (truth := _truth(value)):
         return f"write `{truth}`: in YAML 1.2 `{value}` is a text"
     if {"number", "integer"} & set(wanted) and isinstance(value, str):
         if type(resolve(value)) in (int, float):
@@ -124,7 +129,9 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
         verb, _, rest = value.partition(" ")
         if verb in schema.get("properties", {}):
             return f"`{verb}` has no colon behind it: write `{verb}: {_short(rest)}`"
-    listed = isinstance(value, str) and re.fullmatch(r"[\w.-]+( *, *[\w.-]+)*", value)
+        if any("to" in example for example in schema.get("examples", ()) if isinstance(example, dict)):
+            return f"write `{{to: {_short(value)}}}`"
+    listed = isinstance(value, str) and re.fullmatch(r"[\w./-]+( *, *[\w./-]+)*", value)
     if wanted == ["array"] and (listed or type(value) in (int, float)):
         parts = re.split(r" *(?:,|(?<=\d)-) *", value) if isinstance(value, str) else [str(value)]
         return f"write it in brackets: `[{', '.join(parts)}]`"
@@ -135,9 +142,16 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
             return f"write the unit too: `{value:g}/s` or `{value:g}/min`"
         written = str(value).lower() if isinstance(value, bool) else f"{value}"
         return f'put it in quotes: "{written}"'
+    if wanted == ["string"] and isinstance(value, list) and value and isinstance(value[0], str):
+        return f"only one can stand here, such as `{_short(value[0])}`"
     if "string" in wanted and isinstance(value, dict) and [type(v) for v in value.values()] == [str]:
         return f'a text that holds a colon and a blank needs quotes: "{_short(_flow(value)[1:-1])}"'
     return ""
+
+
+def _truth(value: Any) -> str:
+    """`true` or `false` for a word that means it; empty for anything else."""
+    return _TRUTHS.get(value.lower(), "") if isinstance(value, str) else ""
 
 
 _COLOURS = {

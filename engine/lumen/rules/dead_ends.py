@@ -247,7 +247,7 @@ class _Ways:
         """A state that is left only if a visitor does something."""
         steps = nested((*state.entry, *state.do))
         raised = {a.event for step in steps if isinstance(a := step.action, Raise | Send) and not _goes_away(a)}
-        ways = [t for t in self.ways_out(state.path) if self.in_course(t)]
+        ways = [t for t in self.ways_out(state.path) if self.in_course(t) and not self.late(state, t)]
         names = sorted({t.event for t in ways} - raised)
         if any(t.event in raised for t in ways):
             return
@@ -266,6 +266,11 @@ class _Ways:
             or transition.event in self.events
             or (transition.timed or transition.exact or "*" in transition.event or "error" in transition.event)
         )
+
+    def late(self, state: State, transition: Transition) -> bool:
+        """Whether a time of day ends what is around a state that comes after others: until then the robot waits."""
+        within_others = state.parent is not None and state.path not in self.machine.states[state.parent].initial
+        return transition.schedule is not None and transition.source != state.path and within_others
 
 
 def _goes_away(action: Raise | Send) -> bool:

@@ -119,6 +119,8 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
                 continue
             said.add(event)
             report.missed.add(event)
+            if report.whole and _misnamed(event, machine, report):
+                continue
             if _of_the_engine(event):
                 if sound and not report.lost.intersection(event.split(".")) and (hint := ending_fault(machine, event)):
                     path, message = _descriptor(transition.where, event), f"nothing raises the event `{event}`"
@@ -134,6 +136,23 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
                     hint, cause = "no route of lumen.yaml has an `event`: look whether `routes` is whole", "no routes"
                 message = f"nothing raises the event `{event}`"
                 report(UNKNOWN_EVENT, path, message, hint, key=True, cause=cause)
+
+
+def _misnamed(event: str, machine: MachineDefinition, report: DocumentReport) -> bool:
+    """Whether it is rather the `raise` that is misspelt, and told: more transitions wait for the event as it stands."""
+    waiting = [t for state in machine.states.values() for t in state.transitions if t.event == event]
+    heard = set(descriptors(machine))
+    sent = [(a.event, site.step.where) for site in action_sites(machine) if isinstance(a := site.step.action, Raise)]
+    lost = {name for name, _ in sent if not any(hears(descriptor, name) for descriptor in heard)}
+    name = nearest(event, lost)
+    sites = [where for each, where in sent if each == name]
+    if not sites or len(sites) >= len(waiting):
+        return False
+    path = (*sites[0], "raise")
+    message = f"nothing waits for the event `{name}`, and nothing raises `{event}`"
+    related = [(_descriptor(waiting[0].where, event), f"`{event}` is waited for here")]
+    report(UNKNOWN_EVENT, first(report, (*path, "event"), path), message, f"did you mean `{event}`?", related=related)
+    return True
 
 
 def _of_the_engine(event: str) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template, schema_of
 from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH
 from lumen.language.actions import Template, context_key
-from lumen.language.diagnostics import NodePath, Related
+from lumen.language.diagnostics import NodePath, Place, Related
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
@@ -18,7 +18,10 @@ from lumen.rules.events import declared, hears, outcome, raised
 from lumen.rules.lists import entry_schema, list_schema
 from lumen.rules.lookups import value_at
 from lumen.rules.recipients import sent_to
+from lumen.rules.traps import LOOKS_LIKE_TRUTH
 from lumen.rules.walk import ExpressionSite, expression_sites
+
+_TRUTHS = (LOOKS_LIKE_TRUTH, TYPE_MISMATCH)
 
 BOOLEAN_SCHEMA: Mapping[str, Any] = {"type": "boolean"}
 
@@ -124,4 +127,19 @@ class _Expressions:
         related = tuple(self.declared(spot, part, finding))
         cause = cause_of(self.report.document.file, finding) or self.nulls(part, finding)
         found = finding.code.at(place, finding.message, finding.hint, related, cause)
-        self.report.diagnostics.append(found)
+        if not self.truth(spot, finding, part, place):
+            self.report.diagnostics.append(found)
+
+    def truth(self, spot: ExpressionSite, finding: ExpressionFinding, part: str, place: Place) -> bool:
+        """Whether the types don't fit because the context says `no` for `false`; that is told there, once."""
+        for key in re.findall(r"\bcontext\.(\w+)", part) if "true or false" in finding.message else ():
+            there = self.report.document.place(("context", key))
+            told = next((d for d in self.report.diagnostics if d.code in _TRUTHS and d.place == there), None)
+            if told and told.code == LOOKS_LIKE_TRUTH:
+                related = (Related(place, "true or false is needed here"),)
+                self.report.diagnostics[self.report.diagnostics.index(told)] = TYPE_MISMATCH.at(
+                    there, told.message, told.hint, related
+                )
+            if told:
+                return True
+        return False

@@ -1,19 +1,28 @@
-"""Whether somebody answers a fall, where a behaviour moves the robot's legs."""
+"""Whether somebody answers a fall, and a walk that comes to nothing, where a behaviour moves the robot's legs."""
+
+from collections.abc import Iterator
 
 from lumen.language.actions import PlacedAction
 from lumen.language.commands import GoTo, Move, Play, Walk
 from lumen.language.diagnostics import WARNING, Code
+from lumen.language.machines import MachineDefinition, State, Transition
+from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
-from lumen.rules.walk import action_sites
+from lumen.rules.walk import action_sites, nested
 
 UNHANDLED_FALL = Code("unhandled-fall", "statecharts", WARNING, "legs move, and nothing waits for `fallen`")
+
+UNHANDLED_ERROR = Code("unhandled-error", "statecharts", WARNING, "a walk may fail, and then nothing leads on")
 
 FALLEN = "fallen"
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report the first action that moves the legs in a project of which no behaviour waits for a fall."""
+    """Report the first action that moves the legs where nobody waits for a fall, and walks that may end in nothing."""
+    for name, machine in draft.behaviors.items():
+        if (report := draft.report("behaviors", name)).whole:
+            _walks(machine, report)
     if any(hears(d, FALLEN) for machine in draft.behaviors.values() for d in descriptors(machine)):
         return
     if draft.names.get("behaviors", frozenset()) > draft.behaviors.keys():
@@ -26,6 +35,33 @@ def check(draft: ProjectDraft) -> None:
             message = f"`{verb}` moves the legs here, and nothing in `{name}` says what to do after a fall"
             hint = "give the outermost `on` a `fallen:`, and a state that gets up: `do: {posture: Stand}`"
             report(UNHANDLED_FALL, (*first.where, verb), message, hint, key=True)
+
+
+def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
+    """States that walk and have only `onDone`: where somebody stands in the way, the robot stays there for ever."""
+    if any(event == "*" or event.startswith("error") for event in descriptors(machine)):
+        return  # it answers what fails, in whatever state
+    for state in machine.states.values():
+        walk = next((step for step in nested(state.do) if isinstance(step.action, GoTo | Walk)), None)
+        if walk is None or any(_leads_on(transition) for transition in _around(machine, state)):
+            continue
+        message = f"if this walk fails, nothing leads on from `{state.name}`"
+        hint = "somebody may stand in the way: say with `onError:` what comes then"
+        cause = f"walks of {report.document.file}"
+        report(UNHANDLED_ERROR, (*walk.where, "walk"), message, hint, key=True, cause=cause)
+
+
+def _around(machine: MachineDefinition, state: State) -> Iterator[Transition]:
+    """The transitions of a state and of those around it."""
+    at: State | None = state
+    while at is not None:
+        yield from at.transitions
+        at = machine.states[at.parent] if at.parent is not None else None
+
+
+def _leads_on(transition: Transition) -> bool:
+    """Whether it is taken after an error, or when some time is over, or at once."""
+    return transition.delay is not None or not transition.event or transition.event.startswith("error")
 
 
 def _legs(draft: ProjectDraft, step: PlacedAction) -> bool:

@@ -62,7 +62,8 @@ def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentR
             one, other = clash
             message = f"where the same is so, `{one.variable}` is `{one.term}` and `{other.term}`"
             hint = "one of the two is meant otherwise: change what it asks, or delete it"
-            report(CONTRADICTING_RULE, rule.where, message, hint, related=[(first.where, "the other one")])
+            wrong, right = _order(block, controller, first, rule)
+            report(CONTRADICTING_RULE, wrong.where, message, hint, related=[(right.where, "the other one")])
         parts = _conjunction(rule.antecedent)
         if parts and len(rule.consequents) == 1:
             conjunctions.setdefault(rule.consequents[0], []).append((parts, rule))
@@ -96,6 +97,21 @@ def _conjunction(node: Antecedent) -> frozenset[Proposition]:
     parts = list(_joined(node, Conjunction))
     found = frozenset(part for part in parts if isinstance(part, Proposition))
     return found if len(found) == len(parts) else frozenset()
+
+
+def _order(block: RuleBlock, controller: ControllerDefinition, first: Rule, second: Rule) -> tuple[Rule, Rule]:
+    """Of two rules that ask the same the one that was probably meant otherwise, and the other one.
+
+    Rules are written in the order of the terms: it is the first where a term that no rule asks for would stand there.
+    """
+    asked = first.antecedent
+    if isinstance(asked, Proposition) and (variable := controller.inputs.get(asked.variable)):
+        alone = [rule.antecedent for rule in block.rules if isinstance(rule.antecedent, Proposition)]
+        row = [each.term for each in alone if each.variable == asked.variable]
+        terms, at = list(variable.terms), row.index(asked.term)
+        if any([*row[:at], missed, *row[at + 1 :]] in (terms, terms[::-1]) for missed in terms):
+            return first, second
+    return second, first
 
 
 def _clash(first: Rule, second: Rule) -> tuple[Proposition, Proposition] | None:

@@ -13,6 +13,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lists import listed_texts
 from lumen.rules.lookups import value_at
+from lumen.rules.translation import begun, language_entries
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import WordTables, word_tables
 
@@ -42,16 +43,22 @@ def check(draft: ProjectDraft) -> None:
     silent, few = _silent(draft, draft.settings.languages)
     speech = _Speech(tuple(n for n in draft.settings.languages if n not in silent), draft.main.lost | silent.keys())
     for language, (meant, related) in silent.items():
-        path = ("languages", draft.settings.languages.index(language))
+        there = ("languages", draft.settings.languages.index(language))
         hint = f"did you mean `{meant}`?" if meant else f"write the texts in `{language}`, or delete it"
         message = f"`{language}` is in {few[language]} texts" if few[language] else f"nothing is said in `{language}`"
-        draft.main.diagnostics.append(_silence(draft.main, path, message, hint, related))
+        draft.main.diagnostics.append(_silence(draft.main, there, message, hint, related))
         speech.lost |= {meant}
     for name, machine in draft.behaviors.items():
         speech.behavior(machine, draft.report("behaviors", name))
     for tables in word_tables(draft):
         speech.tables(tables)
         speech.phrases(tables)
+    entries = language_entries(draft)
+    for language in speech.languages:
+        for report, path in begun(entries, language):
+            message = f"this is still to be translated into `{language}`"
+            hint = f"write it in `{language}`, without TODO; `lumen language check {language}` lists all of it"
+            report(MISSING_LANGUAGE, path, message, hint, cause=f"to translate into {language}")
     speech.switches(draft, silent)
     for name, motion in draft.motions.items():
         report = draft.report("motions", name)
@@ -149,15 +156,15 @@ class _Speech:
                     tables.report(MISSING_LANGUAGE, ("phrases", name), message, hint, key=True, cause=cause)
 
     def switches(self, draft: ProjectDraft, silent: Collection[str]) -> None:
-        """Languages that nobody can ask for, where behaviours switch to others."""
+        """Languages that nobody can ask for, and that no story speaks."""
         assert draft.main
         actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
         spoken = {action.language for action in actions if isinstance(action, Language)}
         spoken |= {story.language for story in draft.stories.values() if story.language}
         reports = [draft.report("behaviors", name) for name in draft.behaviors]
         whole = all(r.whole and not any(d.code == UNKNOWN_LANGUAGE for d in r.diagnostics) for r in reports)
-        for i, language in enumerate(self.languages if whole and any(isinstance(a, Language) for a in actions) else ()):
-            if i and language not in spoken and language not in silent:
+        for i, language in enumerate(self.languages if reports and whole else ()):
+            if i and language not in spoken and language not in silent and not _is_missed(draft, language):
                 message = f"nothing lets the robot speak `{language}`"
                 hint = f"write `language: {language}` where a visitor asks for it"
                 assert draft.settings
@@ -193,6 +200,12 @@ def _written(report: DocumentReport, path: NodePath) -> set[str]:
     node = value_at(report, path)
     gone = {str(lost[-1]) for lost in report.pruned if lost[:-1] == path}
     return gone.union(node if isinstance(node, dict) else ())
+
+
+def _is_missed(draft: ProjectDraft, language: str) -> bool:
+    """Whether something is told to be missing in that language: first that, then how it is reached."""
+    found = (d for report in draft.reports.values() for d in report.diagnostics if d.code == MISSING_LANGUAGE)
+    return any(f"`{language}`" in diagnostic.message for diagnostic in found)
 
 
 def _listed(names: list[str]) -> str:

@@ -29,6 +29,8 @@ _CURLY = re.compile("[“”„‘’«»]")
 _PAIRS = {"“": "”", "”": "”", "„": "“”", "‘": "’", "«": "»"}
 _DATA = ("context", "data", "body", "robot")
 _HALF = re.compile(r"(?<!\{)\$?\{\s*((?:context|event|state)\.[\w.]+)\s*\}(?!\})")
+_SIGNS = re.compile(r"(?:<|%|\[)\s*((?:context|event|state)\.[\w.]+)\s*(?:>|%|\])")
+"""A value to fill in, as other programs write it."""
 _BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
 
 
@@ -105,8 +107,9 @@ def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
     """Texts that are said with the name of a value in place of the value."""
     for site in action_sites(machine):
         if isinstance(site.step.action, SayText):
-            for template in (t for said in site.step.action.texts.values() for t in said):
-                if found := _HALF.search(template.shown) or _BARE.fullmatch(template.shown):
-                    name = found[1] if found.re is _HALF else found[0]
+            for template in (t for texts in site.step.action.texts.values() for t in texts):
+                said = template.shown
+                if found := _HALF.search(said) or _SIGNS.search(said) or _BARE.fullmatch(said):
+                    name = found[0] if found.re is _BARE else found[1]
                     message = f"`{found[0]}` is said as it stands here"
                     report(NOT_FILLED_IN, template.where, message, f"write `{{{{ {name} }}}}`")

@@ -21,7 +21,7 @@ from lumen.language.diagnostics import Code, did_you_mean
 _INSTEAD = {
     "len": "size", "length": "size", "count": "size", "lowerAscii": "lower", "toLower": "lower", "strip": "trim",
     "includes": "contains", "in": "In", "regex": "matches", "split": "words", "startsWith": "matches",
-    "endsWith": "matches",
+    "endsWith": "matches", "time": "now", "clock": "now", "random": "pick", "choose": "pick",
 }  # fmt: skip
 _ARGUMENTS = {
     **dict.fromkeys(CLOCK_FUNCTIONS, ""),

@@ -49,7 +49,7 @@ from lumen.interpreters.expressions.value_types import (
     type_of_values,
     union,
 )
-from lumen.language.diagnostics import did_you_mean
+from lumen.language.diagnostics import did_you_mean, nearest
 
 
 def must_hold(tree: ExpressionNode) -> None:
@@ -155,6 +155,8 @@ class _Checker:
         hint = did_you_mean(node.name, (*ROOTS, *around.variables), "an expression begins with")
         if around.context and node.name in around.context:
             hint = f"did you mean `context.{node.name}`?"
+        elif around.lists and node.name in around.lists and not nearest(node.name, around.variables):
+            hint = f"did you mean `lists.{node.name}`?"
         elif node.name in FUNCTIONS:
             hint = f"write `{node.name}(…)`"
         else:

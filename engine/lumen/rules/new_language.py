@@ -1,0 +1,54 @@
+"""Another language for a project: a place for it wherever something is said or heard."""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.diagnostics import NodePath, Place
+from lumen.loading.document_report import DocumentReport
+from lumen.loading.draft import ProjectDraft
+from lumen.rules.fixes.edits import Edit, FileText, edited
+from lumen.rules.lookups import value_at
+from lumen.rules.translation import TO_DO, language_entries
+
+
+def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str, source: str) -> dict[str, bytes]:
+    """The files with a place for the language wherever there is one for `source`, whose words stand there to be read.
+
+    Everything else in them stays as it is, comments included.
+    """
+    assert draft.main is not None  # the caller has checked the project
+    edits: dict[str, list[Edit]] = {}
+    for report, path, by_language in language_entries(draft):
+        if source in by_language and language not in by_language:
+            text = FileText(report.document.file, files[report.document.file])
+            words = json.dumps(_to_do(by_language[source]), ensure_ascii=False)
+            last = (*path, list(by_language)[-1])
+            edits.setdefault(text.file, []).append(_beside(report, text, path, last, f"{language}: {words}"))
+    main = draft.main
+    text = FileText(main.document.file, files[main.document.file])
+    spoken = value_at(main, ("languages",))
+    last = ("languages", len(spoken) - 1)
+    edits.setdefault(text.file, []).append(_beside(main, text, ("languages",), last, language, dash="- "))
+    return {file: edited(files[file], changes) for file, changes in edits.items()}
+
+
+def _to_do(value: Any) -> Any:
+    return [TO_DO + str(text) for text in value] if isinstance(value, list) else TO_DO + str(value)
+
+
+def _beside(
+    report: DocumentReport, text: FileText, around: NodePath, last: NodePath, entry: str, dash: str = ""
+) -> Edit:
+    """The entry behind the last one: on its line between brackets, else on a line of its own at the same depth."""
+    spans = report.document.spans
+    whole, end = spans[around].value, spans[last].value
+    if text.line(whole.line)[whole.column - 1 : whole.column] in ("{", "["):
+        return Edit(Place(text.file, end.end_line, end.end_column, end.end_line, end.end_column), f", {entry}")
+    line, nothing = end.end_line, ("", "#") if isinstance(value_at(report, last), list) else ("",)
+    if not text.line(line)[: end.end_column - 1].strip():
+        line -= 1  # the parser sees its end where the next thing begins
+    while line > end.line and text.line(line).strip()[:1] in nothing:
+        line -= 1
+    column = len(text.line(line)) + 1
+    return Edit(Place(text.file, line, column, line, column), f"\n{' ' * (whole.column - 1)}{dash}{entry}")
