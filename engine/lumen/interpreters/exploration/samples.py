@@ -102,10 +102,10 @@ def _mentioned(
     for node, _ in walk(tree):
         match node:
             case FunctionCall(function=function, arguments=(first, Literal(value=str() as text))):
-                found = _heard(machine, function, text)
+                found = texts_for(machine, function, text)
                 yield from ((path, found) for path in _fields(first))
             case FunctionCall(function="heard", arguments=(first, second)):
-                found = _phrases_at(path_of(second), context)
+                found = phrases_at(path_of(second), context)
                 yield from ((path, found) for path in _fields(first))
             case Binary(left=left, right=right):
                 for one, other in ((left, right), (right, left)):
@@ -114,7 +114,7 @@ def _mentioned(
                     yield from ((path, found) for path in _fields(one))
 
 
-def _heard(machine: MachineDefinition, function: str, text: str) -> list[Any]:
+def texts_for(machine: MachineDefinition, function: str, text: str) -> list[Any]:
     """Texts of which a function with that second argument says something, and others."""
     match function:
         case "heard":
@@ -129,7 +129,7 @@ def _heard(machine: MachineDefinition, function: str, text: str) -> list[Any]:
     return []
 
 
-def _phrases_at(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> list[Any]:
+def phrases_at(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> list[Any]:
     """Phrases that stand in the context, one for each language."""
     value: Any = {"context": context}
     for key in path or ():

@@ -132,6 +132,14 @@ class ExecutionContext:
             output=output,
         )  # fmt: skip
 
+    def within(
+        self, id: str, machine: CompiledMachine, snapshot: Snapshot, event: Event | None, invocations: InvocationHandler
+    ) -> Self:
+        """The context of a behaviour that runs within this one, under that id."""
+        child = type(self).of(machine, snapshot, event, self.at, invocations)
+        child.is_invoked = True
+        return child
+
     def step(self) -> Step:
         """The step that was made; the context is of no use after it."""
         self.cached_scope = None  # which refers to this context: no need to wait for the garbage collector

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions import ExpressionError, Scope, compile_expression, parse_expression, unparse
+from lumen.interpreters.expressions import Scope
+from lumen.interpreters.expressions.readings import readings
 from lumen.interpreters.expressions.scope import no_draw
-from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, children, path_of
 from lumen.interpreters.statechart.chart import Chart, StateNode
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.nesting import flattened_steps
@@ -83,7 +83,7 @@ def _refused(chart: Chart, standing: Configuration, step: Step) -> Iterator[Fals
     for transition in transitions:
         if guard := transition.definition.guard:
             scope = _scope(chart, transition.source, standing, step)
-            yield FalseGuard(transition.source.name or chart.definition.id, guard, _values(guard, scope))
+            yield FalseGuard(transition.source.name or chart.definition.id, guard, readings(guard.source, scope, guard.shown))
 
 
 def _scope(chart: Chart, node: StateNode, standing: Configuration, step: Step) -> Scope:
@@ -94,24 +94,3 @@ def _scope(chart: Chart, node: StateNode, standing: Configuration, step: Step) -
         now.context, seen, node.view(now.language, now.place), standing.known.__contains__, now.at, now.language,
         machine.phrases, machine.answers, now.epoch, now.timezone, machine.lists, no_draw,
     )  # fmt: skip
-
-
-def _values(guard: Expression, scope: Scope) -> dict[str, Any]:
-    """What it looked at, as far as the author wrote it so: paths, and functions without arguments such as `hour()`."""
-    found: dict[str, Any] = {}
-    for node in _looked_at(parse_expression(guard.source)):
-        text = unparse(node)
-        if text in guard.shown:
-            try:
-                found[text] = compile_expression(text)(scope)
-            except ExpressionError:
-                continue  # there is none: `has(event.data.name)` asks for that
-    return found
-
-
-def _looked_at(node: ExpressionNode) -> Iterator[ExpressionNode]:
-    if path_of(node) or (isinstance(node, FunctionCall) and not node.arguments):
-        yield node
-        return
-    for child in children(node):
-        yield from _looked_at(child)

@@ -119,9 +119,7 @@ class Invocations:
             language=context.language, counters=context.counters, generator=context.generator, epoch=context.epoch,
             timezone=context.timezone, place=place_after(context.place, event),
         )  # fmt: skip
-        child = open_context(invoked_machine(context.machine, state, id), lent, event, context.at)
-        child.is_invoked = True
-        return child
+        return context.within(id, invoked_machine(context.machine, state, id), lent, event, Invocations(lent.invoked))
 
     def _follow(self, context: ExecutionContext, id: str, step: Step) -> None:
         """Take over what a step asks for, and what was lent for it."""

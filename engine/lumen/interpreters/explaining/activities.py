@@ -1,0 +1,64 @@
+"""Why an action of a `do` was not done though its state is active: where that `do` stands instead."""
+
+from collections.abc import Iterator
+
+from lumen.interpreters.explaining.conditions import first_false
+from lumen.interpreters.explaining.history import StepHistory
+from lumen.interpreters.explaining.names import PlacedDeed
+from lumen.interpreters.explaining.refusals import Reason, within
+from lumen.interpreters.explaining.words import ordinal, prefix_of
+from lumen.interpreters.expressions import Scope
+from lumen.interpreters.expressions.scope import no_draw
+from lumen.interpreters.statechart.compiled_machine import compiled
+from lumen.interpreters.statechart.values import Snapshot, awaited
+from lumen.language.actions import If, Parallel, PlacedAction
+from lumen.language.diagnostics import NodePath
+
+
+def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
+    """Why an action of a `do` was not reached; None where its state is not active, or it was done."""
+    last = history.steps[-1]
+    inner = within(last.step.snapshot, deed.owner)
+    state = deed.state
+    if inner is None or (state.path and state.name not in inner.configuration):
+        return None
+    at = last.step.snapshot.epoch + last.at
+    name = prefix_of(deed.owner) + (state.name or deed.machine.id)
+    position = inner.doing.get(state.path)
+    nth = next(i for i, placed in enumerate(state.do) if deed.where[: len(placed.where)] == placed.where)
+    if position is not None and position.place < nth:
+        ids = ", ".join(awaited(position))
+        text = f"the `do` of {name} stands before it, at its {ordinal(position.place + 1)} of {len(state.do)}: waits for {ids}"
+        place = last.place(deed.machine, state.do[position.place].where)
+        change = {"event": f"done.command.{ids}"} if nth == position.place + 1 and ids[:1] == "d" and "," not in ids else None
+        return Reason("no-event", text, at, place, change=change, note="" if change else "more has to be done before it")
+    scope = _scope(deed, inner)
+    for condition, wanted in _conditions(state.do, deed.where):
+        false = first_false(condition.guard, scope)
+        if (false is None) != wanted:
+            text = f"the `do` of {name} took the other branch of `if {condition.guard.shown}`"
+            place = last.place(deed.machine, condition.guard.where)
+            return Reason("guard", text, at, place, false, note="what a `do` has passed by is not tried again")
+    return None
+
+
+def _conditions(block: tuple[PlacedAction, ...], where: NodePath) -> Iterator[tuple[If, bool]]:
+    """Each `if` around what stands there, and which way leads to it."""
+    for placed in block:
+        if where[: len(placed.where)] != placed.where:
+            continue
+        match placed.action:
+            case If(_, then, otherwise) as found:
+                yield found, any(where[: len(inner.where)] == inner.where for inner in then)
+                yield from _conditions(then + otherwise, where)
+            case Parallel(branches):
+                yield from _conditions(branches, where)
+
+
+def _scope(deed: PlacedDeed, now: Snapshot) -> Scope:
+    program, machine = compiled(deed.machine), deed.machine
+    node, standing = program.chart.nodes[deed.state.path], program.planner.configuration(now.configuration)
+    return Scope(
+        now.context, None, node.view(now.language, now.place), standing.known.__contains__, now.at, now.language,
+        machine.phrases, machine.answers, now.epoch, now.timezone, machine.lists, no_draw,
+    )  # fmt: skip

@@ -1,0 +1,102 @@
+"""The two questions, asked of a history: `why` and `why_not`."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from lumen.errors import UsageError
+from lumen.interpreters.explaining.activities import unreached
+from lumen.interpreters.explaining.chains import chain
+from lumen.interpreters.explaining.effects import effect
+from lumen.interpreters.explaining.history import RecordedStep, StepHistory
+from lumen.interpreters.explaining.links import Link, utc
+from lumen.interpreters.explaining.names import KnownNames, state_named
+from lumen.interpreters.explaining.refusals import ORDER, Reason, Refusals
+from lumen.interpreters.explaining.ways import deeds, ways
+from lumen.interpreters.statechart.nesting import active_names
+
+LOOKED_BACK = 60.0
+"""How long before the moment asked about something may have been decided against what is asked for [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class WhyAnswer:
+    """Why something happened: the effect first, its cause last. `at` is when it happened [s since 1970, in UTC]."""
+
+    what: str
+    at: float
+    links: tuple[Link, ...]
+
+    def to_json(self) -> dict[str, Any]:
+        """The object of `lumen why --format json`."""
+        return {"what": self.what, "at": utc(self.at), "chain": [link.to_json() for link in self.links]}
+
+
+@dataclass(frozen=True, slots=True)
+class WhyNotAnswer:
+    """Why something did not happen by `at` [s since 1970, in UTC]: what came nearest to it first."""
+
+    what: str
+    at: float
+    reasons: tuple[Reason, ...]
+
+    def to_json(self) -> dict[str, Any]:
+        """The object of `lumen why-not --format json`."""
+        return {"what": self.what, "at": utc(self.at), "reasons": [reason.to_json() for reason in self.reasons]}
+
+
+def why(steps: Iterable[RecordedStep], what: str = "", until: float | None = None) -> WhyAnswer:
+    """Why `what` happened, the last time until `until` [s, on the exhibition's clock]; without it, ever.
+
+    `what` is a text that was said (or words of it), a state, a motion, the id of a command, or nothing: the last thing
+    that happened. Raises UsageError, saying what to do, where it did not happen.
+    """
+    history = _history(steps, until)
+    found = effect(history, what)
+    links = tuple(chain(history, found))
+    one = history.steps[found.number]
+    return WhyAnswer(found.what, one.step.snapshot.epoch + one.at, links)
+
+
+def why_not(
+    steps: Iterable[RecordedStep], what: str, until: float | None = None, back: float = LOOKED_BACK
+) -> WhyNotAnswer:
+    """Why `what`, a state, a motion or a text, did not happen: a reason for each way that would have led there.
+
+    It is about the moment `until` [s, on the exhibition's clock] and the `back` [s] before it; without, about now.
+    Raises UsageError, saying what to do, where there is nothing of that name, or it is so.
+    """
+    history = _history(steps, until)
+    if not history.steps:
+        raise UsageError("nothing is kept of that time: ask about a later one, or leave out --at")
+    last = history.steps[-1]
+    end = last.at if until is None else until
+    first = next((n for n, one in enumerate(history.steps) if one.at >= end - back), len(history.steps) - 1)
+    machine, known = last.machine, KnownNames(last)
+    state = state_named(machine, what)
+    if state and state in active_names(last.step.snapshot):
+        raise UsageError(f"it is in `{state}` at that time: ask `lumen why {what}`")
+    found = ways(machine, what)
+    if not found and not state and not any(deeds(machine, what)):
+        raise UsageError(_nothing_leads_there(known, what))
+    refusals = Refusals(history, first)
+    reasons = [*(refusals.of(w.owner, w.machine, w.transition) for w in found), *_in_activities(history, what, state)]
+    reasons.sort(key=lambda reason: (ORDER.index(reason.because), -reason.at))
+    return WhyNotAnswer(what, last.step.snapshot.epoch + end, tuple(reasons))
+
+
+def _history(steps: Iterable[RecordedStep], until: float | None) -> StepHistory:
+    return StepHistory([one for one in steps if until is None or one.at <= until])
+
+
+def _in_activities(history: StepHistory, what: str, state: str) -> Iterator[Reason]:
+    if not state:
+        for deed in deeds(history.steps[-1].machine, what):
+            if deed.block == "do" and (reason := unreached(history, deed)):
+                yield reason
+
+
+def _nothing_leads_there(known: KnownNames, what: str) -> str:
+    if what in known.motions:
+        return f"no behaviour plays `{what}`: it needs `play: {what}` somewhere"
+    return f"there is no state, motion or text `{what}`: {known.near(what)}"

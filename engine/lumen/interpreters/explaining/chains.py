@@ -1,0 +1,286 @@
+"""Why something happened: from the effect back to a person, a message, a sensor, a file or the start."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from lumen.interpreters.explaining.conditions import values
+from lumen.interpreters.explaining.effects import Effect
+from lumen.interpreters.explaining.history import OPERATOR_GOTO, RecordedStep, StepHistory
+from lumen.interpreters.explaining.links import Link, LinkKind
+from lumen.interpreters.explaining.origins import origin
+from lumen.interpreters.explaining.tracing import Deed, TracedMicrostep
+from lumen.interpreters.explaining.words import awaited, brought, of_command, of_event, of_transition, ordinal, prefix_of
+from lumen.interpreters.statechart.command_ids import answer_of, inner_id
+from lumen.interpreters.statechart.values import Snapshot, Timer
+from lumen.language.commands import Command, Start
+from lumen.language.diagnostics import Place
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition, Transition
+
+MAX_LINKS = 100
+"""Behaviours that set a timer again and again have chains without end."""
+
+
+def chain(history: StepHistory, effect: Effect) -> list[Link]:
+    """The links, the effect first, the cause last."""
+    found: list[Link] = []
+    for link in Chain(history).of(effect):
+        found.append(link)
+        if len(found) == MAX_LINKS:
+            break
+    return found
+
+
+class Chain:
+    """Goes back from link to link; each looks at an earlier step, or at something earlier in the same one."""
+
+    def __init__(self, history: StepHistory) -> None:
+        self.history = history
+
+    def of(self, effect: Effect) -> Iterator[Link]:
+        if effect.command is not None:
+            yield from self.command(effect.number, effect.command)
+        else:
+            name, _, owner = self._owned(effect.state)
+            yield from self.entry(effect.number, owner, name)
+
+    def command(self, number: int, command: Command) -> Iterator[Link]:
+        deed = self.history.deed(number, command)
+        if deed is None:
+            yield self._link(number, "command", of_command(command), id=_id(command))
+            yield from self.trigger(number, "")
+            return
+        place = self._place(number, deed.machine, deed.where)
+        yield self._link(number, "command", of_command(command), place, _id(command))
+        yield self._activity(number, deed)
+        yield from self.because(number, deed)
+
+    def because(self, number: int, deed: Deed) -> Iterator[Link]:
+        """What made an action be done."""
+        if deed.block == "do":
+            yield from self.doing(number, deed.owner, deed.machine, deed.machine.states[deed.state].name)
+        elif deed.microstep:
+            yield from self.microstep(number, deed.microstep, deed)
+        else:
+            yield from self.trigger(number, deed.owner)
+
+    def doing(self, number: int, owner: str, machine: MachineDefinition, state: str) -> Iterator[Link]:
+        """What made a `do` begin, or go on."""
+        entered = self.history.trace(number).entering(owner, state)
+        if entered:
+            yield from self.microstep(number, entered, state=state)
+        else:
+            yield from self.trigger(number, owner)
+
+    def entry(self, number: int, owner: str, state: str) -> Iterator[Link]:
+        entered = self.history.trace(number).entering(owner, state)
+        if entered:
+            yield from self.microstep(number, entered, state=state)
+        else:
+            yield from self.trigger(number, owner)
+
+    def microstep(
+        self, number: int, step: TracedMicrostep, deed: Deed | None = None, state: str = ""
+    ) -> Iterator[Link]:
+        machine, owner = step.moment.machine.chart.definition, step.moment.owner
+        taken = _responsible(machine, step, deed, state)
+        if taken is None:
+            yield from self._beginning(number, step)
+            return
+        node = step.moment.machine.chart.nodes[taken.source]
+        text, place = of_transition(machine, taken, owner), self._place(number, machine, taken.where)
+        found = values(taken.guard, step.moment.scope_of(node))
+        yield self._link(number, "transition", text, place, values=found)
+        if taken.event:
+            yield from self.event(number, step.moment.event, owner)
+            return
+        steps = [one for one in self.history.trace(number).microsteps if one.moment.owner == owner]
+        before = steps[: steps.index(step)]
+        if before:
+            yield from self.microstep(number, before[-1])
+        elif step.moment.event:
+            yield from self.event(number, step.moment.event, owner)
+        else:
+            yield from self.trigger(number, owner)
+
+    def event(self, number: int, event: Event | None, owner: str) -> Iterator[Link]:
+        """What raised an event, or brought it from outside."""
+        deeds = self.history.trace(number).deeds
+        raised = next((deed for deed in deeds if deed.what is event), None) if event else None
+        if raised is None or event is None:
+            yield from self.trigger(number, owner)
+            return
+        kind, _, what = event.name.partition(".")
+        thing, _, name = what.partition(".")
+        place = self._place(number, raised.machine, raised.where)
+        if not raised.where and kind in ("done", "error") and thing == "do":
+            yield self._link(number, "activity", f"the `do` of {prefix_of(owner)}{name} {_ended(kind)}", values=brought(event))
+            yield from self.doing(number, owner, raised.machine, name)
+        elif thing == "invoke" and not raised.where:
+            yield self._link(number, "event", f"the behaviour {name} {_ended(kind)}", values=brought(event))
+            inner = f"{name}@{owner}" if owner else name
+            last = [one for one in self.history.trace(number).microsteps if one.moment.owner == inner]
+            before = [one for one in last if one.transitions]
+            yield from self.microstep(number, before[-1]) if before else self.trigger(number, owner)
+        else:
+            yield self._link(number, "event", f"raised {of_event(event)}", place, values=brought(event))
+            yield from self.because(number, raised)
+
+    def trigger(self, number: int, owner: str) -> Iterator[Link]:
+        """What came from outside, and what caused that."""
+        one = self.history.steps[number]
+        event = one.step.event
+        if event is None:
+            reload = one.is_reload
+            text = "the files were saved, and taken over while it ran" if reload else f"{one.machine.id} begins"
+            yield self._link(number, "file" if reload else "start", text)
+        elif event.name == OPERATOR_GOTO:
+            by = event.data.get("by", "somebody") if isinstance(event.data, dict) else "somebody"
+            yield self._link(number, "person", f"{by} let it enter {event.data['state']} (lumen goto)", values=brought(event))
+        elif timer := _timer(one.before, event):
+            yield from self.timer(number, event, timer)
+        elif not event.sendid and (answer := answer_of(event)):
+            yield self._link(number, "event", _answered(answer.kind, answer.id, answer.reason), id=answer.id)
+            asked = [n for n in self.history.started.get(answer.id, ()) if n < number]
+            if asked:
+                command = next(c for c in self.history.steps[asked[-1]].step.commands if _id(c) == answer.id)
+                yield from self.command(asked[-1], command)
+        else:
+            yield self._link(number, "event", of_event(event), values=brought(event))
+            if found := origin(one, event):
+                yield self._link(number, found.kind, found.text, id=found.id, values=found.values)
+
+    def timer(self, number: int, event: Event, timer: Timer) -> Iterator[Link]:
+        """The end of a timer, and what set it."""
+        id, owner = inner_id(event.sendid)
+        machine = _machine(self.history.steps[number], owner)
+        text, place = f"{event.name}, {timer.delay:g} s after it was sent", None
+        if timer.state:
+            state = machine.states[timer.state]
+            name = prefix_of(owner) + (state.name or machine.id)
+            waited = next((t for t in state.transitions if t.timed and t.event == timer.event), None)
+            text = f"{awaited(waited)} in {name}" if waited else f"wait of {timer.delay:g} s in {name}"
+            place = self._place(number, machine, waited.where if waited else (*state.where, "do"))
+        yield self._link(number, "timer", text, place, event.sendid, {"seconds": timer.delay})
+        when = next((n for n in reversed(range(number)) if _sets(self.history.steps[n], event.sendid, timer)), None)
+        if when is None:
+            return
+        sent = next((d for d in self.history.trace(when).deeds if (d.owner, d.what) == (owner, id)), None)
+        if sent:
+            place = self._place(when, sent.machine, sent.where)
+            yield self._link(when, "activity", f"sends {event.name} after {timer.delay:g} s", place, event.sendid)
+            yield from self.because(when, sent)
+        elif timer.state:
+            yield from self.doing(when, owner, machine, machine.states[timer.state].name)
+
+    def _beginning(self, number: int, step: TracedMicrostep) -> Iterator[Link]:
+        """A machine that begins: for an invoked one that is what its host did."""
+        owner = step.moment.owner
+        if not owner:
+            yield from self.trigger(number, owner)
+            return
+        id, _, around = owner.partition("@")
+        host = _machine(self.history.steps[number], around)
+        states = [state for state in host.states.values() if any(invoke.id == id for invoke in state.invoke)]
+        for state in states:
+            entered = self.history.trace(number).entering(around, state.name)
+            if entered or state is states[-1]:
+                where = next(invoke.where for invoke in state.invoke if invoke.id == id)
+                text = f"{prefix_of(around)}{state.name} invokes {id}"
+                yield self._link(number, "activity", text, self._place(number, host, where))
+                yield from self.doing(number, around, host, state.name)
+                return
+
+    def _activity(self, number: int, deed: Deed) -> Link:
+        """Where an action stands: `2nd of the do of greet`."""
+        state = deed.machine.states[deed.state]
+        name = prefix_of(deed.owner) + (state.name or deed.machine.id)
+        if not deed.block:
+            return self._link(number, "activity", f"an action of a transition of {name}", self._place(number, deed.machine, deed.where))
+        steps = getattr(state, deed.block)
+        nth = [i for i, placed in enumerate(steps, 1) if deed.where[: len(placed.where)] == placed.where]
+        which = f"{ordinal(nth[0])} of {len(steps)} in" if nth and len(steps) > 1 else "in"
+        place = self._place(number, deed.machine, (*state.where, deed.block))
+        return self._link(number, "activity", f"{which} the `{deed.block}` of {name}", place)
+
+    def _link(
+        self,
+        number: int,
+        kind: LinkKind,
+        text: str,
+        place: Place | None = None,
+        id: str = "",
+        values: Any = None,
+    ) -> Link:
+        one = self.history.steps[number]
+        return Link(kind, text, one.step.snapshot.epoch + one.at, place, id, values or {}, number)
+
+    def _place(self, number: int, machine: MachineDefinition, where: Any) -> Place | None:
+        return self.history.steps[number].place(machine, where)
+
+    def _owned(self, name: str) -> tuple[str, str, str]:
+        *ids, state = name.split("/")
+        return state, "", "@".join(reversed(ids))
+
+
+def _responsible(
+    machine: MachineDefinition, step: TracedMicrostep, deed: Deed | None, state: str
+) -> Transition | None:
+    """Of the transitions of a microstep the one that did something, or led into a state."""
+    taken = step.transitions
+    if deed:
+        within = [t for t in taken if not deed.block and deed.where[: len(t.where)] == t.where]
+        if within:
+            return within[0]
+        state = machine.states[deed.state].name
+    path = next((s.path for s in machine.states.values() if s.name == state), "")
+    leads = [t for t in taken for p in t.targets if path and (_related(p, path))]
+    return next(iter([*leads, *(t for t in taken if t.targets), *taken]), None)
+
+
+def _related(one: str, other: str) -> bool:
+    return one == other or one.startswith(f"{other}.") or other.startswith(f"{one}.") or not one
+
+
+def _timer(before: Snapshot | None, event: Event) -> Timer | None:
+    """The timer that has ended, in whichever behaviour it was."""
+    id, owner = inner_id(event.sendid)
+    inner = _within(before, owner)
+    return next((t for t in inner.timers if (t.id, t.event) == (id, event.name)), None) if inner and id else None
+
+
+def _sets(one: RecordedStep, sendid: str, timer: Timer) -> bool:
+    """Whether that step has set the timer."""
+    _, owner = inner_id(sendid)
+    before, after = _within(one.before, owner), _within(one.step.snapshot, owner)
+    return after is not None and timer in after.timers and (before is None or timer not in before.timers)
+
+
+def _within(snapshot: Snapshot | None, owner: str) -> Snapshot | None:
+    for id in reversed(owner.split("@")) if owner else ():
+        child = snapshot.invoked.get(id) if snapshot else None
+        snapshot = child.snapshot if child else None
+    return snapshot
+
+
+def _machine(one: RecordedStep, owner: str) -> MachineDefinition:
+    machine, around = one.machine, one.before
+    for id in reversed(owner.split("@")) if owner else ():
+        behaviors = [i.behavior for s in machine.states.values() for i in s.invoke if i.id == id]
+        child = around.invoked.get(id) if around else None
+        chosen = machine.invoked_behavior(child.state, id) if child else behaviors[0]
+        machine, around = machine.invoked[chosen], child.snapshot if child else None
+    return machine
+
+
+def _id(command: Command) -> str:
+    return command.id if isinstance(command, Start) else ""
+
+
+def _ended(kind: str) -> str:
+    return "is done" if kind == "done" else "failed"
+
+
+def _answered(kind: str, id: str, reason: str) -> str:
+    said = {"done": "is done", "error": "failed", "cancelled": "was cancelled", "lost": "was forgotten by the robot"}
+    return f"{id} {said[kind]}" + (f": {reason}" if reason != kind else "")

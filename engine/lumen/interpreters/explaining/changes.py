@@ -1,0 +1,53 @@
+"""What would have to be otherwise: edits of an event or of what is remembered, applied, and tried in steps."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from lumen.interpreters.explaining.words import prefix_of
+from lumen.interpreters.statechart.values import Invoked, Snapshot
+from lumen.language.events import Event
+
+Change = Mapping[str, Any]
+"""By how expressions call it, its other value: `event.data.result`, `context.tries`; in what runs as `quiz`,
+`quiz/context.tries`. `event` is the name of one that has to come, `state` that of a state that has to be active,
+`wait` how long nothing else may happen [s].
+"""
+
+_MISSING = object()
+
+
+class Situation(NamedTuple):
+    """From where a step is taken, and with what; `owner` says to which behaviour the edits of a context go."""
+
+    snapshot: Snapshot
+    event: Event | None
+    owner: str = ""
+
+    def edited(self, change: Change) -> "Situation":
+        """The situation with those edits; a new `event` gets the data that the change gives it."""
+        snapshot, event = self.snapshot, self.event
+        if "event" in change:
+            event = Event(change["event"], None, snapshot.at)
+        for name, value in change.items():
+            way = name.removeprefix(prefix_of(self.owner)).split(".")
+            if way[0] == "context":
+                snapshot = _remembering(snapshot, self.owner, way[1:], value)
+            elif way[:2] == ["event", "data"] and event is not None:
+                event = event._replace(data=_with(event.data, way[2:], value))
+        return self._replace(snapshot=snapshot, event=event)
+
+
+def _remembering(snapshot: Snapshot, owner: str, way: list[str], value: Any) -> Snapshot:
+    if not owner:
+        return snapshot._replace(context=_with(snapshot.context, way, value))
+    rest, _, id = owner.rpartition("@")
+    child = snapshot.invoked[id]
+    inner = Invoked(child.state, _remembering(child.snapshot, rest, way, value), child.commands)
+    return snapshot._replace(invoked={**snapshot.invoked, id: inner})
+
+
+def _with(data: Any, way: list[str], value: Any) -> Any:
+    if not way:
+        return value
+    fields = data if isinstance(data, Mapping) else {}
+    return {**fields, way[0]: _with(fields.get(way[0]), way[1:], value)}

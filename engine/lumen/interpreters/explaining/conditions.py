@@ -1,0 +1,66 @@
+"""A guard evaluated again: whether it holds, its parts with their values, and the first of them that is false."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from lumen.interpreters.expressions import ExpressionError, Scope, compile_guard, parse_expression, unparse
+from lumen.interpreters.expressions.readings import readings
+from lumen.interpreters.expressions.tree import ExpressionNode, Logic
+from lumen.language.actions import Expression
+
+
+class GuardPart(NamedTuple):
+    """One of the conditions that a guard joins by `&&`, and the values that it looked at, by how they are written.
+
+    It is true, false, or has no value: then `error` says why, and it counts as false (SCXML 5.9.1).
+    """
+
+    text: str
+    holds: bool
+    values: Mapping[str, Any]
+    error: str = ""
+
+
+def parts(guard: Expression, scope: Scope) -> tuple[GuardPart, ...]:
+    """The parts of a guard, in the order written; of one without `&&` the whole."""
+    meant, shown = (tuple(_joined(parse_expression(text))) for text in (guard.source, guard.shown))
+    if len(meant) != len(shown):
+        shown = meant
+    return tuple(_part(one, unparse(other), scope) for one, other in zip(meant, shown, strict=True))
+
+
+def first_false(guard: Expression, scope: Scope) -> GuardPart | None:
+    """The first part that is not true; None where the guard holds, whatever its parts say."""
+    if holds(guard, scope):
+        return None
+    return next((part for part in parts(guard, scope) if not part.holds), None)
+
+
+def holds(guard: Expression | None, scope: Scope) -> bool:
+    """Whether a guard is true; one that has no value is not."""
+    try:
+        return guard is None or compile_guard(guard.source)(scope)
+    except ExpressionError:
+        return False
+
+
+def values(guard: Expression | None, scope: Scope) -> dict[str, Any]:
+    """Everything that a guard looked at."""
+    return readings(guard.source, scope, guard.shown) if guard else {}
+
+
+def _joined(tree: ExpressionNode) -> Iterator[ExpressionNode]:
+    if isinstance(tree, Logic) and tree.sign == "&&":
+        for operand in tree.operands:
+            yield from _joined(operand)
+    else:
+        yield tree
+
+
+def _part(node: ExpressionNode, shown: str, scope: Scope) -> GuardPart:
+    source = unparse(node)
+    found = readings(source, scope, shown)
+    try:
+        return GuardPart(shown, compile_guard(source)(scope), found)
+    except ExpressionError as error:
+        return GuardPart(shown, False, found, str(error))

@@ -1,0 +1,93 @@
+"""Which earlier inputs an outcome rests on: without any that is not among them it would have come all the same.
+
+More may be named than is needed: it is asked what could have decided, not what did.
+"""
+
+from collections.abc import Iterator
+
+from lumen.interpreters.explaining.history import StepHistory
+from lumen.interpreters.exploration.expression_uses import of_block, of_transition
+from lumen.interpreters.expressions import names
+from lumen.interpreters.statechart.command_ids import answer_of, inner_id
+from lumen.interpreters.statechart.values import Snapshot
+from lumen.language.machines import MachineDefinition
+
+
+def needed(history: StepHistory, number: int) -> tuple[int, ...]:
+    """The numbers of the steps on which that one rests, itself included, in order."""
+    found: set[int] = set()
+    left = [number]
+    while left:
+        one = left.pop()
+        if one not in found:
+            found.add(one)
+            left += _directly(history, one)
+    return tuple(sorted(found))
+
+
+def _directly(history: StepHistory, number: int) -> Iterator[int]:
+    """The steps that made what a step was decided by: active states, what is remembered, timers and commands."""
+    one = history.steps[number]
+    before, event = one.before, one.step.event
+    if before is None:
+        return
+    for name in before.configuration:
+        yield _last(history, number, lambda step, name=name: name in step.step.entered)  # type: ignore[misc]
+    for key in _read(history, number):
+        yield _last(history, number, lambda step, key=key: _remembered(step.before, key) != step.step.snapshot.context.get(key))  # type: ignore[misc]
+    if before.history or before.halted:
+        yield _last(history, number, lambda step: step.before is None or step.before.history != step.step.snapshot.history)
+    if event is None:
+        return
+    if event.sendid:
+        id, _ = inner_id(event.sendid)
+        yield _last(history, number, lambda step: id in _timers(step.step.snapshot) and not _has(step.before, id))
+    elif answer := answer_of(event):
+        started = [n for n in history.started.get(answer.id, ()) if n < number]
+        yield started[-1] if started else 0
+
+
+def _last(history: StepHistory, number: int, made: object) -> int:
+    """The last step before that one of which it is true; the first of all where none is."""
+    assert callable(made)
+    return next((n for n in reversed(range(number)) if made(history.steps[n])), 0)
+
+
+def _remembered(before: Snapshot | None, key: str) -> object:
+    return before.context.get(key) if before else _BEFORE_ALL
+
+
+_BEFORE_ALL = object()
+
+
+def _timers(snapshot: Snapshot) -> set[str]:
+    inner = (id for child in snapshot.invoked.values() for id in _timers(child.snapshot))
+    return {*(timer.id for timer in snapshot.timers), *inner}
+
+
+def _has(snapshot: Snapshot | None, id: str) -> bool:
+    return snapshot is not None and id in _timers(snapshot)
+
+
+def _read(history: StepHistory, number: int) -> set[str]:
+    """The keys of the context that were read where it was decided, or by what was done then."""
+    keys: set[str] = set()
+    trace = history.trace(number)
+    for moment in trace.moments:
+        for group in moment.candidates:
+            for transition in group:
+                for use in of_transition(transition.definition):
+                    keys |= names(use.tree).context
+    for step in trace.microsteps:
+        machine = step.moment.machine.chart.definition
+        for name in {*step.exited, *step.entered}:
+            keys |= _read_by(machine, name)
+    for path in history.steps[number].step.snapshot.doing:
+        keys |= _read_by(history.steps[number].machine, history.steps[number].machine.states[path].name)
+    return keys
+
+
+def _read_by(machine: MachineDefinition, name: str) -> set[str]:
+    state = next((one for one in machine.states.values() if one.name == name), machine.root)
+    uses = (use for block in (state.entry, state.do, state.exit) for use in of_block(block))
+    return {key for use in uses for key in names(use.tree).context}

@@ -1,0 +1,222 @@
+"""Why a transition was not taken: where its state, its event or its guard stood against it, and what would change it."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from lumen.errors import LumenError
+from lumen.interpreters.explaining.changes import Change, Situation
+from lumen.interpreters.explaining.conditions import GuardPart, first_false
+from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
+from lumen.interpreters.explaining.searching import Happens, smallest_change, taken
+from lumen.interpreters.explaining.tracing import Moment
+from lumen.interpreters.explaining.words import awaited, of_event, of_transition, prefix_of
+from lumen.interpreters.exploration.samples import samples
+from lumen.interpreters.expressions import parse_expression
+from lumen.interpreters.statechart.chart import CompiledTransition
+from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.interpreters.statechart.stepping import due
+from lumen.interpreters.statechart.values import Snapshot
+from lumen.language.diagnostics import Place
+from lumen.language.events import ROBOT_EVENTS, Event
+from lumen.language.machines import MachineDefinition, Transition
+
+Because = Literal["inactive", "no-event", "preempted", "guard"]
+ORDER: tuple[Because, ...] = ("guard", "preempted", "no-event", "inactive")
+MAX_SAMPLES = 40
+"""Data of an event of which each is tried."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """Why one way did not lead there; `at` is when that was decided [s since 1970, in UTC].
+
+    `false` is the first part of the guard that was not true. `change` is the smallest one found after which it would
+    have happened, proved by taking the step again with it; where there is none, `note` says why.
+    """
+
+    because: Because
+    text: str
+    at: float
+    place: Place | None = None
+    false: GuardPart | None = None
+    change: Change | None = None
+    note: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        """An entry of `reasons` of `lumen why-not --format json`."""
+        false = {"text": self.false.text, "values": dict(self.false.values)} if self.false else None
+        return {
+            "because": self.because,
+            "text": self.text,
+            "file": self.place.file if self.place else None,
+            "line": self.place.line if self.place else None,
+            "false": false,
+            "change": dict(self.change) if self.change else None,
+            "note": self.note,
+        }
+
+
+class Refusals:
+    """Asks of single transitions why they were not taken, in the steps from the number `first` on."""
+
+    def __init__(self, history: StepHistory, first: int) -> None:
+        self.history, self.first = history, first
+
+    def of(self, owner: str, machine: MachineDefinition, transition: Transition) -> Reason:
+        """The nearest reason: what was decided last about it, else what it waits for."""
+        for number in reversed(range(self.first, len(self.history.steps))):
+            for moment in reversed(self.history.trace(number).moments):
+                if moment.owner != owner or moment.machine.chart.definition is not machine:
+                    continue
+                found = next((t for group in moment.candidates for t in group if t.definition is transition), None)
+                if found and not self._was_taken(number, moment, transition):
+                    return self._decided(number, moment, found)
+        return self._waits(owner, machine, transition)
+
+    def _was_taken(self, number: int, moment: Moment, transition: Transition) -> bool:
+        steps = self.history.trace(number).microsteps
+        return any(step.moment is moment and transition in step.transitions for step in steps)
+
+    def _decided(self, number: int, moment: Moment, found: CompiledTransition) -> Reason:
+        """It was looked at, and its guard was false, or another one was taken."""
+        one, wanted, machine = self.history.steps[number], found.definition, moment.machine.chart.definition
+        false = first_false(wanted.guard, moment.scope_of(found.source)) if wanted.guard else None
+        rival = None if false else self._rival(number, moment, found)
+        around = next((group for group in moment.candidates if found in group), ())
+        earlier = tuple(t.definition for t in around[: around.index(found)])
+        rivals = (*earlier, *((rival,) if rival and rival not in earlier else ()))
+        change = None
+        if one.before is not None and one.is_decided:
+            situation = Situation(one.before, one.step.event, moment.owner)
+            happens = taken(one.machine, moment.owner, wanted)
+            change = smallest_change(moment, found.source, wanted, rivals, situation, happens)
+        text = of_transition(machine, wanted, moment.owner)
+        after = f"{text}: after {of_event(moment.event)}" if moment.event else text
+        at = one.step.snapshot.epoch + one.at
+        if false:
+            what = f"{after}, {false.text} was false" + (f" ({false.error})" if false.error else "")
+            place = one.place(machine, wanted.guard.where if wanted.guard else wanted.where)
+            note = "" if change else _no_change(false)
+            return Reason("guard", what, at, place, false, change, note)
+        place = one.place(machine, rival.where) if rival else None
+        who = f"{of_transition(machine, rival, moment.owner)} was taken instead" if rival else "another was taken instead"
+        note = "" if change else "no other value of the event or the context was found with which this one would be taken"
+        return Reason("preempted", f"{after}, {who}", at, place, None, change, note)
+
+    def _rival(self, number: int, moment: Moment, found: CompiledTransition) -> Transition | None:
+        """What was taken in its place: a state within, one before it in the same state, or one in a region beside."""
+        taken_then = [t for s in self.history.trace(number).microsteps if s.moment is moment for t in s.transitions]
+        group = next((group for group in moment.candidates if found in group), ())
+        own = [t.definition for t in group]
+        return next((t for t in taken_then if t in own), next(iter(taken_then), None))
+
+    def _waits(self, owner: str, machine: MachineDefinition, transition: Transition) -> Reason:
+        """Nobody looked at it: its state is not active, or its event did not come."""
+        last = self.history.steps[-1]
+        snapshot, inner = last.step.snapshot, within(last.step.snapshot, owner)
+        source, text = machine.states[transition.source], of_transition(machine, transition, owner)
+        place, at = last.place(machine, transition.where), last.step.snapshot.epoch + last.at
+        name = prefix_of(owner) + (source.name or machine.id)
+        if inner is None:
+            return Reason("inactive", f"{text}: {prefix_of(owner)[:-1]} does not run", at, place, note="it is not invoked")
+        happens = taken(last.machine, owner, transition)
+        if not source.path or source.name in inner.configuration:
+            change = _coming(machine, transition, Situation(snapshot, None, owner), happens, owner)
+            what = _awaited(inner, transition)
+            note = "" if change else _no_event(transition)
+            return Reason("no-event", f"{text}: {what}", at, place, change=change, note=note)
+        change = None
+        entered = None if owner else _standing_in(machine, snapshot, source.name, transition)
+        if entered is True:
+            change = {"state": source.name}
+        elif isinstance(entered, Snapshot):
+            more = _coming(machine, transition, Situation(entered, None, owner), happens, owner)
+            change = {"state": source.name, **more} if more else None
+        note = "" if change else f"it has to be in {name} first"
+        return Reason("inactive", f"{text}: {name} was not active", at, place, change=change, note=note)
+
+
+def within(snapshot: Snapshot, owner: str) -> Snapshot | None:
+    """The snapshot of what runs under these ids; None where nothing does."""
+    for id in reversed(owner.split("@")) if owner else ():
+        if id not in snapshot.invoked:
+            return None
+        snapshot = snapshot.invoked[id].snapshot
+    return snapshot
+
+
+def _coming(
+    machine: MachineDefinition, wanted: Transition, standing: Situation, happens: Happens, owner: str
+) -> Change | None:
+    """The event that would have it taken, with its data, or how long to wait; None where none was found."""
+    change: dict[str, Any]
+    if wanted.timed:
+        event = due(standing.snapshot)
+        if event is None or not happens(standing._replace(event=event)):
+            return None
+        return {"wait": round(event.at - standing.snapshot.at, 3)}
+    inner = within(standing.snapshot, owner)
+    for name in _names(machine, wanted.event):
+        schema = machine.events.get(name, ROBOT_EVENTS.get(name))
+        trees = [parse_expression(wanted.guard.source)] if wanted.guard else []
+        tried = samples(machine, schema, trees, inner.context if inner else {})
+        for _, data in zip(range(MAX_SAMPLES), tried, strict=False):
+            change = {"event": name, **_fields(data)}
+            if happens(standing.edited(change)):
+                return change
+    return None
+
+
+def _fields(data: Any) -> Mapping[str, Any]:
+    if isinstance(data, Mapping):
+        return {f"event.data.{key}": value for key, value in data.items()}
+    return {} if data is None else {"event.data": data}
+
+
+def _names(machine: MachineDefinition, descriptor: str) -> Iterator[str]:
+    """Names of events that a descriptor selects and that may come from outside."""
+    if descriptor.startswith(("done.", "error.")) or not descriptor:
+        return
+    prefix = descriptor.removesuffix("*").removesuffix(".")
+    known = [n for n in (*machine.events, *ROBOT_EVENTS) if not prefix or n == prefix or n.startswith(f"{prefix}.")]
+    yield from ([prefix] if prefix and prefix not in known else [])
+    yield from (known or ([] if prefix else ["anything"]))
+
+
+def _standing_in(machine: MachineDefinition, snapshot: Snapshot, state: str, wanted: Transition) -> Snapshot | bool:
+    """Where it would stand had it been in that state; True where that alone leads on, False where it can't be."""
+    try:
+        step = entered_directly(machine, snapshot, state, Event(OPERATOR_GOTO, {"state": state}, snapshot.at))
+    except LumenError:
+        return False
+    if any(one is wanted for one in step.transitions):
+        return True
+    return step.snapshot if state in step.snapshot.configuration else False
+
+
+def _awaited(inner: Snapshot, transition: Transition) -> str:
+    if transition.timed:
+        timer = next((t for t in inner.timers if t.event == transition.event and t.state == transition.source), None)
+        return f"its time comes in {timer.due - inner.at:.1f} s" if timer else "its time does not come any more"
+    if transition.event.startswith("done."):
+        return "that is not done yet"
+    if transition.event.startswith("error."):
+        return "nothing failed"
+    return f"no `{transition.event}` came" if transition.event else "nothing happened since it could"
+
+
+def _no_event(transition: Transition) -> str:
+    if transition.timed:
+        return "other timers come first, or its guard is false then"
+    if transition.event.startswith(("done.", "error.")):
+        return f"it follows from what the behaviour does: {awaited(transition)}"
+    return "no data of that event was found with which it is taken"
+
+
+def _no_change(false: GuardPart) -> str:
+    changing = [text for text in false.values if text.startswith(("context.", "event.data"))]
+    if not changing:
+        return "it does not depend on the event's data or on the context"
+    return f"no other value of {', '.join(changing)} was found with which it would have been taken"
+

@@ -1,0 +1,99 @@
+"""The smallest change after which a transition is taken: proposed from its guard, proved by taking the step."""
+
+from collections.abc import Callable, Iterator, Mapping
+from itertools import combinations, product
+from typing import Any
+
+from lumen.errors import LumenError
+from lumen.interpreters.explaining.boundaries import boundaries
+from lumen.interpreters.explaining.changes import Change, Situation
+from lumen.interpreters.explaining.conditions import holds
+from lumen.interpreters.explaining.tracing import Moment, retaken
+from lumen.interpreters.explaining.words import prefix_of
+from lumen.interpreters.expressions import Scope
+from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.type_checks import fits
+from lumen.language.machines import MachineDefinition, Transition
+
+MAX_TRIED = 60
+"""Steps that are taken to find a change."""
+MAX_EDITS = 4_000
+"""Sets of values with which a guard is evaluated."""
+
+Happens = Callable[[Situation], bool]
+
+
+def taken(machine: MachineDefinition, owner: str, transition: Transition) -> Happens:
+    """Whether a step takes that transition of the behaviour that runs under `owner`."""
+
+    def happens(situation: Situation) -> bool:
+        try:
+            trace = retaken(machine, situation.snapshot, situation.event)
+        except LumenError:
+            return False
+        return any(
+            one is transition for step in trace.microsteps if step.moment.owner == owner for one in step.transitions
+        )
+
+    return happens
+
+
+def smallest_change(
+    moment: Moment, node: StateNode, wanted: Transition, others: tuple[Transition, ...], from_: Situation, happens: Happens
+) -> Change | None:
+    """The change with the fewest edits by which `wanted` happens; None where none was found among those tried.
+
+    `others` are the transitions that stand before it, whose guards may have to become false.
+    """
+    tried = 0
+    for change in _proposals(moment, node, wanted, others, from_.owner):
+        if happens(from_.edited(change)):
+            return change
+        tried += 1
+        if tried == MAX_TRIED:
+            break
+    return None
+
+
+def _proposals(
+    moment: Moment, node: StateNode, wanted: Transition, others: tuple[Transition, ...], owner: str
+) -> Iterator[Change]:
+    """Edits after which the guard holds, by how many there are; the data of an event before what is remembered."""
+    definition, checks = moment.machine.chart.definition, moment.machine.chart.checks
+    scope = moment.scope_of(node)
+    guards = [t.guard.source for t in (wanted, *others) if t.guard]
+    values = boundaries(definition, guards, scope)
+    values = {
+        path: [v for v in found if path[0] == "event" or len(path) > 2 or fits(v, checks.get(path[1]))]
+        for path, found in values.items()
+    }
+    paths = sorted((p for p in values if values[p]), key=lambda path: path[0] != "event")
+    left = MAX_EDITS
+    for count in (1, 2, 3):
+        for chosen in combinations(paths, count):
+            for given in product(*(values[path] for path in chosen)):
+                left -= 1
+                if left < 0:
+                    return
+                edits = dict(zip(chosen, given, strict=True))
+                if holds(wanted.guard, edited_scope(scope, edits)):
+                    yield {_name(path, owner): value for path, value in edits.items()}
+
+
+def edited_scope(scope: Scope, edits: Mapping[tuple[str, ...], Any]) -> Scope:
+    """What an expression sees with other values at these paths."""
+    seen: dict[str, Any] = {"context": scope.context, "event": scope.event}
+    for path, value in edits.items():
+        seen = _with(seen, path, value)
+    return scope._replace(context=seen["context"], event=seen["event"])
+
+
+def _with(data: Any, path: tuple[str, ...], value: Any) -> Any:
+    if not path:
+        return value
+    fields = data if isinstance(data, Mapping) else {}
+    return {**fields, path[0]: _with(fields.get(path[0]), path[1:], value)}
+
+
+def _name(path: tuple[str, ...], owner: str) -> str:
+    return (prefix_of(owner) if path[0] == "context" else "") + ".".join(path)

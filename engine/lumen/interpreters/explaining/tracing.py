@@ -1,0 +1,214 @@
+"""A step taken again, and everything noted on the way: nothing is noted while an exhibition runs."""
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple, Self
+
+from lumen.interpreters.expressions import Scope
+from lumen.interpreters.expressions.scope import no_draw
+from lumen.interpreters.explaining.traced_machine import traced
+from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.command_ids import answer_of, outer_command, outer_id
+from lumen.interpreters.statechart.compiled_machine import CompiledMachine
+from lumen.interpreters.statechart.execution_context import ExecutionContext, InvocationHandler
+from lumen.interpreters.statechart.external_events import process
+from lumen.interpreters.statechart.invocations import Invocations
+from lumen.interpreters.statechart.macrostep import enter_machine
+from lumen.interpreters.statechart.plans import Candidates, Configuration
+from lumen.interpreters.statechart.values import Snapshot, Step, Timer
+from lumen.language.commands import BodyCommand, Command
+from lumen.language.diagnostics import NodePath
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition, Transition
+
+
+class Moment(NamedTuple):
+    """When it was decided which transitions are taken: for an event, or (`eventless`) for none.
+
+    `owner` are the ids of the invokes under which that behaviour runs, `hint@quiz`; empty for the outermost.
+    """
+
+    owner: str
+    machine: CompiledMachine
+    event: Event | None
+    eventless: bool
+    configuration: Configuration
+    scope: Scope
+    place: str
+
+    def scope_of(self, node: StateNode) -> Scope:
+        """What an expression that stands in that state saw."""
+        return self.scope._replace(state=node.view(self.scope.language, self.place))
+
+    @property
+    def candidates(self) -> Candidates:
+        """Those among which was chosen, for each active atomic state the innermost first."""
+        if self.eventless or self.event is None:
+            return self.configuration.eventless
+        if timed := self.configuration.timed(self.event.name):
+            return timed if self.event.sendid else ()
+        return self.configuration.candidates(self.event.name)
+
+
+@dataclass(eq=False, slots=True)
+class TracedMicrostep:
+    """A microstep, and which decision led to it; that of a machine which begins has no transitions."""
+
+    moment: Moment
+    transitions: tuple[Transition, ...]
+    exited: tuple[str, ...] = ()
+    entered: tuple[str, ...] = ()
+
+
+class Deed(NamedTuple):
+    """Something that an action did, or that came about by itself (`where` is empty then).
+
+    `what` is a Command, an Event that was raised, or the id of a `send`; `state` the path of the state in whose
+    `entry`, `do`, `exit` or transitions the action stands. `microstep` is the last one before it in this step.
+    """
+
+    owner: str
+    machine: MachineDefinition
+    what: Command | Event | str
+    where: NodePath
+    state: str
+    microstep: TracedMicrostep | None
+
+    @property
+    def block(self) -> str:
+        """`entry`, `do` or `exit`; empty for the actions of a transition."""
+        key = self.where[len(self.machine.states[self.state].where) :][:1]
+        return str(key[0]) if key and key[0] in ("entry", "do", "exit") else ""
+
+
+@dataclass(slots=True)
+class Trace:
+    """What happened within a step, in order; `step` is what came of it."""
+
+    moments: list[Moment] = field(default_factory=list)
+    microsteps: list[TracedMicrostep] = field(default_factory=list)
+    deeds: list[Deed] = field(default_factory=list)
+    step: Step | None = None
+
+    def entering(self, owner: str, state: str) -> TracedMicrostep | None:
+        """The last microstep that entered the state of that name."""
+        found = (one for one in reversed(self.microsteps) if one.moment.owner == owner and state in one.entered)
+        return next(found, None)
+
+
+class TracedContext(ExecutionContext):
+    """A context that notes what becomes of it. `acting` is where the action stands that is being done."""
+
+    trace: Trace | None = None
+    owner = ""
+    acting: NodePath = ()
+    pending = False
+    """Whether an event has come and nothing was decided yet."""
+    last: TracedMicrostep | None = None
+    timers_before: tuple[Timer, ...] = ()
+
+    def begin(self, trace: Trace, owner: str) -> Self:
+        """Note from now on."""
+        self.owner, self.pending, self.timers_before = owner, self.trigger is not None, self.timers
+        self.trace = trace
+        return self
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if self.trace is None:
+            super().__setattr__(name, value)
+            return
+        match name:
+            case "event":
+                self._settle()
+            case "transitions":
+                self._settle(value[len(self.transitions) :])
+            case "exited" | "entered" if self.last:
+                setattr(self.last, name, getattr(self.last, name) + value[len(getattr(self, name)) :])
+        super().__setattr__(name, value)
+        match name:
+            case "event":
+                self._decide(eventless=False)
+            case "configuration":
+                self._decide(eventless=True)
+
+    def _settle(self, taken: tuple[Transition, ...] | None = None) -> None:
+        """Note the decision on the event from outside, and what was taken; without that, nothing was."""
+        assert self.trace is not None
+        if self.pending:
+            self.pending = False
+            if _is_heard(self.trigger, self.timers_before):
+                self._decide(eventless=False)
+            if taken is None:
+                self._decide(eventless=True)
+        if taken is not None:
+            if not self.trace.moments or self.trace.moments[-1].owner != self.owner or not self._fits(taken):
+                self._decide(eventless=bool(taken) and not taken[0].event)
+            self.last = TracedMicrostep(self.trace.moments[-1], taken)
+            self.trace.microsteps.append(self.last)
+
+    def _fits(self, taken: tuple[Transition, ...]) -> bool:
+        assert self.trace is not None
+        return not taken or self.trace.moments[-1].eventless == (not taken[0].event)
+
+    def _decide(self, *, eventless: bool) -> None:
+        assert self.trace is not None
+        self.event_data, self.cached_scope = None, None
+        scope = self.scope()._replace(configuration=self.configuration.known.__contains__, draw=no_draw)
+        moment = Moment(self.owner, self.machine, self.event, eventless, self.configuration, scope, self.place)
+        self.trace.moments.append(moment)
+
+    def within(
+        self, id: str, machine: CompiledMachine, snapshot: Snapshot, event: Event | None, invocations: InvocationHandler
+    ) -> Self:
+        assert self.trace is not None
+        owner = outer_id(id, self.owner) if self.owner else id
+        return super().within(id, machine, snapshot, event, invocations).begin(self.trace, owner)
+
+    def step(self) -> Step:
+        self._settle()
+        return super().step()
+
+    def emit(self, command: Command) -> None:
+        super().emit(command)
+        self._note(outer_command(command, self.owner) if self.owner else command)
+
+    def start(self, command: BodyCommand, *, awaited: bool = False) -> str:
+        id = super().start(command, awaited=awaited)
+        if awaited:
+            self.acting = ()
+        return id
+
+    def raise_event(self, event: Event) -> None:
+        super().raise_event(event)
+        self._note(event)
+
+    def send(self, id: str, delay: float, event: str, data: Any, to: str) -> None:
+        before = len(self.timers)
+        super().send(id, delay, event, data, to)
+        if len(self.timers) > before:
+            self._note(self.timers[-1].id)
+
+    def hand_over(self, to: str, event: Event) -> None:
+        super().hand_over(to, event)
+        self._note(event)
+
+    def _note(self, what: Command | Event | str) -> None:
+        assert self.trace is not None
+        deed = Deed(self.owner, self.machine.chart.definition, what, self.acting, self.node.path, self.last)
+        self.trace.deeds.append(deed)
+
+
+def retaken(machine: MachineDefinition, before: Snapshot, event: Event | None) -> Trace:
+    """The step from `before` taken again; without an event the first one, as `initial` takes it."""
+    program, trace = traced(machine), Trace()
+    at = before.at if event is None else max(before.at, event.at)
+    context = TracedContext.of(program, before, event, at, Invocations(before.invoked)).begin(trace, "")
+    trace.step = enter_machine(context) if event is None else process(context, event)
+    return trace
+
+
+def _is_heard(event: Event | None, timers: tuple[Timer, ...]) -> bool:
+    """Whether transitions are asked about an event from outside: not where it lets a `do` go on."""
+    if event is None or (not event.sendid and answer_of(event)):
+        return False
+    ended = [t for t in timers if (t.id, t.event) == (event.sendid, event.name)]
+    return not event.sendid or any(t.kind != "wait" and not t.to for t in ended)

@@ -1,0 +1,74 @@
+"""What steps are made of, in words."""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from lumen.language.commands import Cancel, Command, Log, Publish, Say, Start
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition, Transition
+from lumen.language.verbs import verb_of
+
+MAX_VALUE_CHARACTERS = 80
+
+
+def prefix_of(owner: str) -> str:
+    """`quiz/hint/` for what runs as `hint@quiz`: how the names of its states begin."""
+    return "".join(f"{id}/" for id in reversed(owner.split("@"))) if owner else ""
+
+
+def of_command(command: Command) -> str:
+    """`says “Hello!”`, `plays dance`, `publishes on `show``."""
+    match command:
+        case Start(_, Say(text)):
+            return f"says “{text}”"
+        case Start(_, wanted):
+            return str(verb_of(wanted).transcript(wanted))
+        case Publish(route):
+            return f"publishes on `{route}`"
+        case Log(text):
+            return f"logs “{text}”"
+        case Cancel(id):
+            return f"cancels {id}"
+
+
+def of_transition(machine: MachineDefinition, transition: Transition, owner: str = "") -> str:
+    """`ask_name → how_are_you, on heard, as GUARD`."""
+    prefix = prefix_of(owner)
+    source = prefix + (machine.states[transition.source].name or machine.id)
+    targets = ", ".join(prefix + (machine.states[path].name or machine.id) for path in transition.targets)
+    guard = f", as {transition.guard.shown}" if transition.guard else ""
+    return f"{source} → {targets or '(stays)'}, {awaited(transition)}{guard}"
+
+
+def awaited(transition: Transition) -> str:
+    """What a transition waits for."""
+    if transition.timed:
+        return transition.awaited_time
+    if transition.exact:
+        return "when it is done" if transition.event.startswith("done.") else "when it fails"
+    return f"on {transition.event}" if transition.event else "as soon as it can"
+
+
+def of_event(event: Event) -> str:
+    """`heard {"result": "my name is Budi"}`."""
+    return event.name if event.data is None else f"{event.name} {shown(event.data)}"
+
+
+def shown(value: Any) -> str:
+    """A value as JSON, cut where it is long."""
+    text = json.dumps(value, ensure_ascii=False, default=str)
+    return text if len(text) <= MAX_VALUE_CHARACTERS else f"{text[: MAX_VALUE_CHARACTERS - 1]}…"
+
+
+def brought(event: Event) -> dict[str, Any]:
+    """What an event brought, by how expressions call it."""
+    if isinstance(event.data, Mapping):
+        return {f"event.data.{key}": value for key, value in event.data.items()}
+    return {} if event.data is None else {"event.data": event.data}
+
+
+def ordinal(number: int) -> str:
+    """`1st`, `2nd`, `11th`."""
+    ending = "th" if number % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    return f"{number}{ending}"

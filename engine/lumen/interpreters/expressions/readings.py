@@ -1,0 +1,37 @@
+"""What an expression looked at, and what it found there: for who asks why it was true or false."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from lumen.errors import ExpressionError
+from lumen.interpreters.expressions.compiler import compile_expression
+from lumen.interpreters.expressions.parser import parse_expression
+from lumen.interpreters.expressions.printer import unparse
+from lumen.interpreters.expressions.scope import Scope
+from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal, children, path_of
+
+
+def readings(source: str, scope: Scope, shown: str = "") -> dict[str, Any]:
+    """Its paths, and functions such as `hour()` and `In('dance')`, with their values, as the author wrote them.
+
+    `shown` is how that is, where it differs from the `source`; what is not written there is left out, and so is what
+    has no value: `has(event.data.name)` asks for that.
+    """
+    found: dict[str, Any] = {}
+    for node in _looked_at(parse_expression(source)):
+        text = unparse(node)
+        if text in (shown or source).replace('"', "'"):
+            try:
+                found[text] = compile_expression(text)(scope)
+            except ExpressionError:
+                continue
+    return found
+
+
+def _looked_at(node: ExpressionNode) -> Iterator[ExpressionNode]:
+    constant = isinstance(node, FunctionCall) and all(isinstance(one, Literal) for one in node.arguments)
+    if path_of(node) or constant:
+        yield node
+        return
+    for child in children(node):
+        yield from _looked_at(child)

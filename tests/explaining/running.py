@@ -1,0 +1,85 @@
+"""Random machines that live: events from outside at their times, timers, and a robot that answers."""
+
+from contextlib import suppress
+from typing import Any, NamedTuple
+
+from hypothesis import strategies as st
+
+from lumen.errors import LumenError
+from lumen.interpreters.explaining import RecordedStep
+from lumen.interpreters.statechart import Snapshot, due, initial, step
+from lumen.language.commands import Log, Play, Start
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition
+from lumen.language.nanoseconds import to_the_nanosecond
+from tests.statechart.oracle.generating import EVENTS
+
+ANSWERED_AFTER = 0.17
+"""How long the robot takes for each command [s]."""
+
+inputs: st.SearchStrategy[list[tuple[str, Any]]] = st.lists(
+    st.tuples(st.sampled_from(EVENTS), st.sampled_from([None, {"k": 1}, {"k": 3}, {"k": "text"}])),
+    min_size=2,
+    max_size=10,
+)
+
+
+def timed(happenings: list[tuple[str, Any]]) -> list[Event]:
+    """Each at a time of its own, sometimes long after the one before."""
+    at, events = 0.0, []
+    for number, (name, data) in enumerate(happenings):
+        at = to_the_nanosecond(at + (0.061 if number % 3 else 0.413))
+        events.append(Event(name, data, at))
+    return events
+
+
+def live(machine: MachineDefinition, events: list[Event], seconds: float = 1.5) -> list[RecordedStep]:
+    """What happens until so long after the last event, or until the machine does not come to rest."""
+    first = initial(machine)
+    steps, answers, left = [RecordedStep(machine, None, first)], list[Event](), list(events)
+    end = (events[-1].at if events else 0.0) + seconds
+    with suppress(LumenError):
+        while len(steps) < 120:
+            snapshot = steps[-1].step.snapshot
+            answers += _answers(steps[-1])
+            coming = [event for event in (due(snapshot), *answers[:1], *left[:1]) if event]
+            if not coming or (event := min(coming, key=lambda e: e.at)).at > end:
+                break
+            answers, left = [a for a in answers if a is not event], [e for e in left if e is not event]
+            steps.append(RecordedStep(machine, snapshot, step(machine, snapshot, event)))
+    return steps
+
+
+def _answers(one: RecordedStep) -> list[Event]:
+    at = to_the_nanosecond(one.at + ANSWERED_AFTER)
+    return [
+        Event(f"{'error' if isinstance(c.command, Play) else 'done'}.command.{c.id}", None, at)
+        for c in one.step.commands
+        if isinstance(c, Start) and c.id.startswith("d")
+    ]
+
+
+class Outcome(NamedTuple):
+    """Something that happened at a time: what was entered, or done."""
+
+    at: float
+    what: str
+
+
+def outcomes(one: RecordedStep) -> list[Outcome]:
+    """What a step has entered and done; of what is drawn it does not matter what it is."""
+    done = [_kind(command) for command in one.step.commands]
+    return [Outcome(one.at, what) for what in (*one.step.entered, *filter(None, done))]
+
+
+def _kind(command: Any) -> str:
+    match command:
+        case Start(_, wanted):
+            return type(wanted).__name__
+        case Log(text):
+            return f"logs {text.rpartition(' in ')[2]}"
+    return ""
+
+
+def standing(steps: list[RecordedStep]) -> Snapshot:
+    return steps[-1].step.snapshot
