@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError
 from lumen.interpreters.explaining import RecordedStep
-from lumen.interpreters.statechart import Snapshot, due, initial, step
+from lumen.interpreters.statechart import due, initial, step
 from lumen.language.commands import Log, Play, Start
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
@@ -33,13 +33,12 @@ def timed(happenings: list[tuple[str, Any]]) -> list[Event]:
     return events
 
 
-def live(machine: MachineDefinition, events: list[Event], seconds: float = 1.5) -> list[RecordedStep]:
-    """What happens until so long after the last event, or until the machine does not come to rest."""
-    first = initial(machine)
-    steps, answers, left = [RecordedStep(machine, None, first)], list[Event](), list(events)
-    end = (events[-1].at if events else 0.0) + seconds
+def live(machine: MachineDefinition, events: list[Event], end: float) -> list[RecordedStep]:
+    """What happens until `end` [s], or until the machine does not come to rest."""
+    steps, answers, left = list[RecordedStep](), list[Event](), list(events)
     with suppress(LumenError):
-        while len(steps) < 120:
+        steps.append(RecordedStep(machine, None, initial(machine)))
+        while len(steps) < 60:
             snapshot = steps[-1].step.snapshot
             answers += _answers(steps[-1])
             coming = [event for event in (due(snapshot), *answers[:1], *left[:1]) if event]
@@ -79,7 +78,3 @@ def _kind(command: Any) -> str:
         case Log(text):
             return f"logs {text.rpartition(' in ')[2]}"
     return ""
-
-
-def standing(steps: list[RecordedStep]) -> Snapshot:
-    return steps[-1].step.snapshot

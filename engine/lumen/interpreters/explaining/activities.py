@@ -27,11 +27,13 @@ def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
     position = inner.doing.get(state.path)
     nth = next(i for i, placed in enumerate(state.do) if deed.where[: len(placed.where)] == placed.where)
     if position is not None and position.place < nth:
-        ids = ", ".join(awaited(position))
-        text = f"the `do` of {name} stands before it, at its {ordinal(position.place + 1)} of {len(state.do)}: waits for {ids}"
+        ids = list(awaited(position))
+        stands = f"stands before it, at its {ordinal(position.place + 1)} of {len(state.do)}"
+        text = f"the `do` of {name} {stands}: it waits for {', '.join(ids)}"
         place = last.place(deed.machine, state.do[position.place].where)
-        change = {"event": f"done.command.{ids}"} if nth == position.place + 1 and ids[:1] == "d" and "," not in ids else None
-        return Reason("no-event", text, at, place, change=change, note="" if change else "more has to be done before it")
+        if nth == position.place + 1 and len(ids) == 1 and ids[0].startswith("d"):
+            return Reason("no-event", text, at, place, change={"event": f"done.command.{ids[0]}"})
+        return Reason("no-event", text, at, place, note="more has to be done before it")
     scope = _scope(deed, inner)
     for condition, wanted in _conditions(state.do, deed.where):
         false = first_false(condition.guard, scope)

@@ -11,7 +11,7 @@ from lumen.interpreters.explaining.effects import effect
 from lumen.interpreters.explaining.history import RecordedStep, StepHistory
 from lumen.interpreters.explaining.links import Link, utc
 from lumen.interpreters.explaining.names import KnownNames, state_named
-from lumen.interpreters.explaining.refusals import ORDER, Reason, Refusals
+from lumen.interpreters.explaining.refusals import ORDER, Reason, TransitionRefusals
 from lumen.interpreters.explaining.ways import deeds, ways
 from lumen.interpreters.statechart.nesting import active_names
 
@@ -79,7 +79,7 @@ def why_not(
     found = ways(machine, what)
     if not found and not state and not any(deeds(machine, what)):
         raise UsageError(_nothing_leads_there(known, what))
-    refusals = Refusals(history, first)
+    refusals = TransitionRefusals(history, first)
     reasons = [*(refusals.of(w.owner, w.machine, w.transition) for w in found), *_in_activities(history, what, state)]
     reasons.sort(key=lambda reason: (ORDER.index(reason.because), -reason.at))
     return WhyNotAnswer(what, last.step.snapshot.epoch + end, tuple(reasons))

@@ -31,7 +31,10 @@ def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope)
         for path, value in _mentioned(machine, tree, scope):
             found.setdefault(path, []).append(value)
     literals = [n.value for tree in trees for n, _ in walk(tree) if isinstance(n, Literal)]
-    return {path: _nearest(path, [*values, *_plain(value_at(path, scope)), *literals], scope) for path, values in found.items()}
+    return {
+        path: _nearest(path, [*values, *_plain(value_at(path, scope)), *literals], scope)
+        for path, values in found.items()
+    }
 
 
 def value_at(path: ValuePath, scope: Scope) -> Any:
@@ -70,7 +73,7 @@ def _plain(now: Any) -> list[Any]:
         case bool():
             return [not now]
         case int() | float():
-            return [now + 1, now - 1, 0, 1, 2]
+            return [now + 1, now - 1, 0, 1, 2, now - 5, now + 5, now - 10]
         case str():
             return [SAMPLE_TEXT, ""]
         case list():

@@ -1,7 +1,9 @@
 """Why something happened: from the effect back to a person, a message, a sensor, a file or the start."""
 
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import replace
+from functools import partial
+from typing import Any, TypeAlias
 
 from lumen.interpreters.explaining.conditions import values
 from lumen.interpreters.explaining.effects import Effect
@@ -9,7 +11,15 @@ from lumen.interpreters.explaining.history import OPERATOR_GOTO, RecordedStep, S
 from lumen.interpreters.explaining.links import Link, LinkKind
 from lumen.interpreters.explaining.origins import origin
 from lumen.interpreters.explaining.tracing import Deed, TracedMicrostep
-from lumen.interpreters.explaining.words import awaited, brought, of_command, of_event, of_transition, ordinal, prefix_of
+from lumen.interpreters.explaining.words import (
+    awaited,
+    brought,
+    of_command,
+    of_event,
+    of_transition,
+    ordinal,
+    prefix_of,
+)
 from lumen.interpreters.statechart.command_ids import answer_of, inner_id
 from lumen.interpreters.statechart.values import Snapshot, Timer
 from lumen.language.commands import Command, Start
@@ -17,18 +27,29 @@ from lumen.language.diagnostics import Place
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
 
-MAX_LINKS = 100
-"""Behaviours that set a timer again and again have chains without end."""
+LinkWalk: TypeAlias = Iterator["Link | partial[LinkWalk]"]
+"""Links, and last, perhaps, how it goes on: chains are longer than Python's stack is high."""
+
+MAX_LINKS = 2_000
+SHOWN_FIRST, SHOWN_LAST = 60, 20
+"""Behaviours that set a timer again and again have chains without end: of a long one both ends are told."""
 
 
 def chain(history: StepHistory, effect: Effect) -> list[Link]:
     """The links, the effect first, the cause last."""
     found: list[Link] = []
-    for link in Chain(history).of(effect):
-        found.append(link)
-        if len(found) == MAX_LINKS:
-            break
-    return found
+    ways: list[partial[LinkWalk]] = [partial(Chain(history).of, effect)]
+    while ways and len(found) < MAX_LINKS:
+        for one in ways.pop()():
+            if isinstance(one, Link):
+                found.append(one)
+            else:
+                ways.append(one)
+    if len(found) <= SHOWN_FIRST + SHOWN_LAST:
+        return found
+    left = found[SHOWN_FIRST:-SHOWN_LAST]
+    between = replace(left[0], kind="activity", text=f"… {len(left)} more of this kind", place=None, id="", values={})
+    return [*found[:SHOWN_FIRST], between, *found[-SHOWN_LAST:]]
 
 
 class Chain:
@@ -37,96 +58,89 @@ class Chain:
     def __init__(self, history: StepHistory) -> None:
         self.history = history
 
-    def of(self, effect: Effect) -> Iterator[Link]:
+    def of(self, effect: Effect) -> LinkWalk:
         if effect.command is not None:
-            yield from self.command(effect.number, effect.command)
+            yield partial(self.command, effect.number, effect.command)
         else:
-            name, _, owner = self._owned(effect.state)
-            yield from self.entry(effect.number, owner, name)
+            *ids, name = effect.state.split("/")
+            yield partial(self.doing, effect.number, "@".join(reversed(ids)), name)
 
-    def command(self, number: int, command: Command) -> Iterator[Link]:
+    def command(self, number: int, command: Command) -> LinkWalk:
         deed = self.history.deed(number, command)
         if deed is None:
             yield self._link(number, "command", of_command(command), id=_id(command))
-            yield from self.trigger(number, "")
+            yield partial(self.trigger, number, "")
             return
         place = self._place(number, deed.machine, deed.where)
         yield self._link(number, "command", of_command(command), place, _id(command))
         yield self._activity(number, deed)
-        yield from self.because(number, deed)
+        yield partial(self.because, number, deed)
 
-    def because(self, number: int, deed: Deed) -> Iterator[Link]:
+    def because(self, number: int, deed: Deed) -> LinkWalk:
         """What made an action be done."""
         if deed.block == "do":
-            yield from self.doing(number, deed.owner, deed.machine, deed.machine.states[deed.state].name)
+            yield partial(self.doing, number, deed.owner, deed.machine.states[deed.state].name)
         elif deed.microstep:
-            yield from self.microstep(number, deed.microstep, deed)
+            yield partial(self.microstep, number, deed.microstep, deed)
         else:
-            yield from self.trigger(number, deed.owner)
+            yield partial(self.trigger, number, deed.owner)
 
-    def doing(self, number: int, owner: str, machine: MachineDefinition, state: str) -> Iterator[Link]:
-        """What made a `do` begin, or go on."""
+    def doing(self, number: int, owner: str, state: str) -> LinkWalk:
+        """What made a state be entered, or its `do` go on, in that step."""
         entered = self.history.trace(number).entering(owner, state)
         if entered:
-            yield from self.microstep(number, entered, state=state)
+            yield partial(self.microstep, number, entered, state=state)
         else:
-            yield from self.trigger(number, owner)
+            yield partial(self.trigger, number, owner)
 
-    def entry(self, number: int, owner: str, state: str) -> Iterator[Link]:
-        entered = self.history.trace(number).entering(owner, state)
-        if entered:
-            yield from self.microstep(number, entered, state=state)
-        else:
-            yield from self.trigger(number, owner)
-
-    def microstep(
-        self, number: int, step: TracedMicrostep, deed: Deed | None = None, state: str = ""
-    ) -> Iterator[Link]:
+    def microstep(self, number: int, step: TracedMicrostep, deed: Deed | None = None, state: str = "") -> LinkWalk:
         machine, owner = step.moment.machine.chart.definition, step.moment.owner
         taken = _responsible(machine, step, deed, state)
         if taken is None:
-            yield from self._beginning(number, step)
+            yield partial(self._beginning, number, step)
             return
         node = step.moment.machine.chart.nodes[taken.source]
         text, place = of_transition(machine, taken, owner), self._place(number, machine, taken.where)
         found = values(taken.guard, step.moment.scope_of(node))
         yield self._link(number, "transition", text, place, values=found)
         if taken.event:
-            yield from self.event(number, step.moment.event, owner)
+            yield partial(self.event, number, step.moment.event, owner)
             return
         steps = [one for one in self.history.trace(number).microsteps if one.moment.owner == owner]
         before = steps[: steps.index(step)]
         if before:
-            yield from self.microstep(number, before[-1])
+            yield partial(self.microstep, number, before[-1])
         elif step.moment.event:
-            yield from self.event(number, step.moment.event, owner)
+            yield partial(self.event, number, step.moment.event, owner)
         else:
-            yield from self.trigger(number, owner)
+            yield partial(self.trigger, number, owner)
 
-    def event(self, number: int, event: Event | None, owner: str) -> Iterator[Link]:
+    def event(self, number: int, event: Event | None, owner: str) -> LinkWalk:
         """What raised an event, or brought it from outside."""
         deeds = self.history.trace(number).deeds
         raised = next((deed for deed in deeds if deed.what is event), None) if event else None
         if raised is None or event is None:
-            yield from self.trigger(number, owner)
+            yield partial(self.trigger, number, owner)
             return
         kind, _, what = event.name.partition(".")
         thing, _, name = what.partition(".")
         place = self._place(number, raised.machine, raised.where)
         if not raised.where and kind in ("done", "error") and thing == "do":
-            yield self._link(number, "activity", f"the `do` of {prefix_of(owner)}{name} {_ended(kind)}", values=brought(event))
-            yield from self.doing(number, owner, raised.machine, name)
+            yield self._link(
+                number, "activity", f"the `do` of {prefix_of(owner)}{name} {_ended(kind)}", values=brought(event)
+            )
+            yield partial(self.doing, number, owner, name)
         elif thing == "invoke" and not raised.where:
             yield self._link(number, "event", f"the behaviour {name} {_ended(kind)}", values=brought(event))
             inner = f"{name}@{owner}" if owner else name
             last = [one for one in self.history.trace(number).microsteps if one.moment.owner == inner]
             before = [one for one in last if one.transitions]
-            yield from self.microstep(number, before[-1]) if before else self.trigger(number, owner)
+            yield partial(self.microstep, number, before[-1]) if before else partial(self.trigger, number, owner)
         else:
             yield self._link(number, "event", f"raised {of_event(event)}", place, values=brought(event))
-            yield from self.because(number, raised)
+            yield partial(self.because, number, raised)
 
-    def trigger(self, number: int, owner: str) -> Iterator[Link]:
+    def trigger(self, number: int, owner: str) -> LinkWalk:
         """What came from outside, and what caused that."""
         one = self.history.steps[number]
         event = one.step.event
@@ -136,26 +150,28 @@ class Chain:
             yield self._link(number, "file" if reload else "start", text)
         elif event.name == OPERATOR_GOTO:
             by = event.data.get("by", "somebody") if isinstance(event.data, dict) else "somebody"
-            yield self._link(number, "person", f"{by} let it enter {event.data['state']} (lumen goto)", values=brought(event))
+            yield self._link(
+                number, "person", f"{by} let it enter {event.data['state']} (lumen goto)", values=brought(event)
+            )
         elif timer := _timer(one.before, event):
-            yield from self.timer(number, event, timer)
+            yield partial(self.timer, number, event, timer)
         elif not event.sendid and (answer := answer_of(event)):
             yield self._link(number, "event", _answered(answer.kind, answer.id, answer.reason), id=answer.id)
             asked = [n for n in self.history.started.get(answer.id, ()) if n < number]
             if asked:
                 command = next(c for c in self.history.steps[asked[-1]].step.commands if _id(c) == answer.id)
-                yield from self.command(asked[-1], command)
+                yield partial(self.command, asked[-1], command)
         else:
             yield self._link(number, "event", of_event(event), values=brought(event))
             if found := origin(one, event):
                 yield self._link(number, found.kind, found.text, id=found.id, values=found.values)
 
-    def timer(self, number: int, event: Event, timer: Timer) -> Iterator[Link]:
+    def timer(self, number: int, event: Event, timer: Timer) -> LinkWalk:
         """The end of a timer, and what set it."""
         id, owner = inner_id(event.sendid)
         machine = _machine(self.history.steps[number], owner)
         text, place = f"{event.name}, {timer.delay:g} s after it was sent", None
-        if timer.state:
+        if timer.kind != "send":
             state = machine.states[timer.state]
             name = prefix_of(owner) + (state.name or machine.id)
             waited = next((t for t in state.transitions if t.timed and t.event == timer.event), None)
@@ -169,15 +185,15 @@ class Chain:
         if sent:
             place = self._place(when, sent.machine, sent.where)
             yield self._link(when, "activity", f"sends {event.name} after {timer.delay:g} s", place, event.sendid)
-            yield from self.because(when, sent)
-        elif timer.state:
-            yield from self.doing(when, owner, machine, machine.states[timer.state].name)
+            yield partial(self.because, when, sent)
+        elif timer.kind != "send":
+            yield partial(self.doing, when, owner, machine.states[timer.state].name)
 
-    def _beginning(self, number: int, step: TracedMicrostep) -> Iterator[Link]:
+    def _beginning(self, number: int, step: TracedMicrostep) -> LinkWalk:
         """A machine that begins: for an invoked one that is what its host did."""
         owner = step.moment.owner
         if not owner:
-            yield from self.trigger(number, owner)
+            yield partial(self.trigger, number, owner)
             return
         id, _, around = owner.partition("@")
         host = _machine(self.history.steps[number], around)
@@ -188,7 +204,7 @@ class Chain:
                 where = next(invoke.where for invoke in state.invoke if invoke.id == id)
                 text = f"{prefix_of(around)}{state.name} invokes {id}"
                 yield self._link(number, "activity", text, self._place(number, host, where))
-                yield from self.doing(number, around, host, state.name)
+                yield partial(self.doing, number, around, state.name)
                 return
 
     def _activity(self, number: int, deed: Deed) -> Link:
@@ -196,7 +212,12 @@ class Chain:
         state = deed.machine.states[deed.state]
         name = prefix_of(deed.owner) + (state.name or deed.machine.id)
         if not deed.block:
-            return self._link(number, "activity", f"an action of a transition of {name}", self._place(number, deed.machine, deed.where))
+            return self._link(
+                number,
+                "activity",
+                f"an action of a transition of {name}",
+                self._place(number, deed.machine, deed.where),
+            )
         steps = getattr(state, deed.block)
         nth = [i for i, placed in enumerate(steps, 1) if deed.where[: len(placed.where)] == placed.where]
         which = f"{ordinal(nth[0])} of {len(steps)} in" if nth and len(steps) > 1 else "in"
@@ -218,14 +239,8 @@ class Chain:
     def _place(self, number: int, machine: MachineDefinition, where: Any) -> Place | None:
         return self.history.steps[number].place(machine, where)
 
-    def _owned(self, name: str) -> tuple[str, str, str]:
-        *ids, state = name.split("/")
-        return state, "", "@".join(reversed(ids))
 
-
-def _responsible(
-    machine: MachineDefinition, step: TracedMicrostep, deed: Deed | None, state: str
-) -> Transition | None:
+def _responsible(machine: MachineDefinition, step: TracedMicrostep, deed: Deed | None, state: str) -> Transition | None:
     """Of the transitions of a microstep the one that did something, or led into a state."""
     taken = step.transitions
     if deed:

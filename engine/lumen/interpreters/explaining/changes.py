@@ -7,7 +7,7 @@ from lumen.interpreters.explaining.words import prefix_of
 from lumen.interpreters.statechart.values import Invoked, Snapshot
 from lumen.language.events import Event
 
-Change = Mapping[str, Any]
+ProposedChange = Mapping[str, Any]
 """By how expressions call it, its other value: `event.data.result`, `context.tries`; in what runs as `quiz`,
 `quiz/context.tries`. `event` is the name of one that has to come, `state` that of a state that has to be active,
 `wait` how long nothing else may happen [s].
@@ -16,14 +16,14 @@ Change = Mapping[str, Any]
 _MISSING = object()
 
 
-class Situation(NamedTuple):
+class StepSituation(NamedTuple):
     """From where a step is taken, and with what; `owner` says to which behaviour the edits of a context go."""
 
     snapshot: Snapshot
     event: Event | None
     owner: str = ""
 
-    def edited(self, change: Change) -> "Situation":
+    def edited(self, change: ProposedChange) -> "StepSituation":
         """The situation with those edits; a new `event` gets the data that the change gives it."""
         snapshot, event = self.snapshot, self.event
         if "event" in change:

@@ -3,9 +3,10 @@
 More may be named than is needed: it is asked what could have decided, not what did.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
-from lumen.interpreters.explaining.history import StepHistory
+from lumen.interpreters.explaining.history import RecordedStep, StepHistory
 from lumen.interpreters.exploration.expression_uses import of_block, of_transition
 from lumen.interpreters.expressions import names
 from lumen.interpreters.statechart.command_ids import answer_of, inner_id
@@ -32,41 +33,39 @@ def _directly(history: StepHistory, number: int) -> Iterator[int]:
     if before is None:
         return
     for name in before.configuration:
-        yield _last(history, number, lambda step, name=name: name in step.step.entered)  # type: ignore[misc]
+        yield _last(history, number, partial(_enters, name))
     for key in _read(history, number):
-        yield _last(history, number, lambda step, key=key: _remembered(step.before, key) != step.step.snapshot.context.get(key))  # type: ignore[misc]
+        yield _last(history, number, partial(_changes, key))
     if before.history or before.halted:
-        yield _last(history, number, lambda step: step.before is None or step.before.history != step.step.snapshot.history)
+        yield _last(history, number, lambda step: not step.before or step.before.history != step.step.snapshot.history)
     if event is None:
         return
     if event.sendid:
         id, _ = inner_id(event.sendid)
-        yield _last(history, number, lambda step: id in _timers(step.step.snapshot) and not _has(step.before, id))
+        yield _last(history, number, lambda step: id in _timers(step.step.snapshot) - _timers(step.before))
     elif answer := answer_of(event):
         started = [n for n in history.started.get(answer.id, ()) if n < number]
         yield started[-1] if started else 0
 
 
-def _last(history: StepHistory, number: int, made: object) -> int:
+def _last(history: StepHistory, number: int, made: Callable[[RecordedStep], bool]) -> int:
     """The last step before that one of which it is true; the first of all where none is."""
-    assert callable(made)
     return next((n for n in reversed(range(number)) if made(history.steps[n])), 0)
 
 
-def _remembered(before: Snapshot | None, key: str) -> object:
-    return before.context.get(key) if before else _BEFORE_ALL
+def _enters(state: str, one: RecordedStep) -> bool:
+    return state in one.step.entered
 
 
-_BEFORE_ALL = object()
+def _changes(key: str, one: RecordedStep) -> bool:
+    return one.before is None or one.before.context.get(key) != one.step.snapshot.context.get(key)
 
 
-def _timers(snapshot: Snapshot) -> set[str]:
-    inner = (id for child in snapshot.invoked.values() for id in _timers(child.snapshot))
-    return {*(timer.id for timer in snapshot.timers), *inner}
-
-
-def _has(snapshot: Snapshot | None, id: str) -> bool:
-    return snapshot is not None and id in _timers(snapshot)
+def _timers(snapshot: Snapshot | None) -> set[str]:
+    """The ids of all that are set, those of invoked behaviours included."""
+    inner = snapshot.invoked.values() if snapshot else ()
+    own = (timer.id for timer in snapshot.timers) if snapshot else ()
+    return {*own, *(id for child in inner for id in _timers(child.snapshot))}
 
 
 def _read(history: StepHistory, number: int) -> set[str]:

@@ -5,10 +5,11 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.explaining.history import RecordedStep
 from lumen.interpreters.explaining.links import LinkKind
+from lumen.language.causes import Cause
 from lumen.language.events import ROBOT_EVENTS, Event
 
 
-class Origin(NamedTuple):
+class EventOrigin(NamedTuple):
     """The last link of a chain."""
 
     kind: LinkKind
@@ -17,16 +18,37 @@ class Origin(NamedTuple):
     values: Mapping[str, Any] = {}
 
 
-def origin(one: RecordedStep, event: Event) -> Origin | None:
+def origin(one: RecordedStep, event: Event) -> EventOrigin | None:
     """What is known of the cause; None where nobody said and nothing can be told from the routes."""
+    if event.cause and (said := _said(event.cause)):
+        return said
     by = event.data.get("by") if isinstance(event.data, Mapping) else None
     if event.name in ("stop", "resume") and by:
-        return Origin("person", f"{by} said so")
+        return EventOrigin("person", f"{by} said so")
     project = one.project
     rows = [row for row in project.routes.values() if row.event == event.name] if project else []
     if project and rows:
         key = rows[0].key_for(project.robot)
-        return Origin("message", f"a message on {key}", "", {"key": key})
+        return EventOrigin("message", f"a message on {key}", "", {"key": key})
     if event.name in ROBOT_EVENTS:
-        return Origin("event", "the robot noticed it")
+        return EventOrigin("event", "the robot noticed it")
+    return None
+
+
+def _said(cause: Cause) -> EventOrigin | None:
+    """What the event itself says of its cause."""
+    values = {key: value for key in ("key", "sender") if (value := getattr(cause, key))}
+    by = f", from {cause.sender}" if cause.sender else ""
+    match cause.kind:
+        case "message":
+            return EventOrigin("message", f"a message on {cause.key}{by}", cause.id, values)
+        case "person":
+            said = f"{cause.sender or 'somebody'}" + (f", by a message on {cause.key}" if cause.key else "")
+            return EventOrigin("person", said, cause.id, values)
+        case "file":
+            return EventOrigin("file", f"the file {cause.id}", cause.id, values)
+        case "start":
+            return EventOrigin("start", "the run began")
+        case "robot":
+            return EventOrigin("event", f"the robot noticed it{by}", cause.id, values)
     return None

@@ -1,11 +1,11 @@
-"""Why a transition was not taken: where its state, its event or its guard stood against it, and what would change it."""
+"""Why a transition was not taken: whether its state, its event or its guard stood against it, and what would help."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from lumen.errors import LumenError
-from lumen.interpreters.explaining.changes import Change, Situation
+from lumen.interpreters.explaining.changes import ProposedChange, StepSituation
 from lumen.interpreters.explaining.conditions import GuardPart, first_false
 from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
 from lumen.interpreters.explaining.searching import Happens, smallest_change, taken
@@ -32,7 +32,8 @@ class Reason:
     """Why one way did not lead there; `at` is when that was decided [s since 1970, in UTC].
 
     `false` is the first part of the guard that was not true. `change` is the smallest one found after which it would
-    have happened, proved by taking the step again with it; where there is none, `note` says why.
+    have happened, proved by taking the step again with it; where there is none, `note` says why. `number` is that of
+    the recorded step in which it was decided, or of the last one.
     """
 
     because: Because
@@ -40,8 +41,9 @@ class Reason:
     at: float
     place: Place | None = None
     false: GuardPart | None = None
-    change: Change | None = None
+    change: ProposedChange | None = None
     note: str = ""
+    number: int = -1
 
     def to_json(self) -> dict[str, Any]:
         """An entry of `reasons` of `lumen why-not --format json`."""
@@ -57,7 +59,7 @@ class Reason:
         }
 
 
-class Refusals:
+class TransitionRefusals:
     """Asks of single transitions why they were not taken, in the steps from the number `first` on."""
 
     def __init__(self, history: StepHistory, first: int) -> None:
@@ -88,7 +90,7 @@ class Refusals:
         rivals = (*earlier, *((rival,) if rival and rival not in earlier else ()))
         change = None
         if one.before is not None and one.is_decided:
-            situation = Situation(one.before, one.step.event, moment.owner)
+            situation = StepSituation(one.before, one.step.event, moment.owner)
             happens = taken(one.machine, moment.owner, wanted)
             change = smallest_change(moment, found.source, wanted, rivals, situation, happens)
         text = of_transition(machine, wanted, moment.owner)
@@ -98,11 +100,15 @@ class Refusals:
             what = f"{after}, {false.text} was false" + (f" ({false.error})" if false.error else "")
             place = one.place(machine, wanted.guard.where if wanted.guard else wanted.where)
             note = "" if change else _no_change(false)
-            return Reason("guard", what, at, place, false, change, note)
+            return Reason("guard", what, at, place, false, change, note, number)
         place = one.place(machine, rival.where) if rival else None
-        who = f"{of_transition(machine, rival, moment.owner)} was taken instead" if rival else "another was taken instead"
-        note = "" if change else "no other value of the event or the context was found with which this one would be taken"
-        return Reason("preempted", f"{after}, {who}", at, place, None, change, note)
+        who = (
+            f"{of_transition(machine, rival, moment.owner)} was taken instead" if rival else "another was taken instead"
+        )
+        note = (
+            "" if change else "no other value of the event or the context was found with which this one would be taken"
+        )
+        return Reason("preempted", f"{after}, {who}", at, place, None, change, note, number)
 
     def _rival(self, number: int, moment: Moment, found: CompiledTransition) -> Transition | None:
         """What was taken in its place: a state within, one before it in the same state, or one in a region beside."""
@@ -119,10 +125,12 @@ class Refusals:
         place, at = last.place(machine, transition.where), last.step.snapshot.epoch + last.at
         name = prefix_of(owner) + (source.name or machine.id)
         if inner is None:
-            return Reason("inactive", f"{text}: {prefix_of(owner)[:-1]} does not run", at, place, note="it is not invoked")
+            return Reason(
+                "inactive", f"{text}: {prefix_of(owner)[:-1]} does not run", at, place, note="it is not invoked"
+            )
         happens = taken(last.machine, owner, transition)
         if not source.path or source.name in inner.configuration:
-            change = _coming(machine, transition, Situation(snapshot, None, owner), happens, owner)
+            change = _coming(machine, transition, StepSituation(snapshot, None, owner), happens, owner)
             what = _awaited(inner, transition)
             note = "" if change else _no_event(transition)
             return Reason("no-event", f"{text}: {what}", at, place, change=change, note=note)
@@ -131,7 +139,7 @@ class Refusals:
         if entered is True:
             change = {"state": source.name}
         elif isinstance(entered, Snapshot):
-            more = _coming(machine, transition, Situation(entered, None, owner), happens, owner)
+            more = _coming(machine, transition, StepSituation(entered, None, owner), happens, owner)
             change = {"state": source.name, **more} if more else None
         note = "" if change else f"it has to be in {name} first"
         return Reason("inactive", f"{text}: {name} was not active", at, place, change=change, note=note)
@@ -147,8 +155,8 @@ def within(snapshot: Snapshot, owner: str) -> Snapshot | None:
 
 
 def _coming(
-    machine: MachineDefinition, wanted: Transition, standing: Situation, happens: Happens, owner: str
-) -> Change | None:
+    machine: MachineDefinition, wanted: Transition, standing: StepSituation, happens: Happens, owner: str
+) -> ProposedChange | None:
     """The event that would have it taken, with its data, or how long to wait; None where none was found."""
     change: dict[str, Any]
     if wanted.timed:
@@ -219,4 +227,3 @@ def _no_change(false: GuardPart) -> str:
     if not changing:
         return "it does not depend on the event's data or on the context"
     return f"no other value of {', '.join(changing)} was found with which it would have been taken"
-

@@ -1,12 +1,12 @@
 """The smallest change after which a transition is taken: proposed from its guard, proved by taking the step."""
 
 from collections.abc import Callable, Iterator, Mapping
-from itertools import combinations, product
+from itertools import combinations, islice, product
 from typing import Any
 
 from lumen.errors import LumenError
 from lumen.interpreters.explaining.boundaries import boundaries
-from lumen.interpreters.explaining.changes import Change, Situation
+from lumen.interpreters.explaining.changes import ProposedChange, StepSituation
 from lumen.interpreters.explaining.conditions import holds
 from lumen.interpreters.explaining.tracing import Moment, retaken
 from lumen.interpreters.explaining.words import prefix_of
@@ -15,18 +15,18 @@ from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.type_checks import fits
 from lumen.language.machines import MachineDefinition, Transition
 
-MAX_TRIED = 60
+MAX_TRIED = 40
 """Steps that are taken to find a change."""
-MAX_EDITS = 4_000
+MAX_EDITS = 1_000
 """Sets of values with which a guard is evaluated."""
 
-Happens = Callable[[Situation], bool]
+Happens = Callable[[StepSituation], bool]
 
 
 def taken(machine: MachineDefinition, owner: str, transition: Transition) -> Happens:
     """Whether a step takes that transition of the behaviour that runs under `owner`."""
 
-    def happens(situation: Situation) -> bool:
+    def happens(situation: StepSituation) -> bool:
         try:
             trace = retaken(machine, situation.snapshot, situation.event)
         except LumenError:
@@ -39,25 +39,24 @@ def taken(machine: MachineDefinition, owner: str, transition: Transition) -> Hap
 
 
 def smallest_change(
-    moment: Moment, node: StateNode, wanted: Transition, others: tuple[Transition, ...], from_: Situation, happens: Happens
-) -> Change | None:
+    moment: Moment,
+    node: StateNode,
+    wanted: Transition,
+    others: tuple[Transition, ...],
+    from_: StepSituation,
+    happens: Happens,
+) -> ProposedChange | None:
     """The change with the fewest edits by which `wanted` happens; None where none was found among those tried.
 
     `others` are the transitions that stand before it, whose guards may have to become false.
     """
-    tried = 0
-    for change in _proposals(moment, node, wanted, others, from_.owner):
-        if happens(from_.edited(change)):
-            return change
-        tried += 1
-        if tried == MAX_TRIED:
-            break
-    return None
+    proposals = islice(_proposals(moment, node, wanted, others, from_.owner), MAX_TRIED)
+    return next((change for change in proposals if happens(from_.edited(change))), None)
 
 
 def _proposals(
     moment: Moment, node: StateNode, wanted: Transition, others: tuple[Transition, ...], owner: str
-) -> Iterator[Change]:
+) -> Iterator[ProposedChange]:
     """Edits after which the guard holds, by how many there are; the data of an event before what is remembered."""
     definition, checks = moment.machine.chart.definition, moment.machine.chart.checks
     scope = moment.scope_of(node)

@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Self
 
+from lumen.interpreters.explaining.traced_machine import traced
 from lumen.interpreters.expressions import Scope
 from lumen.interpreters.expressions.scope import no_draw
-from lumen.interpreters.explaining.traced_machine import traced
 from lumen.interpreters.statechart.chart import StateNode
 from lumen.interpreters.statechart.command_ids import answer_of, outer_command, outer_id
 from lumen.interpreters.statechart.compiled_machine import CompiledMachine

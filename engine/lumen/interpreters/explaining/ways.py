@@ -36,7 +36,9 @@ def deeds(machine: MachineDefinition, what: str) -> Iterator[PlacedDeed]:
         if isinstance(action, SayText):
             if any(same_text(what, text.text) for texts in action.texts.values() for text in texts):
                 yield deed
-        elif what in (getattr(action, name) for name in ("motion", "name", "to", "file", "route") if hasattr(action, name)):
+        elif what in (
+            getattr(action, name) for name in ("motion", "name", "to", "file", "route") if hasattr(action, name)
+        ):
             yield deed
 
 

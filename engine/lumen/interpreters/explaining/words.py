@@ -20,10 +20,8 @@ def prefix_of(owner: str) -> str:
 def of_command(command: Command) -> str:
     """`says “Hello!”`, `plays dance`, `publishes on `show``."""
     match command:
-        case Start(_, Say(text)):
-            return f"says “{text}”"
         case Start(_, wanted):
-            return str(verb_of(wanted).transcript(wanted))
+            return f"says “{wanted.text}”" if isinstance(wanted, Say) else verb_of(wanted).transcript(wanted)
         case Publish(route):
             return f"publishes on `{route}`"
         case Log(text):

@@ -83,7 +83,9 @@ def _refused(chart: Chart, standing: Configuration, step: Step) -> Iterator[Fals
     for transition in transitions:
         if guard := transition.definition.guard:
             scope = _scope(chart, transition.source, standing, step)
-            yield FalseGuard(transition.source.name or chart.definition.id, guard, readings(guard.source, scope, guard.shown))
+            yield FalseGuard(
+                transition.source.name or chart.definition.id, guard, readings(guard.source, scope, guard.shown)
+            )
 
 
 def _scope(chart: Chart, node: StateNode, standing: Configuration, step: Step) -> Scope:

@@ -1,0 +1,82 @@
+"""`why_not` proposes what works: with the change that it names the thing happens; where it names none it says why."""
+
+from collections import Counter
+from contextlib import suppress
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from lumen.errors import LumenError, UsageError
+from lumen.interpreters.explaining import RecordedStep, why_not
+from lumen.interpreters.explaining.changes import StepSituation
+from lumen.interpreters.explaining.refusals import Reason
+from lumen.interpreters.statechart import Snapshot, due, step
+from lumen.interpreters.statechart.direct_entry import entered_directly
+from lumen.language.events import Event
+from lumen.language.machines import MachineDefinition
+from lumen.statechart import Machine
+from tests.explaining.running import inputs, live, timed
+from tests.statechart.oracle.generating import Data, machine_data
+
+PATIENT = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+MOST = 4
+"""How many states of a machine are asked about."""
+
+
+def happens(machine: MachineDefinition, steps: list[RecordedStep], reason: Reason, state: str) -> bool:
+    """Whether the state is entered once what the reason proposes is so."""
+    assert reason.change
+    one = steps[reason.number]
+    decided = reason.because in ("guard", "preempted")
+    snapshot: Snapshot = one.before if decided and one.before else one.step.snapshot
+    event = one.step.event if decided else None
+    if first := reason.change.get("state"):
+        entered = entered_directly(machine, snapshot, first, Event("x", None, snapshot.at))
+        if state in entered.entered and len(reason.change) == 1:
+            return True
+        snapshot = entered.snapshot
+    situation = StepSituation(snapshot, event).edited(reason.change)
+    happening = due(situation.snapshot) if "wait" in reason.change else situation.event
+    assert happening
+    return state in step(machine, situation.snapshot, happening).entered
+
+
+def check(data: Data, events: list[Event], tally: Counter[str]) -> None:
+    machine = Machine.from_dict(data)
+    steps = live(machine, events, events[-1].at + 0.2)
+    for state in [s.name for s in machine.states.values() if s.path and s.kind != "history"][:MOST]:
+        with suppress(UsageError):
+            for reason in why_not(steps, state).reasons if steps else ():
+                tally[reason.because] += 1
+                assert reason.change or reason.note
+                if not reason.change:
+                    tally[f"{reason.because} without a change"] += 1
+                    continue
+                with suppress(LumenError):
+                    works = happens(machine, steps, reason, state)
+                    tally["changes that work" if works else "changes that do not"] += 1
+
+
+def test_a_few_machines() -> None:
+    tally = counted(20)
+    assert tally["changes that work"] > 5
+    assert not tally["changes that do not"]
+
+
+@pytest.mark.soak
+def test_a_thousand_machines() -> None:
+    tally = counted(1_000)
+    print("\n" + ", ".join(f"{count:,} {what}" for what, count in sorted(tally.items())))  # noqa: T201
+    assert tally["changes that work"] >= 0.95 * (tally["changes that work"] + tally["changes that do not"])
+
+
+def counted(machines: int) -> Counter[str]:
+    tally = Counter[str]()
+
+    @settings(PATIENT, max_examples=machines, database=None, derandomize=True)
+    @given(machine_data(deeds=True), inputs)
+    def everyone(data: Data, happenings: list[tuple[str, object]]) -> None:
+        check(data, timed(happenings), tally)
+
+    everyone()
+    return tally
