@@ -13,6 +13,26 @@ MAX_MEMOIZED = 10_000
 _last: dict[Hashable, tuple[Any, Any]] = {}
 
 
+class Same:
+    """Equal to another only where both hold the very same object: of what never changes, and is long to compare."""
+
+    __slots__ = ("value",)
+
+    def __init__(self, value: object) -> None:
+        self.value = value
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and other.value is self.value
+
+    def __hash__(self) -> int:
+        return id(self.value)
+
+
+def last(slot: Hashable) -> Any:
+    """What was made in this slot last, whatever it was given; None where nothing was."""
+    return _last.get(slot, (None, None))[1]
+
+
 def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
     """What `make` made in this slot when last given an equal `given`, else what it makes now.
 

@@ -6,6 +6,7 @@ the YAML 1.2 core schema.
 
 import re
 from collections.abc import Iterator
+from functools import partial
 from itertools import chain, pairwise
 from typing import Any
 
@@ -13,7 +14,8 @@ import yaml
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place, Related
 from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, Document, NodeSpan
-from lumen.loading.memoization import memoize
+from lumen.loading.memoization import last, memoize
+from lumen.loading.rereading import reread
 from lumen.loading.slips import BARE_BRACES, QUOTE_BRACES
 from lumen.loading.yaml_composer import PLAIN_TAGS, TooLargeError, compose
 from lumen.loading.yaml_errors import merge_conflict, not_utf8, syntax_error, too_large
@@ -44,6 +46,9 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         return None, [not_utf8(file, content, error.start)]
+    before = last(("sound", file))
+    if before and (document := reread(before, text, partial(_block, file))):
+        return memoize(("sound", file), content, lambda: document), []
     try:
         node = compose(text)
     except (yaml.MarkedYAMLError, yaml.reader.ReaderError) as error:
@@ -56,7 +61,18 @@ def _read(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]
     data = reader.read(node, (), None, 0)
     if "<<<<<<< " in text and (conflict := merge_conflict(file, text)):
         reader.diagnostics.append(conflict)
-    return Document(file, data, reader.spans, text, frozenset(reader.dropped)), reader.diagnostics
+    document = Document(file, data, reader.spans, text, frozenset(reader.dropped))
+    if not reader.diagnostics:
+        memoize(("sound", file), content, lambda: document)
+    return document, reader.diagnostics
+
+
+def _block(
+    file: str, text: str, node: yaml.Node, path: NodePath, key: yaml.Node
+) -> tuple[Any, dict[NodePath, NodeSpan]] | None:
+    reader = _Reader(file, text)
+    data = reader.read(node, path, key, len(path))
+    return None if reader.diagnostics or reader.dropped else (data, reader.spans)
 
 
 class _Reader:

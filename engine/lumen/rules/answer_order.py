@@ -32,7 +32,7 @@ def check(draft: ProjectDraft) -> None:
     for machine in draft.behaviors.values():
         askings = list(_askings(machine))
         for table in dict.fromkeys(asking.table for asking in askings):
-            several = [asking.before for asking in askings if asking.table == table]
+            several = list(dict.fromkeys(asking.before for asking in askings if asking.table == table))
             for row in machine.answers.get(table, ()):
                 if id(row) in owners:
                     _taken(machine, row, several, *owners[id(row)])

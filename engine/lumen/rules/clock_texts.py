@@ -22,6 +22,8 @@ _SHOWN: Mapping[str, tuple[re.Pattern[str], str]] = {
 _COUNTED: Mapping[str, int] = {"hour": 23, "minute": 59}
 """The greatest that each of them gives."""
 
+_ASKED = re.compile("|".join((*_SHOWN, *_COUNTED)))
+
 
 def check(draft: ProjectDraft) -> None:
     """Report comparisons that never hold, or not when they were meant to."""
@@ -29,7 +31,7 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report("behaviors", name)
         broken = {d.place.line for d in report.diagnostics}
         for text in dict.fromkeys(site.text for site in expression_sites(machine)):
-            if report.document.place(text.where).line in broken:
+            if not _ASKED.search(text.shown) or report.document.place(text.where).line in broken:
                 continue
             for root in trees(text):
                 for function, odd in _odd(root):

@@ -8,8 +8,10 @@ from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean, nearest
 from lumen.language.events import ROBOT_EVENTS
 from lumen.language.machines import MachineDefinition, StateKind, Transition
+from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.memoization import Same, memoize
 from lumen.rules.endings import ending_fault
 from lumen.rules.lookups import first
 from lumen.rules.recipients import recipients, sent_to
@@ -43,10 +45,10 @@ def hears(descriptor: str, event: str) -> bool:
     return descriptor == "*" or event == prefix or event.startswith(f"{prefix}.")
 
 
-def descriptors(machine: MachineDefinition) -> Iterator[str]:
-    """What stands under `on` anywhere in the machine."""
-    for state in machine.states.values():
-        yield from (t.event for t in state.transitions if t.event and not t.exact)
+def descriptors(machine: MachineDefinition) -> tuple[str, ...]:
+    """What stands under `on` anywhere in the machine, each once."""
+    found = (t.event for state in machine.states.values() for t in state.transitions if t.event and not t.exact)
+    return memoize(("descriptors", machine.id), Same(machine), lambda: tuple(dict.fromkeys(found)))
 
 
 def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
@@ -83,8 +85,13 @@ def _output(machine: MachineDefinition) -> Mapping[str, Any] | None:
     return {"type": "object", "properties": properties, "required": required}
 
 
-def raised(data: Any) -> Iterator[str]:
-    """The names of all events that the data of a behaviour raises, or sends to itself; those of broken actions too."""
+def raised(document: Document) -> tuple[str, ...]:
+    """The names of all events that a behaviour raises, or sends to itself; those of broken actions too."""
+    data = document.data
+    return memoize(("raised", document.file), Same(data), lambda: tuple(dict.fromkeys(_raises(data))))
+
+
+def _raises(data: Any) -> Iterator[str]:
     waiting = [data]
     while waiting:
         item = waiting.pop()
@@ -103,7 +110,7 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
         return
     known = {
         *declared(draft, machine),
-        *raised(report.document.data),
+        *raised(report.document),
         *sent_to(draft, machine),
         *draft.main.lost,
         *report.lost,

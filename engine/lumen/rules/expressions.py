@@ -38,7 +38,7 @@ class _Expressions:
         self.machine, self.report = machine, report
         self.known, self.whole = draft.settings is not None, draft.words.keys() >= set(machine.words)
         self.events = declared(draft, machine)
-        for event in (*raised(report.document.data), *sent_to(draft, machine)):
+        for event in (*raised(report.document), *sent_to(draft, machine)):
             self.events[event] = None
         self.context = {key: machine.types.get(key, schema_of(value)) for key, value in machine.context.items()}
         for behavior, part, key in draft.unsound:

@@ -1,6 +1,5 @@
 """Guards: those that are always or never true, and transitions that an earlier one leaves nothing for."""
 
-from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ from lumen.language.diagnostics import INFO, WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition, State, Transition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
+from lumen.loading.memoization import memoize
 from lumen.rules.events import hears
 from lumen.rules.logic import always, implies, never, tree
 from lumen.rules.walk import expression_sites
@@ -114,7 +114,7 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
         return False
     one, other = tree(earlier.guard.source), tree(later.guard.source)
     first, second = heard_call(one), heard_call(other)
-    taken = set(_taken(first, second, machine.phrases)) if first and second else set()
+    taken = _taken(first, second, machine) if first and second else frozenset()
     if _implies(later.guard.source, earlier.guard.source) and not _never(later.guard.source):
         message, hint = "this is never taken: one with the same guard comes first", "delete one of the two"
         if one != other:
@@ -143,12 +143,13 @@ def heard_call(node: ExpressionNode) -> HeardCall | None:
     return None
 
 
-def _taken(first: HeardCall, second: HeardCall, phrases: Mapping[str, Mapping[str, tuple[str, ...]]]) -> Iterator[str]:
-    """The phrases of the second in which one of the first is heard, and which are not the first's own as well."""
-    if first.text != second.text or first.name not in phrases or second.name not in phrases:
-        return
-    for texts in phrases[second.name].values():
-        yield from (phrase for phrase in texts if is_heard(phrase, phrases[first.name]))
+def _taken(first: HeardCall, second: HeardCall, machine: MachineDefinition) -> frozenset[str]:
+    """The phrases of the second in which one of the first is heard."""
+    if first.text != second.text or first.name not in machine.phrases or second.name not in machine.phrases:
+        return frozenset()
+    one, other = machine.phrases[first.name], machine.phrases[second.name]
+    heard = (phrase for texts in other.values() for phrase in texts if is_heard(phrase, one))
+    return memoize(("taken", machine.id, first.name, second.name), (one, other), lambda: frozenset(heard))
 
 
 def _alike(one: Transition, other: Transition) -> bool:

@@ -10,6 +10,7 @@ from pathlib import PurePosixPath
 from lumen.language.diagnostics import ERROR, Code, Place, nearest
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import MAX_FILE_BYTES, Unreadable
+from lumen.loading.memoization import memoize
 from lumen.loading.regular_files import read_regular
 from lumen.rules.mjcf_elements import ModelElement, ModelFault, mjcf_elements
 from lumen.rules.model_files import missing, outside
@@ -51,7 +52,7 @@ class _ModelReader:
         self.seen.add(name)
         if content is None:
             return []
-        elements, fault = mjcf_elements(content)
+        elements, fault = memoize(("mjcf", name), content, lambda: mjcf_elements(content))
         if not fault and elements[0].name not in ("mujoco", "" if first else "mujocoinclude"):
             root = elements[0]
             message = f"this is not MJCF: it begins with `<{root.name}>`"

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from lumen.interpreters.expressions.phrases import is_heard
@@ -136,7 +137,7 @@ class _Speech:
         for name, phrases in tables.phrases.items():
             self.each(report, ("phrases", name), phrases)
         for table, rows in tables.answers.items():
-            _late(report, table, rows)
+            report.memoize(("late answers", report.document.file, table), rows, partial(_late, report, table, rows))
             for i, row in enumerate(rows):
                 self.each(report, ("answers", table, i, "phrases"), row.phrases)
                 if isinstance(row.value, Mapping) and set(row.value) & set(self.languages):

@@ -17,6 +17,7 @@ from lumen.loading.complaints import WRONG_TYPE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import place_within
+from lumen.loading.memoization import Same, memoize
 from lumen.loading.schema import faults
 from lumen.rules.events import UNKNOWN_EVENT, declared, descriptors, hears, raised
 from lumen.rules.lookups import References, first
@@ -92,6 +93,7 @@ class _Script:
         """A state as `configuration` calls it, by its id where it has one; `quiz/ask` of what is invoked as `quiz`."""
         if (
             self.machine is None
+            or _has(self.machine, name)
             or self._lost(name)
             or any(_has(*reading) for reading in resolutions(self.machine, name))
         ):
@@ -142,8 +144,8 @@ class _Script:
         machine: MachineDefinition | None = self.machine
         if machine is None or self._lost(event) or any(hears(d, event) for d in descriptors(machine)):
             return
-        data = self.draft.report("behaviors", self.behavior).document.data
-        known = {*self.events, *raised(data), *sent_to(self.draft, machine)}
+        document = self.draft.report("behaviors", self.behavior).document
+        known = {*self.events, *raised(document), *sent_to(self.draft, machine)}
         if event not in known:
             waited = {d for d in descriptors(machine) if "*" not in d}
             message = f"nothing in `{self.behavior}` knows the event `{event}`"
@@ -171,7 +173,8 @@ class _Script:
 
 
 def _has(machine: MachineDefinition, name: str) -> bool:
-    return any(state.path and state.name == name for state in machine.states.values())
+    named = (state.name for state in machine.states.values() if state.path)
+    return name in memoize(("state names", machine.id), Same(machine), lambda: frozenset(named))
 
 
 def _names(machine: MachineDefinition, prefix: str) -> set[str]:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from functools import partial
 from itertools import pairwise
 
 from lumen.language.diagnostics import WARNING, Code, NodePath
@@ -21,8 +22,12 @@ def check(draft: ProjectDraft) -> None:
     """Report texts that end where a comment begins without a blank, and alternatives that are parts of one."""
     for file, report in draft.reports.items():
         if file.startswith("behaviors/"):
-            _cut(report)
-            _torn(report)
+            report.memoize(("torn texts", file), None, partial(_texts, report))
+
+
+def _texts(report: DocumentReport) -> None:
+    _cut(report)
+    _torn(report)
 
 
 def _cut(report: DocumentReport) -> None:

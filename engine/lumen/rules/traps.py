@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 from lumen.language.actions import SayText
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
@@ -36,14 +37,18 @@ _BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
 
 def check(draft: ProjectDraft) -> None:
     """Report values that are texts, numbers or texts with quotes where something else was probably meant."""
-    for report in draft.reports.values():
-        _strange(report)
-        for pattern, look in ((_TRUTH, _truth), (_ZERO, _number), (_GROUP, _number), (_CURLY, _quotes)):
-            if lines := _lines(report.document.text, pattern):
-                for path, source, value in list(_plain(report, lines)):
-                    look(report, path, source, value)
+    for file, report in draft.reports.items():
+        report.memoize(("traps", file), None, partial(_values, report))
     for name, machine in draft.behaviors.items():
         _holes(machine, draft.report("behaviors", name))
+
+
+def _values(report: DocumentReport) -> None:
+    _strange(report)
+    for pattern, look in ((_TRUTH, _truth), (_ZERO, _number), (_GROUP, _number), (_CURLY, _quotes)):
+        if lines := _lines(report.document.text, pattern):
+            for path, source, value in list(_plain(report, lines)):
+                look(report, path, source, value)
 
 
 def _lines(text: str, pattern: re.Pattern[str]) -> set[int]:

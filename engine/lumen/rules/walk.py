@@ -22,6 +22,7 @@ from lumen.language.commands import GoTo
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, MachineDefinition, State, Transition
 from lumen.language.properties import conditions_of
+from lumen.loading.memoization import Same, memoize
 
 
 class ActionSite(NamedTuple):
@@ -45,8 +46,17 @@ class ExpressionSite(NamedTuple):
     expected: Mapping[str, Any] | None = None
 
 
-def action_sites(machine: MachineDefinition) -> Iterator[ActionSite]:
+def action_sites(machine: MachineDefinition) -> tuple[ActionSite, ...]:
     """All actions, those inside `if` and `parallel` too, in the order of the file."""
+    return memoize(("action sites", machine.id), Same(machine), lambda: tuple(_actions(machine)))
+
+
+def expression_sites(machine: MachineDefinition) -> tuple[ExpressionSite, ...]:
+    """All expressions and templates."""
+    return memoize(("expression sites", machine.id), Same(machine), lambda: tuple(_expressions(machine)))
+
+
+def _actions(machine: MachineDefinition) -> Iterator[ActionSite]:
     for state in machine.states.values():
         for block in (state.entry, state.do, state.exit):
             yield from (ActionSite(state, None, step) for step in nested(block) if not _made(step.where))
@@ -55,8 +65,7 @@ def action_sites(machine: MachineDefinition) -> Iterator[ActionSite]:
             yield from (ActionSite(state, transition, step) for step in steps)
 
 
-def expression_sites(machine: MachineDefinition) -> Iterator[ExpressionSite]:
-    """All expressions and templates."""
+def _expressions(machine: MachineDefinition) -> Iterator[ExpressionSite]:
     for state in machine.states.values():
         yield from (ExpressionSite(text, None) for text in _values(state.output))
         for invoke in state.invoke:

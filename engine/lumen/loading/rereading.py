@@ -1,0 +1,109 @@
+"""A document read again after a key: of a file in which a line has changed, only the block around that line.
+
+All other lines are made blank but those that say how far in the block stands, and what follows it. So the parser of
+whole files reads the block, with its places, and what it makes of it stands in the document of before. Wherever that
+might be another thing than the whole file says, nothing is made, and the file is read as a whole.
+"""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import yaml
+
+from lumen.language.diagnostics import NodePath
+from lumen.loading.document import MAX_NODES, Document, NodeSpan
+from lumen.loading.yaml_composer import TooLargeError, compose
+
+Spans = dict[NodePath, NodeSpan]
+Read = Callable[[str, yaml.Node, NodePath, yaml.Node], tuple[Any, Spans] | None]
+"""Makes data and places of the node at a path, by the text in which it stands; None where something is wrong in it."""
+
+_OUTER, _NEXT = "outer", "next"
+_FAR_REACHING = re.compile(r"[\r\x85\u2028\u2029\ufeff]|(?m:^%|^<<<<<<< )|(?<![^\s\[{,:-])&[\w-]")
+"""What changes how other lines are read, or where they begin: ends of lines, directives, conflicts, anchors."""
+
+
+def reread(before: Document, text: str, read: Read) -> Document | None:
+    """The document that a text makes some of whose lines are not as before; None where it has to be read as a whole."""
+    old, new = before.text.split("\n"), text.split("\n")
+    if len(old) != len(new) or new[-1] or before.dropped or _FAR_REACHING.search(text):
+        return None
+    changed = [i for i, (one, other) in enumerate(zip(old, new, strict=True)) if one != other]
+    path = _block(before, new, changed[0] + 1, changed[-1] + 1) if changed else ()
+    if not path or 2 * len(before.spans) > MAX_NODES:
+        return None
+    fragment = _fragment(before, new, path)
+    try:
+        found = _found(compose(fragment), len(path) - 1, before.spans[path])
+    except (yaml.YAMLError, TooLargeError):
+        return None
+    made = read(fragment, found[1], path, found[0]) if found and found[0].value == path[-1] else None
+    return _with(before, text, path, *made) if made else None
+
+
+def _block(before: Document, lines: list[str], first: int, last: int) -> NodePath:
+    """The innermost key whose block holds those lines, and that stands alone above them; empty where there is none."""
+    path: NodePath = ()
+    node = before.data
+    while isinstance(node, dict):
+        spans = ((key, before.spans.get((*path, key))) for key in node)
+        inner = next((key for key, span in spans if span and _holds(span, lines, first, last)), None)
+        if inner is None:
+            break
+        path, node = (*path, inner), node[inner]
+    return path
+
+
+def _holds(span: NodeSpan, lines: list[str], first: int, last: int) -> bool:
+    key, value = span
+    if key is None or not (key.line < first and last < value.end_line and key.line < value.line):
+        return False
+    begins_line = not lines[key.line - 1][: key.column - 1].strip(" ")
+    return begins_line and key.end_line == key.line and value.end_column <= key.column
+
+
+def _fragment(before: Document, lines: list[str], path: NodePath) -> str:
+    """The text with nothing but the block at a path, in keys that stand as far in as those around it."""
+    key, value = before.spans[path]
+    assert key
+    kept = [""] * len(lines)
+    for depth in range(1, len(path)):
+        outer = before.spans[path[:depth]].key
+        assert outer
+        kept[outer.line - 1] = f"{' ' * (outer.column - 1)}{_OUTER}:"
+    kept[key.line - 1 : value.end_line - 1] = lines[key.line - 1 : value.end_line - 1]
+    if value.end_line < len(lines):
+        kept[value.end_line - 1] = f"{' ' * (value.end_column - 1)}{_NEXT}:"
+    return "\n".join(kept)
+
+
+def _found(node: yaml.Node | None, depth: int, span: NodeSpan) -> tuple[yaml.Node, yaml.Node] | None:
+    """Key and value of the block; None where its lines are anything beside that."""
+    for inner in range(depth, -1, -1):
+        if not isinstance(node, yaml.MappingNode) or node.flow_style or not node.value:
+            return None
+        (key, value), *others = node.value
+        if any(other.value != _NEXT or other.start_mark.line + 1 != span.value.end_line for other, _ in others):
+            return None
+        if inner and key.value != _OUTER:
+            return None
+        node = value
+    assert span.key
+    here = key.start_mark.line + 1, key.start_mark.column + 1
+    return (key, value) if here == (span.key.line, span.key.column) else None
+
+
+def _with(before: Document, text: str, path: NodePath, made: Any, spans: Spans) -> Document:
+    """The document with something else at a path; all else is shared with the one before."""
+    depth, together = len(path), Spans()
+    for where, span in before.spans.items():
+        if where[:depth] != path:
+            together[where] = span
+        elif where == path:
+            together.update(spans)
+    return Document(before.file, _replaced(before.data, path, made), together, text)
+
+
+def _replaced(data: Any, path: NodePath, made: Any) -> Any:
+    return {**data, path[0]: _replaced(data[path[0]], path[1:], made)} if path else made
