@@ -129,6 +129,7 @@ def test_check_says_what_is_missing_until_nothing_is(hall: Path, capsys: pytest.
         "behaviors/hello.yaml:22:28 de is missing: Hello!",
         "behaviors/hello.yaml:9:5 de is missing: goodbye; bye",
         "de: 3 of 3 are missing",
+        "de: no action lets the robot speak it: write `language: de` where a visitor asks for it",
     ]
     file.write_text(text.replace('de: "TODO Hello!"', "de: Hallo!"), "utf-8")
     assert main(["language", "check", "--format", "json", "--project", str(hall)]) == 1

@@ -15,7 +15,7 @@ from lumen.loading.own_project import own_project
 from lumen.loading.project import draft
 from lumen.rules import check_files
 from lumen.rules.new_language import with_language
-from lumen.rules.translation import TO_DO, LanguageEntry, Untranslated, language_entries, untranslated
+from lumen.rules.translation import TO_DO, LanguageEntry, Untranslated, language_entries, switched_to, untranslated
 
 CODE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]+)*")
 VERBS = {
@@ -60,6 +60,9 @@ def run(options: argparse.Namespace) -> int:
         print(table(["language", "texts and phrases", "missing"], rows))
     else:
         _tell(entries, missing)
+        for language in sorted({*missing} - {*spoken[:1]} - switched_to(found)):
+            hint = f"write `language: {language}` where a visitor asks for it"
+            print(f"{language}: no action lets the robot speak it: {hint}")
     return int(options.what == "check" and any(missing.values()))
 
 

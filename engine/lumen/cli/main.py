@@ -1,16 +1,18 @@
 """The command line: one module for each verb, imported when it is called."""
 
+import argparse
+import errno
 import importlib
 import logging
-import os
 import sys
 import time
 from collections.abc import Collection, Sequence
-from io import TextIOWrapper
+from contextlib import suppress
 
 import lumen
 from lumen.app.garbage import gc_paused
 from lumen.cli.intermixed import Help, Intermixed
+from lumen.cli.streams import complain, finish, hush, open_streams
 from lumen.cli.suggesting import Suggesting, parse
 from lumen.errors import LumenError, ProjectError
 
@@ -79,25 +81,42 @@ def command_line(wanted: Collection[str]) -> Suggesting:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `lumen` with these arguments: 0 all well, 1 findings or a failed story, 2 could not run."""
     logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.WARNING)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="replace")
+    open_streams()
     arguments = sys.argv[1:] if argv is None else list(argv)
+    if not arguments:
+        command_line(()).print_help()
+        return 2
     options = parse(command_line(arguments[:1]), arguments)
+    code = _run(options)
+    if trouble := finish():
+        complain(f"lumen {options.verb}: can't print: {trouble}")
+        return 2
+    return code
+
+
+def _run(options: argparse.Namespace) -> int:
     try:
         return int(options.run(options))
     except ProjectError as error:
         from lumen.cli.report import report
 
-        return report(error.diagnostics)
+        with suppress(OSError):
+            return report(error.diagnostics)
+        return 1
     except LumenError as error:
-        print(f"lumen {options.verb}: {error}", file=sys.stderr)
+        complain(f"lumen {options.verb}: {error}")
         return 2
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        hush(sys.stdout)
         return 0
     except KeyboardInterrupt:
         return 130
+    except OSError as error:
+        if error.errno != errno.ENOSPC:
+            raise
+        hush(sys.stdout)
+        complain(f"lumen {options.verb}: can't write: no space left on device")
+        return 2
 
 
 if __name__ == "__main__":

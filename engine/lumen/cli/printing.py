@@ -1,10 +1,10 @@
 """Findings on standard output, and whether they count."""
 
-import os
 import sys
 from collections.abc import Sequence
 
 from lumen.app.lint.findings import Findings
+from lumen.cli.streams import hush
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Severity
 
@@ -19,7 +19,7 @@ def show(text: str) -> None:
     try:
         print(text.encode("utf-8", "replace").decode(), flush=True)
     except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        hush(sys.stdout)
         if not isinstance(error, BrokenPipeError):
             raise UsageError(f"can't print: {(error.strerror or str(error)).lower()}") from None
 

@@ -3,7 +3,6 @@
 import argparse
 import os
 import signal
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
@@ -31,6 +30,7 @@ from lumen.cli.main import ready
 from lumen.cli.performance import Performance
 from lumen.cli.printing import clock_time
 from lumen.cli.run_verdict import FAILED, INTERRUPTED, WELL, RunVerdict
+from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.cli.typed import TypedVisitorPart
 from lumen.clocks.following import FollowingClock
@@ -84,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
     root = find_project(options.project or home_of(named))
     parts = parts_of(options.only, options.robot)
     run_directory = RunDirectory(root, guest=bool(parts) and "brain" not in parts)
-    told = nullcontext() if options.story else failures_told(root, run_directory, parts or WHOLE, _warn)
+    told = nullcontext() if options.story else failures_told(root, run_directory, parts or WHOLE, complain)
     try:
         with told, one_object(options.format) as say, nullcontext() if options.speed == "max" else _going_first():
             verdict = _run(options, root, run_directory, parts)
@@ -98,7 +98,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace, root: Path, run_directory: RunDirectory, parts: tuple[str, ...]) -> RunVerdict:
-    project = startup_project(root, run_directory, last_good=options.last_good, warn=_warn)
+    project = startup_project(root, run_directory, last_good=options.last_good, warn=complain)
     story = _story(project, options.story)
     if story and story.robot and options.robot != "recording" and "robot" in (parts or ("robot",)):
         raise UsageError(f"`{story.name}` says with `robot:` what fails; only --robot recording plays it")
@@ -134,6 +134,7 @@ def _whole(
             alerts=_alerts(project, WHOLE, performance.transcript, story),
         )  # fmt: skip
         node = exhibition.node
+        performance.transcript.unread = lambda: node.interrupt(2, leave=True)
         _heed_signals(node)
         try:
             if video:
@@ -174,6 +175,7 @@ def _processes(
     bus = validated(connect(url, sender="+".join(parts)), project)
     alerts = _alerts(project, parts, transcript, story)
     node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts)
+    transcript.unread = lambda: node.interrupt(2, leave=True)
     visitor = next((part for part in node.parts if isinstance(part, VisitorPart)), None)
     if visitor and story is None:
         greeting = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
@@ -238,10 +240,6 @@ def _check_processes(options: argparse.Namespace, story: Story | None, parts: Se
         raise UsageError("`--only robot` needs a robot: leave out --robot none")
     if story and story.robot and ROBOT_PART not in parts:
         raise UsageError(f"`{story.name}` says with `robot:` what fails: give it to the robot's process, too")
-
-
-def _warn(text: str) -> None:
-    print(text, file=sys.stderr)
 
 
 def _sounding(

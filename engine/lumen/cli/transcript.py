@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TextIO
 
 from lumen.app.narrator import Narrator
+from lumen.cli.streams import hush
 from lumen.cli.terminal import coloured, paint
 from lumen.language.machines import MachineDefinition
 
@@ -25,6 +26,8 @@ class Transcript(Narrator):
     ) -> None:
         super().__init__(now, machine)
         self._stream = stream or sys.stdout
+        self.unread: Callable[[], None] = lambda: None
+        """What is done once nobody reads it any more."""
         self._colour = coloured(self._stream)
 
     def line(self, who: str, text: str) -> None:
@@ -32,10 +35,15 @@ class Transcript(Narrator):
         minutes, tenths = divmod(int(self._now() * 10 + 1e-6), 600)
         time = paint(f"{minutes:2d}:{tenths / 10:04.1f}", "dim", on=self._colour)
         name = paint(f"{who:<8}", WHO.get(who, "dim"), on=self._colour)
-        print(f"{time}  {name} {_wrapped(text)}", file=self._stream, flush=True)
+        self.note(f"{time}  {name} {_wrapped(text)}")
 
     def note(self, text: str) -> None:
-        print(text, file=self._stream, flush=True)
+        try:
+            print(text, file=self._stream, flush=True)
+        except OSError as error:  # the show goes on where its log is full, and ends in order where nobody reads on
+            hush(self._stream)
+            if isinstance(error, BrokenPipeError):
+                self.unread()
 
 
 def _wrapped(text: str) -> str:

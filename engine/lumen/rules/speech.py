@@ -14,7 +14,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lists import listed_texts
 from lumen.rules.lookups import value_at
-from lumen.rules.translation import begun, language_entries
+from lumen.rules.translation import begun, language_entries, switched_to
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import WordTables, word_tables
 
@@ -157,14 +157,13 @@ class _Speech:
                     tables.report(MISSING_LANGUAGE, ("phrases", name), message, hint, key=True, cause=cause)
 
     def switches(self, draft: ProjectDraft, silent: Collection[str]) -> None:
-        """Languages that nobody can ask for, and that no story speaks."""
+        """Languages that nobody can ask for, where behaviours switch to others."""
         assert draft.main
-        actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
-        spoken = {action.language for action in actions if isinstance(action, Language)}
-        spoken |= {story.language for story in draft.stories.values() if story.language}
+        switched = switched_to(draft)
+        spoken = switched | {story.language for story in draft.stories.values() if story.language}
         reports = [draft.report("behaviors", name) for name in draft.behaviors]
         whole = all(r.whole and not any(d.code == UNKNOWN_LANGUAGE for d in r.diagnostics) for r in reports)
-        for i, language in enumerate(self.languages if reports and whole else ()):
+        for i, language in enumerate(self.languages if whole and switched else ()):
             if i and language not in spoken and language not in silent and not _is_missed(draft, language):
                 message = f"nothing lets the robot speak `{language}`"
                 hint = f"write `language: {language}` where a visitor asks for it"

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from lumen.language.actions import SayText
+from lumen.language.commands import Language
 from lumen.language.diagnostics import NodePath, Place
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
@@ -40,6 +41,12 @@ def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
         if isinstance(value, Mapping) and value and value.keys().isdisjoint(("", "any")):
             entries.append(LanguageEntry(report, path, value))
     return entries
+
+
+def switched_to(draft: ProjectDraft) -> set[str]:
+    """The languages that an action of some behaviour lets the robot speak."""
+    actions = (site.step.action for machine in draft.behaviors.values() for site in action_sites(machine))
+    return {action.language for action in actions if isinstance(action, Language)}
 
 
 def untranslated(entries: Sequence[LanguageEntry], language: str) -> Iterator[Untranslated]:

@@ -20,11 +20,11 @@ def failures_told(
 ) -> Iterator[None]:
     """Has people told of an error that ends what is done meanwhile, and waits until they are; the error goes on.
 
-    A UsageError is for who sits there and typed it. `tell` hears who could not be reached.
+    A UsageError is for the person who typed it. `tell` hears who could not be reached.
     """
     try:
         yield
-    except UsageError:
+    except (UsageError, BrokenPipeError):  # the latter is that nobody reads what it prints
         raise
     except Exception as error:
         try:

@@ -1,0 +1,95 @@
+"""Nobody reads on (`lumen … | head`), a stream is closed or full: a verb ends quietly, a show in order."""
+
+import os
+import sys
+from io import StringIO
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.cli.main import main
+from lumen.cli.transcript import Transcript
+from tests.guarded import DEVNULL, PIPE, Guarded
+
+ROOT = Path(__file__).parents[2]
+
+
+class Unread(StringIO):
+    """A pipe whose reader is gone."""
+
+    def write(self, text: str) -> int:
+        raise BrokenPipeError
+
+
+class Full(StringIO):
+    """A file on a disk that is full."""
+
+    def write(self, text: str) -> int:
+        raise OSError(28, "No space left on device")
+
+
+def called(*words: str, stdout: int, stderr: int = PIPE) -> tuple[int, str]:
+    command = [sys.executable, "-m", "lumen.cli.main", *words]
+    with Guarded(command, cwd=ROOT, stdin=DEVNULL, stdout=stdout, stderr=stderr, text=True) as process:
+        said = process.communicate(timeout=60)[1]
+    return process.returncode, said or ""
+
+
+@pytest.fixture
+def unread() -> int:
+    reader, writer = os.pipe()
+    os.close(reader)
+    return writer
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("lint",),
+        ("schema", "lumen"),
+        ("explain", "unknown-state"),
+        ("export", "asyncapi"),
+        ("run", "--help"),
+        ("run", "--robot", "recording", "--speed", "max", "--story", "shy", "--fresh"),
+    ],
+    ids=" ".join,
+)
+def test_a_verb_whose_output_nobody_reads_says_nothing(unread: int, words: tuple[str, ...]) -> None:
+    assert called(*words, stdout=unread) == (0, "")
+
+
+def test_an_error_that_nobody_reads_is_one_all_the_same(unread: int) -> None:
+    assert called("lint", "nowhere", stdout=DEVNULL, stderr=unread)[0] == 2
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has a device that is always full")
+@pytest.mark.parametrize("words", [("schema", "lumen"), ("explain", "unknown-state")], ids=" ".join)
+def test_a_full_disk_is_one_line(words: tuple[str, ...]) -> None:
+    with open("/dev/full", "wb") as full:
+        code, said = called(*words, stdout=full.fileno())
+    assert code == 2
+    assert said.count("\n") == 1
+    assert "no space left on device" in said
+
+
+def test_a_stream_that_the_shell_closed_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdout", None)
+    monkeypatch.setattr(sys, "stderr", None)
+    assert main(["explain", "unknown-state"]) == 0
+    assert main(["explain", "nothing-known"]) == 2
+
+
+def test_no_verb_at_all_prints_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    assert "start a project of your own" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("stream", "ends"), [(Unread(), True), (Full(), False)], ids=["unread", "full"])
+def test_a_show_ends_where_nobody_reads_on_and_goes_on_where_the_disk_is_full(stream: StringIO, ends: bool) -> None:
+    project = lumen.load(ROOT)
+    transcript, told = Transcript(lambda: 0.0, lambda: project.machine, stream), list[str]()
+    transcript.unread = lambda: told.append("unread")
+    transcript.line("state", "idle")
+    transcript.note("a line")
+    assert bool(told) == ends
