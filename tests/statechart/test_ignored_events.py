@@ -84,3 +84,18 @@ def test_an_invoked_behaviour_that_hears_nothing_is_named_with_its_id() -> None:
     found = ignored(machine, step(machine, initial(machine).snapshot, Event("heard", {"result": "?"})))
     assert found
     assert [(guard.state, guard.guard.source) for guard in found.refused] == [("quiz/ask", "1 > 2")]
+
+
+def test_a_time_that_comes_and_a_do_that_ends_may_meet_false_guards() -> None:
+    waiting: dict[str, Any] = {
+        "id": "waiting",
+        "do": {"say": {"en": "Hello"}},
+        "onDone": {"guard": "context.n > 1", "target": "end"},
+        "after": {"2s": {"guard": "context.n > 2", "target": "end"}},
+    }
+    machine = Machine.from_dict({"context": {"n": 1}, "states": {"waiting": waiting, "end": {}}}, "m")
+    now = initial(machine).snapshot
+    late = step(machine, now, Event("after.2s.waiting", None, 2.0, "after.2s.waiting"))
+    assert IgnoredEvents().line(machine, late) == "after 2s while context.n > 2 is false in waiting (context.n is 1)"
+    done = step(machine, now, Event("done.command.d1", None, 1.0))
+    assert IgnoredEvents().line(machine, done) == "onDone while context.n > 1 is false in waiting (context.n is 1)"

@@ -1,6 +1,7 @@
 """What happened and changed nothing, in a line; once where it happens many times a second."""
 
 import json
+import re
 from typing import Any
 
 from lumen.interpreters.statechart import Step
@@ -8,6 +9,15 @@ from lumen.interpreters.statechart.ignored_events import FalseGuard, IgnoredEven
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.runtime.visitor import SPEECH_ROUTE
+
+_TIME = re.compile(r"(after|at)\.(.+)\.[^.]*")
+"""The event of an `after` or `at`: the key, and its time."""
+_ENDS = {
+    f"{kind}.{what}.": key
+    for kind, key in (("done", "onDone"), ("error", "onError"))
+    for what in ("do", "state", "invoke")
+}
+"""What the file calls the events of an end, by how their names begin."""
 
 BURST = 1.0
 """How soon after one the next event of its name, with the same texts, says nothing new [s]."""
@@ -59,8 +69,11 @@ def _false(guard: FalseGuard, event: Event) -> str:
 
 
 def _shown(event: Event) -> str:
-    said = _said(event)
-    return f"“{said}”" if said else event.name
+    if said := _said(event):
+        return f"“{said}”"
+    if found := _TIME.fullmatch(event.name):
+        return f"{found[1]} {found[2]}"
+    return next((key for begin, key in _ENDS.items() if event.name.startswith(begin)), event.name)
 
 
 def _said(event: Event) -> str:

@@ -20,7 +20,7 @@ from lumen.lsp.ranges import path_of
 from lumen.lsp.running import RunningExhibitions
 from lumen.upkeep.threads import WatchedThread
 
-CHECK_DELAY = 0.03
+CHECK_DELAY = 0.02
 """How long nothing may be typed before the project is judged [s]."""
 
 ACTIVE = "lumen/active"

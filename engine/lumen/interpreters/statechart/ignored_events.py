@@ -10,11 +10,15 @@ from lumen.interpreters.statechart.chart import Chart, StateNode
 from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.values import Step
+from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.actions import Expression
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, StateKind
+
+_TIMED = ("after.", "at.")
+_OWN = (*_TIMED, "done.do.", "done.state.", "done.invoke.", "error.do.", "error.invoke.")
+"""How the events begin that a behaviour sends itself: `after`, `at`, `onDone` and `onError`."""
 
 
 class FalseGuard(NamedTuple):
@@ -40,27 +44,30 @@ class IgnoredEvent(NamedTuple):
 def ignored(machine: MachineDefinition, step: Step) -> IgnoredEvent | None:
     """Why the event of a step changed nothing; None where it did, or where nothing here ever listens to it.
 
-    Timers and the robot's answers are not asked about: nobody sent them.
+    What nobody sent, as a time that has come or the end of a `do`, only has guards that may be false.
     """
-    event = step.event
-    if event is None or event.sendid or step.transitions or ".command." in event.name:
+    event, parts = step.event, list(flattened_steps(machine, step))
+    if event is None or any(part.transitions for _, _, part in parts):
         return None
-    if event.name.startswith(CONTROLLER_EVENT):
+    for prefix, definition, part in parts:
+        for own in (part.event, *part.raised):
+            if own and own.name.startswith(_OWN) and (false := tuple(_refused(prefix, definition, part, own))):
+                return IgnoredEvent(own, (), false)
+    if event.sendid or ".command." in event.name or event.name.startswith((*_OWN, CONTROLLER_EVENT)):
         return None
-    parts = list(flattened_steps(machine, step))
-    if any(part.transitions or part.raised for _, _, part in parts):
+    if any(part.raised for _, _, part in parts):
         return None
     deaf: list[str] = []
     refused: list[FalseGuard] = []
     for prefix, definition, part in parts:
-        planner = compiled(definition).planner
-        standing = planner.configuration(part.snapshot.configuration)
-        deaf += [prefix + name for name in _deaf(planner.chart, standing, event.name)]
-        refused += [guard._replace(state=prefix + guard.state) for guard in _refused(planner.chart, standing, part)]
+        deaf += [prefix + name for name in _deaf(definition, part, event.name)]
+        refused += _refused(prefix, definition, part, event)
     return IgnoredEvent(event, tuple(deaf), tuple(refused)) if deaf or refused else None
 
 
-def _deaf(chart: Chart, standing: Configuration, name: str) -> Iterator[str]:
+def _deaf(machine: MachineDefinition, step: Step, name: str) -> Iterator[str]:
+    planner = compiled(machine).planner
+    chart, standing = planner.chart, planner.configuration(step.snapshot.configuration)
     for leaf in standing.leaves:
         hears = any(_listens(node, name) for node in (leaf, *leaf.ancestors))
         region = next((n for n in (leaf, *leaf.ancestors) if n.parent and n.parent.kind is StateKind.PARALLEL), None)
@@ -77,21 +84,21 @@ def _listens(node: StateNode, name: str) -> bool:
     return any(transition.definition.event != "*" and transition.matches(name) for transition in node.transitions)
 
 
-def _refused(chart: Chart, standing: Configuration, step: Step) -> Iterator[FalseGuard]:
-    assert step.event is not None  # the caller has looked
-    transitions = dict.fromkeys(t for group in standing.candidates(step.event.name) for t in group)
-    for transition in transitions:
+def _refused(prefix: str, machine: MachineDefinition, step: Step, event: Event) -> Iterator[FalseGuard]:
+    planner = compiled(machine).planner
+    chart, standing = planner.chart, planner.configuration(step.snapshot.configuration)
+    timed = event.name.startswith(_TIMED) and event.sendid
+    groups = standing.timed(event.name) if timed else standing.candidates(event.name)
+    for transition in dict.fromkeys(t for group in groups for t in group):
         if guard := transition.definition.guard:
-            scope = _scope(chart, transition.source, standing, step)
-            yield FalseGuard(
-                transition.source.name or chart.definition.id, guard, readings(guard.source, scope, guard.shown)
-            )
+            scope = _scope(chart, transition.source, standing, step.snapshot, event)
+            values = readings(guard.source, scope, guard.shown)
+            yield FalseGuard(prefix + (transition.source.name or machine.id), guard, values)
 
 
-def _scope(chart: Chart, node: StateNode, standing: Configuration, step: Step) -> Scope:
+def _scope(chart: Chart, node: StateNode, standing: Configuration, now: Snapshot, event: Event) -> Scope:
     """What the guard saw: nothing has changed since."""
-    now, event, machine = step.snapshot, step.event, chart.definition
-    seen = {"name": event.name, "data": event.data} if event else None
+    machine, seen = chart.definition, {"name": event.name, "data": event.data}
     return Scope(
         now.context, seen, node.view(now.language, now.place), standing.known.__contains__, now.at, now.language,
         machine.phrases, machine.answers, now.epoch, now.timezone, machine.lists, no_draw,
