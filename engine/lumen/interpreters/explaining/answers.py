@@ -79,7 +79,7 @@ def why_not(
     found = ways(machine, what)
     if not found and not state and not any(deeds(machine, what)):
         raise UsageError(_nothing_leads_there(known, what))
-    refusals = TransitionRefusals(history, first)
+    refusals = TransitionRefusals(history, first, state)
     reasons = [*(refusals.of(w.owner, w.machine, w.transition) for w in found), *_in_activities(history, what, state)]
     reasons.sort(key=lambda reason: (ORDER.index(reason.because), -reason.at))
     return WhyNotAnswer(what, last.step.snapshot.epoch + end, tuple(reasons))

@@ -60,10 +60,13 @@ class Reason:
 
 
 class TransitionRefusals:
-    """Asks of single transitions why they were not taken, in the steps from the number `first` on."""
+    """Asks of single transitions why they were not taken, in the steps from the number `first` on.
 
-    def __init__(self, history: StepHistory, first: int) -> None:
-        self.history, self.first = history, first
+    `goal` is the state to which they should lead, empty where they should do something.
+    """
+
+    def __init__(self, history: StepHistory, first: int, goal: str = "") -> None:
+        self.history, self.first, self.goal = history, first, goal
 
     def of(self, owner: str, machine: MachineDefinition, transition: Transition) -> Reason:
         """The nearest reason: what was decided last about it, else what it waits for."""
@@ -91,7 +94,7 @@ class TransitionRefusals:
         change = None
         if one.before is not None and one.is_decided:
             situation = StepSituation(one.before, one.step.event, moment.owner)
-            happens = taken(one.machine, moment.owner, wanted)
+            happens = taken(one.machine, moment.owner, wanted, self.goal)
             change = smallest_change(moment, found.source, wanted, rivals, situation, happens)
         text = of_transition(machine, wanted, moment.owner)
         after = f"{text}: after {of_event(moment.event)}" if moment.event else text
@@ -128,14 +131,14 @@ class TransitionRefusals:
             return Reason(
                 "inactive", f"{text}: {prefix_of(owner)[:-1]} does not run", at, place, note="it is not invoked"
             )
-        happens = taken(last.machine, owner, transition)
+        happens = taken(last.machine, owner, transition, self.goal)
         if not source.path or source.name in inner.configuration:
             change = _coming(machine, transition, StepSituation(snapshot, None, owner), happens, owner)
             what = _awaited(inner, transition)
             note = "" if change else _no_event(transition)
             return Reason("no-event", f"{text}: {what}", at, place, change=change, note=note)
         change = None
-        entered = None if owner else _standing_in(machine, snapshot, source.name, transition)
+        entered = None if owner else _standing_in(machine, snapshot, source.name, transition, self.goal)
         if entered is True:
             change = {"state": source.name}
         elif isinstance(entered, Snapshot):
@@ -192,13 +195,15 @@ def _names(machine: MachineDefinition, descriptor: str) -> Iterator[str]:
     yield from (known or ([] if prefix else ["anything"]))
 
 
-def _standing_in(machine: MachineDefinition, snapshot: Snapshot, state: str, wanted: Transition) -> Snapshot | bool:
+def _standing_in(
+    machine: MachineDefinition, snapshot: Snapshot, state: str, wanted: Transition, goal: str
+) -> Snapshot | bool:
     """Where it would stand had it been in that state; True where that alone leads on, False where it can't be."""
     try:
         step = entered_directly(machine, snapshot, state, Event(OPERATOR_GOTO, {"state": state}, snapshot.at))
     except LumenError:
         return False
-    if any(one is wanted for one in step.transitions):
+    if any(one is wanted for one in step.transitions) and (not goal or goal in step.entered):
         return True
     return step.snapshot if state in step.snapshot.configuration else False
 

@@ -12,6 +12,7 @@ from lumen.interpreters.explaining.tracing import Moment, retaken
 from lumen.interpreters.explaining.words import prefix_of
 from lumen.interpreters.expressions import Scope
 from lumen.interpreters.statechart.chart import StateNode
+from lumen.interpreters.statechart.nesting import entered_names
 from lumen.interpreters.statechart.type_checks import fits
 from lumen.language.machines import MachineDefinition, Transition
 
@@ -23,15 +24,19 @@ MAX_EDITS = 1_000
 Happens = Callable[[StepSituation], bool]
 
 
-def taken(machine: MachineDefinition, owner: str, transition: Transition) -> Happens:
-    """Whether a step takes that transition of the behaviour that runs under `owner`."""
+def taken(machine: MachineDefinition, owner: str, transition: Transition, goal: str) -> Happens:
+    """Whether a step takes that transition of the behaviour that runs under `owner`, and enters `goal`, if any.
+
+    Where a transition leads back by a history, it depends on more than itself what is entered.
+    """
 
     def happens(situation: StepSituation) -> bool:
         try:
             trace = retaken(machine, situation.snapshot, situation.event)
         except LumenError:
             return False
-        return any(
+        entered = set(entered_names(trace.step)) if trace.step else set()
+        return (not goal or goal in entered) and any(
             one is transition for step in trace.microsteps if step.moment.owner == owner for one in step.transitions
         )
 
