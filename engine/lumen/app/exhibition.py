@@ -6,6 +6,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from lumen.app.alerts.desk import AlertDesk
+from lumen.app.answering import WHY, WHY_NOT, answer
 from lumen.app.narrator import Narrator
 from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
@@ -23,6 +24,7 @@ from lumen.app.whole_node import WholeNode
 from lumen.bus import connect
 from lumen.buses.validated import ValidatedBus, validated
 from lumen.errors import UsageError
+from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.statechart import Step
 from lumen.language.causes import PROGRAM, MessageOrigin
 from lumen.language.commands import Say
@@ -184,6 +186,22 @@ class Exhibition:
     def status(self) -> dict[str, Any]:
         """How it is, as `lumen status --format json` prints it."""
         return self._operator.status()
+
+    def why(self, what: str = "", at: str | None = None) -> dict[str, Any]:
+        """Why something happened, as `lumen why --format json` prints it; the last thing that did without `what`.
+
+        `what` is a text that was said, a state, a motion or the id of a command; `at` an ISO 8601 time until which it
+        happened. Raises UsageError, saying what to do, where it did not.
+        """
+        return answer(self.history(), WHY, what, at)
+
+    def why_not(self, what: str, at: str | None = None) -> dict[str, Any]:
+        """Why something did not happen, as `lumen why-not --format json` prints it; raises as `why` does."""
+        return answer(self.history(), WHY_NOT, what, at)
+
+    def history(self) -> list[RecordedStep]:
+        """The steps of the last minutes, the oldest first: what `why` and `why_not` are answered from."""
+        return self._operator.steps.steps()
 
     def observe(self, handler: Callable[[Step], None]) -> None:
         """Call this with each step from now on, in the order taken."""

@@ -31,6 +31,8 @@ VERBS = {
     "stop": "let the robot of a running exhibition rest, at once",
     "resume": "let a robot that somebody stopped move again",
     "status": "say what a running exhibition is doing",
+    "why": "say why something happened in an exhibition",
+    "why-not": "say why something did not happen in an exhibition, and what would have made it",
     "goto": "let a running exhibition enter a state",
     "reload": "let a running exhibition read its files again, or say which files run",
     "diff": "say what differs between two versions of a project, and where a reload would lead",
@@ -52,8 +54,8 @@ VERBS = {
     "import": "turn a file of another tool into a file of Lumen: a statechart, a motion, a controller",
     "export": "write a behaviour as SCXML, for XState, or as a diagram; the routes as AsyncAPI",
 }
-MODULES = {"import": "importing", "export": "exporting"}
-"""Modules of verbs that are words of Python."""
+MODULES = {"import": "importing", "export": "exporting", "why-not": "why_not"}
+"""Modules of verbs that are words of Python, or no words of it."""
 
 
 def command_line(wanted: Collection[str]) -> Suggesting:

@@ -52,6 +52,7 @@ PLACEHOLDERS: Mapping[str, Callable[[Path], Iterable[str]]] = {
     "CODES": _codes,
     "LANG": _languages,
     "STATE": _states,
+    "WHAT": lambda root: {*_states(root), *_files("motions")(root)},
     "ROUTE": _routes,
     "OLD": lambda root: ("live", "HEAD"),
 }

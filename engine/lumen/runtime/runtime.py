@@ -65,6 +65,11 @@ class Runtime:
         self.steps = 0
 
     @property
+    def begun(self) -> bool:
+        """Whether it was started."""
+        return self._snapshot is not None
+
+    @property
     def snapshot(self) -> Snapshot:
         """Where the behaviour stands."""
         if self._snapshot is None:

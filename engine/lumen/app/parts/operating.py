@@ -4,11 +4,13 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from lumen.app.answering import WHY, WHY_NOT, AnsweringThread
 from lumen.app.asking import OPERATOR_KEY
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
 from lumen.app.status import LastReload, status_of
+from lumen.app.step_memory import StepMemory
 from lumen.errors import BusError, LumenError
 from lumen.interpreters.statechart import Step
 from lumen.interpreters.statechart.direct_entry import entered_directly
@@ -22,11 +24,13 @@ GOTO = "operator.goto"
 """The event of a step that an operator wanted."""
 SOMEBODY = "somebody"
 MAX_PENDING_REQUESTS = 100
-REQUESTS = '`{"ask": "status"}` or `{"ask": "goto", "state": …}`'
+REQUESTS = '`{"ask": "status"}`, `{"ask": "goto", "state": …}`, or `{"ask": "why", "what": …}`'
 
 
 class OperatorPart(Part, Observer):
     """Answers `lumen status` and `lumen goto` between two steps; it stands before the brain, whose `needs` it has.
+
+    What is asked of the past, `lumen why`, is answered on another thread, from `steps` that it keeps.
 
     `stopped` says who stopped the robot, `realtime` how much of real time is kept, `reloaded` what came of saved files
     last; `record` keeps an entry of the journal.
@@ -48,8 +52,11 @@ class OperatorPart(Part, Observer):
         self._since = 0.0
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_REQUESTS)
         self._bus = behavior.loop.bus
+        runtime = behavior.loop.runtime
+        self.steps = StepMemory(lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None)
+        self._answering = AnsweringThread(self._bus, self.steps.steps)
         self._undo = self._bus.subscribe(OPERATOR_KEY, self._came.append)
-        behavior.loop.observers.append(self)
+        behavior.loop.observers += [self.steps, self]
 
     def begin(self, now: float) -> None:
         self._since = now
@@ -59,8 +66,12 @@ class OperatorPart(Part, Observer):
             self._since = step.snapshot.at
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        self.steps.look()
         while self._came:
             message = self._came.popleft()
+            if isinstance(message.body, dict) and message.body.get("ask") in (WHY, WHY_NOT):
+                self._answering.ask(message)
+                continue
             answer = self._answer(message.body, now)
             try:
                 self._bus.reply(message, answer)
@@ -69,6 +80,7 @@ class OperatorPart(Part, Observer):
 
     def close(self) -> None:
         self._undo()
+        self._answering.close()
 
     def status(self) -> dict[str, Any]:
         """How the exhibition is, as JSON data."""

@@ -10,7 +10,7 @@ from lumen.interpreters.explaining.conditions import GuardPart, first_false
 from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
 from lumen.interpreters.explaining.searching import Happens, smallest_change, taken
 from lumen.interpreters.explaining.tracing import Moment
-from lumen.interpreters.explaining.words import awaited, of_event, of_transition, prefix_of
+from lumen.interpreters.explaining.words import awaited, of_transition, prefix_of
 from lumen.interpreters.exploration.samples import samples
 from lumen.interpreters.expressions import parse_expression
 from lumen.interpreters.statechart.chart import CompiledTransition
@@ -97,10 +97,10 @@ class TransitionRefusals:
             happens = taken(one.machine, moment.owner, wanted, self.goal)
             change = smallest_change(moment, found.source, wanted, rivals, situation, happens)
         text = of_transition(machine, wanted, moment.owner)
-        after = f"{text}: after {of_event(moment.event)}" if moment.event else text
+        after = f"{text}; {moment.event.name} came" if moment.event else text
         at = one.step.snapshot.epoch + one.at
         if false:
-            what = f"{after}, {false.text} was false" + (f" ({false.error})" if false.error else "")
+            what = f"{after}, but {false.text} was false" + (f" ({false.error})" if false.error else "")
             place = one.place(machine, wanted.guard.where if wanted.guard else wanted.where)
             note = "" if change else _no_change(false)
             return Reason("guard", what, at, place, false, change, note, number)

@@ -1,0 +1,93 @@
+"""`why` and `why-not` asked of a running exhibition: answered on a thread of its own, so that no tick is late."""
+
+import logging
+import queue
+from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime
+from typing import Any
+
+from lumen.errors import BusError, LumenError, UsageError
+from lumen.interpreters.explaining import RecordedStep, why, why_not
+from lumen.ports import Bus, Message
+from lumen.upkeep.threads import WatchedThread
+
+MAX_WAITING_QUESTIONS = 20
+MAX_QUESTION = 500
+"""Characters of what somebody asks about."""
+WHY, WHY_NOT = "why", "why-not"
+
+_log = logging.getLogger(__name__)
+
+
+def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | None = None) -> dict[str, Any]:
+    """The answer as JSON data; `at` is an ISO 8601 time. Raises UsageError, saying what to do, where there is none."""
+    until = _until(steps, at) if at else None
+    if question == WHY:
+        return why(steps, what, until).to_json()
+    if not what:
+        raise UsageError("why not what? Say a state, a motion or a text: `lumen why-not dance`")
+    return why_not(steps, what, until).to_json()
+
+
+def _until(steps: Sequence[RecordedStep], at: str) -> float:
+    """That time on the exhibition's clock [s]; raises UsageError where nothing of it is kept."""
+    try:
+        moment = datetime.fromisoformat(at).timestamp()
+    except (ValueError, OverflowError, OSError):
+        raise UsageError(f"`{at[:40]}` is no time: it is written as in 2026-11-22T14:03:00Z") from None
+    if not steps:
+        raise UsageError("nothing has happened yet")
+    until = moment - steps[-1].step.snapshot.epoch
+    if until < steps[0].at:
+        first = datetime.fromtimestamp(steps[0].step.snapshot.epoch + steps[0].at)
+        raise TooLongAgoError(f"what is kept begins at {first:%H:%M:%S}: ask about a later time")
+    return until
+
+
+class TooLongAgoError(UsageError):
+    """What is asked about is not in memory any more; the journal may know it."""
+
+
+class AnsweringThread:
+    """Answers questions one after another; `steps` is asked for what has happened, on the thread that asks."""
+
+    def __init__(self, bus: Bus, steps: Callable[[], list[RecordedStep]]) -> None:
+        self._bus, self._steps = bus, steps
+        self._waiting: queue.Queue[tuple[Message, Sequence[RecordedStep]] | None] = queue.Queue(MAX_WAITING_QUESTIONS)
+        self._thread = WatchedThread("lumen-answering", self._run)
+
+    def ask(self, message: Message) -> None:
+        """Have a question answered, as soon as those before it are; one too many gets no answer."""
+        if not self._thread.started:
+            self._thread.start()
+        try:
+            self._waiting.put_nowait((message, self._steps()))
+        except queue.Full:
+            _log.warning("a question is dropped: %d others wait for their answers", MAX_WAITING_QUESTIONS)
+
+    def close(self) -> None:
+        """End the thread."""
+        if self._thread.started:
+            self._waiting.put(None)
+            self._thread.join(5.0)
+
+    def _run(self) -> None:
+        while (asked := self._waiting.get()) is not None:
+            message, steps = asked
+            try:
+                self._bus.reply(message, reply(steps, message.body))
+            except BusError:
+                continue  # who asked is gone
+
+
+def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any]) -> dict[str, Any]:
+    """What is sent back: the answer, or a verdict that says why there is none."""
+    what, at = body.get("what", ""), body.get("at")
+    if not isinstance(what, str) or not (at is None or isinstance(at, str)):
+        return {"verdict": "refused", "reason": "`what` and `at` are texts"}
+    try:
+        return answer(steps, str(body["ask"]), what[:MAX_QUESTION], at)
+    except TooLongAgoError as error:
+        return {"verdict": "refused", "reason": str(error), "kept": "later"}
+    except LumenError as error:
+        return {"verdict": "refused", "reason": str(error)}

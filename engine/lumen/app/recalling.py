@@ -1,0 +1,94 @@
+"""Steps of a run that is over, or of longer ago than a running one remembers: taken again from the journal."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from lumen.app.answering import answer
+from lumen.errors import JournalError, UsageError
+from lumen.interpreters.explaining import RecordedStep
+from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
+from lumen.interpreters.replay.replaying import Replayer
+from lumen.interpreters.statechart import Snapshot, Step
+from lumen.language.machines import MachineDefinition
+from lumen.language.projects import Project
+from lumen.loading.packaged import find_project
+from lumen.rules import check_files
+from lumen.runtime.home import Home, home_of
+from lumen.runtime.inputs.journal_file import read_journal
+from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
+from lumen.runtime.snapshot_store import SnapshotStore
+
+MAX_FILES = 8
+"""Of a run that many files before the moment asked about are read, some hours each."""
+
+
+def answer_from_journal(project: str | None, question: str, what: str, at: str | None, why: str) -> dict[str, Any]:
+    """The answer of the run that was begun last before `at` (ISO 8601).
+
+    Raises UsageError, saying what to do, where there is none; `why` says why no running exhibition was asked.
+    """
+    root = find_project(project)
+    steps = list(recalled(root, datetime.fromisoformat(at).timestamp() if at else None))
+    if not steps:
+        raise UsageError(f"{why}; and its journal in {home_of(root) / JOURNAL_FOLDER} holds nothing of that time")
+    return answer(steps, question, what, at)
+
+
+def recalled(root: Path, until: float | None = None) -> Iterator[RecordedStep]:
+    """The steps of the project's last run that began before `until` [s since 1970, in UTC], as far as they are kept."""
+    found = [row for row in headers(home_of(root) / JOURNAL_FOLDER) if until is None or row[1].began <= until]
+    last = max(found, key=lambda row: row[1].began, default=None)
+    files = sorted((row for row in found if last and row[1].run == last[1].run), key=lambda row: row[1].first)
+    kept = _KeptProjects(root)
+    replayer, standing = Replayer(kept.machine), _Standing(kept)
+    for file, _ in files[-MAX_FILES:]:
+        try:
+            entries = read_journal(file).entries
+        except JournalError:
+            continue
+        for entry in entries:
+            yield from standing.after(entry, replayer.take(entry))
+
+
+class _Standing:
+    """Turns what was replayed into recorded steps: jumps into reloads, keyframes into nothing."""
+
+    def __init__(self, kept: "_KeptProjects") -> None:
+        self._kept = kept
+        self._project: Project | None = None
+        self._snapshot: Snapshot | None = None
+
+    def after(self, entry: RecordedEntry, taken: Any) -> Iterator[RecordedStep]:
+        if isinstance(entry, JournalJump):
+            self._project = self._kept.project(entry.bundle, entry.behavior)
+        if taken.step is not None:
+            yield RecordedStep(taken.machine, taken.before, taken.step, self._project)
+        elif isinstance(entry, JournalJump) and taken.machine and taken.before and entry.kind != "keyframe":
+            before = self._snapshot or taken.before
+            gone, come = before.configuration, taken.before.configuration
+            jump = Step(None, tuple(sorted(gone - come)), tuple(sorted(come - gone)), (), taken.before)
+            yield RecordedStep(taken.machine, before, jump, self._project)
+        self._snapshot = taken.after
+
+
+class _KeptProjects:
+    """The bundles that ran, each read when it is first asked for."""
+
+    def __init__(self, root: Path) -> None:
+        self._root, self._store = root, SnapshotStore(Home(home_of(root)))
+        self._read: dict[tuple[str, str], Project | None] = {}
+
+    def project(self, hash: str, behavior: str) -> Project | None:
+        if (hash, behavior) not in self._read:
+            files = self._store.files(hash)
+            found = check_files(self._root, files)[0] if files else None
+            there = found is not None and behavior in found.behaviors
+            self._read[hash, behavior] = replace(found, behavior=behavior) if found and there else None
+        return self._read[hash, behavior]
+
+    def machine(self, hash: str, behavior: str) -> MachineDefinition | None:
+        project = self.project(hash, behavior)
+        return project.machine if project else None

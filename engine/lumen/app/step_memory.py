@@ -1,0 +1,55 @@
+"""The steps of the last minutes, as they were taken: what a question about a running exhibition is answered from."""
+
+from collections import deque
+from collections.abc import Callable
+from heapq import merge
+
+from lumen.interpreters.explaining import RecordedStep
+from lumen.interpreters.statechart import Snapshot, Step
+from lumen.language.projects import Project
+from lumen.runtime.loop import Observer
+
+MAX_STEPS = 4_000
+"""Steps that changed something: some hours of visits."""
+MAX_IDLE = 2_000
+"""Steps that changed nothing but the time, such as those of faces in a conversation: a few minutes."""
+
+NumberedStep = tuple[int, RecordedStep]
+
+
+class StepMemory(Observer):
+    """Keeps steps, each with where it was taken from; `project` and `standing` are asked for what is so now.
+
+    Nothing is computed here, and nothing copied: snapshots never change.
+    """
+
+    def __init__(self, project: Callable[[], Project], standing: Callable[[], Snapshot | None]) -> None:
+        self._project, self._standing = project, standing
+        self._last: Snapshot | None = None
+        self._number = 0
+        self._changes: deque[NumberedStep] = deque(maxlen=MAX_STEPS)
+        self._idle: deque[NumberedStep] = deque(maxlen=MAX_IDLE)
+
+    def look(self) -> None:
+        """Note where the behaviour stands before a tick: elsewhere than after its last step, it was reloaded."""
+        now = self._standing()
+        if now is not None and now is not self._last:
+            before, self._last = self._last, now
+            if before is not None:
+                gone, come = before.configuration, now.configuration
+                jump = Step(None, tuple(sorted(gone - come)), tuple(sorted(come - gone)), (), now)
+                self._keep(RecordedStep(self._project().machine, before, jump, self._project()))
+
+    def stepped(self, step: Step) -> None:
+        project = self._project()
+        self._keep(RecordedStep(project.machine, None if step.event is None else self._last, step, project))
+        self._last = step.snapshot
+
+    def steps(self) -> list[RecordedStep]:
+        """All that are kept, the oldest first."""
+        return [step for _, step in merge(list(self._changes), list(self._idle), key=lambda row: row[0])]
+
+    def _keep(self, one: RecordedStep) -> None:
+        self._number += 1
+        idle = not (one.step.transitions or one.step.commands or one.step.raised or one.step.invoked or one.is_reload)
+        (self._idle if idle and one.before else self._changes).append((self._number, one))

@@ -1,0 +1,95 @@
+"""Answers to `why` and `why-not`, as lines that people read."""
+
+import json
+from collections.abc import Iterator, Mapping
+from datetime import datetime
+from textwrap import wrap
+from typing import Any
+
+BECAUSE = {
+    "guard": "its guard was false",
+    "preempted": "something else was taken",
+    "no-event": "nothing brought it about",
+    "inactive": "its state was not active",
+}
+LEADS = {"activity": "by", "event": "for", "timer": "for", "message": "from", "person": "from", "file": "from"}
+"""The word before a link; `because` before the others."""
+WIDTH = 100
+INDENT = " " * 10
+MAX_INACTIVE = 3
+"""Ways from states that were not active that are shown; of the others only how many there are."""
+
+
+def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
+    """What happened, then a link each, what it rests on beneath it; a time where it is another one."""
+    at = ""
+    for number, link in enumerate(answer["chain"]):
+        new = link["at"] != at and link["kind"] != "activity"
+        at = link["at"] if new else at
+        lead = f"{LEADS.get(link['kind'], 'because'):<8}" if number else ""
+        id = f" [{link['id']}]" if link["kind"] in ("command", "timer") and link["id"] else ""
+        yield from _block(_time(link["at"]) if new else "", lead + link["text"] + id, " " * len(lead))
+        if link["kind"] == "transition":
+            yield from (f"{INDENT}{' ' * 10}{line}" for line in _values(link["values"]))
+        if link["file"]:
+            yield f"{INDENT}{' ' * 8 if number else '  '}{_place(link)}"
+
+
+def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:
+    """What came nearest first: the way, what was against it, and what would have helped."""
+    yield f"{_time(answer['at'])}  not {answer['what']}"
+    if not answer["reasons"]:
+        yield f"{INDENT}nothing leads there: no transition has it as its target"
+    shown: dict[str, int] = {}
+    for reason in answer["reasons"]:
+        because = reason["because"]
+        shown[because] = shown.get(because, 0) + 1
+        if because == "inactive" and shown[because] > MAX_INACTIVE:
+            continue
+        yield from _block("", f"{BECAUSE[because]}: {reason['text']}", "  ")
+        if reason["false"]:
+            yield from (f"{INDENT}    {line}" for line in _values(reason["false"]["values"]))
+        said = f"it would have, {_change(reason['change'])}" if reason["change"] else reason["note"]
+        if said:
+            yield from _block("", f"  {said}", "    ")
+        if reason["file"]:
+            yield f"{INDENT}  {_place(reason)}"
+    if (left := shown.get("inactive", 0) - MAX_INACTIVE) > 0:
+        yield f"{INDENT}… and {left} more ways from states that were not active (--format json shows them)"
+
+
+def _block(time: str, text: str, deeper: str) -> Iterator[str]:
+    """A text in lines that are not too long, the time before the first of them."""
+    lead = text[: len(text) - len(text.lstrip())]
+    lines = wrap(text.strip(), WIDTH - len(INDENT) - len(lead), subsequent_indent=deeper[len(lead) :] or "  ")
+    for number, line in enumerate(lines):
+        yield f"{(time if not number else ''):<{len(INDENT)}}{lead}{line}"
+
+
+def _change(change: Mapping[str, Any]) -> str:
+    """`had it been in offer and had heard come with event.data.result "dance"`."""
+    values = [(name, _json(value)) for name, value in change.items() if "." in name]
+    said = [f"had it been in {change['state']}"] if "state" in change else []
+    said += [f"had nothing else happened for {change['wait']:g} s"] if "wait" in change else []
+    if "event" in change:
+        brought = ", ".join(f"{name} {value}" for name, value in values)
+        said.append(f"had {change['event']} come" + (f" with {brought}" if brought else ""))
+    else:
+        said += [f"had {name} been {value}" for name, value in values]
+    return " and ".join(said)
+
+
+def _values(values: Mapping[str, Any]) -> Iterator[str]:
+    yield from (f"{name} is {_json(value)}" for name, value in values.items())
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _place(row: Mapping[str, Any]) -> str:
+    return f"{row['file']}:{row['line']}"
+
+
+def _time(text: str) -> str:
+    return f"{datetime.fromisoformat(text).astimezone():%H:%M:%S}"

@@ -1,0 +1,56 @@
+"""What `lumen why` and `lumen why-not` have in common: whom they ask, and what they do with the answer."""
+
+import argparse
+import sys
+from collections.abc import Callable, Iterator
+from datetime import datetime
+from typing import Any
+
+from lumen.app.asking import OPERATOR_ANSWERS, OPERATOR_KEY, ask
+from lumen.app.recalling import answer_from_journal
+from lumen.cli.formats import configure_format, print_object
+from lumen.cli.moments import moment
+from lumen.cli.reach import configure_reach, reach
+from lumen.errors import BusUnreachableError, UsageError
+
+Answer = dict[str, Any]
+
+
+def configure_question(parser: argparse.ArgumentParser) -> None:
+    configure_reach(parser)
+    parser.add_argument("--at", metavar="T", help="asked of that time, 14:03 or 14:03:20; default: now")
+    configure_format(parser)
+
+
+def put(options: argparse.Namespace, question: str, shown: Callable[[Answer], Iterator[str]]) -> int:
+    """Ask a running exhibition, else the journal of the project, and print what it says; 1 where that is no answer."""
+    at = moment(options.at, datetime.now().astimezone()) if options.at else None
+    try:
+        found = _asked(options, question, at)
+    except UsageError as error:
+        found = {"verdict": "refused", "reason": str(error)}
+    if "reason" in found:
+        print(f"lumen {question}: {found['reason']}", file=sys.stderr)
+        return 1
+    if options.format == "json":
+        print_object(found)
+        return 0
+    for line in shown(found):
+        print("".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in line))
+    return 0
+
+
+def _asked(options: argparse.Namespace, question: str, at: str | None) -> Answer:
+    what = options.what or ""
+    try:
+        reached = reach(options)
+    except BusUnreachableError as error:
+        return answer_from_journal(options.project, question, what, at, str(error))
+    try:
+        body = {"ask": question, "what": what, **({"at": at} if at else {})}
+        found: Answer = next(ask(reached.bus, OPERATOR_KEY, body, OPERATOR_ANSWERS))
+    finally:
+        reached.bus.close()
+    if found.get("kept") == "later":
+        return answer_from_journal(options.project, question, what, at, found["reason"])
+    return found

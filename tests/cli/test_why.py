@@ -1,0 +1,141 @@
+"""`lumen why` and `lumen why-not`: of an exhibition in Python, of one that runs, and of a journal when none does."""
+
+import json
+from collections.abc import Iterator
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.app.answering import reply
+from lumen.app.exhibition import Exhibition
+from lumen.cli.answers import why_lines, why_not_lines
+from lumen.cli.main import main
+from lumen.cli.moments import moment
+from lumen.errors import UsageError
+
+LINK = {"kind", "text", "at", "file", "line", "id", "values"}
+REASON = {"because", "text", "file", "line", "false", "change", "note"}
+
+
+@pytest.fixture(scope="module")
+def greeted() -> Iterator[Exhibition]:
+    """A visitor was greeted, and asked for the name; what they said then was not understood."""
+    with lumen.open() as exhibition:
+        exhibition.send("face", {"x": 160, "y": 120})
+        exhibition.run(12.0)
+        exhibition.send("heard", {"result": "?"})
+        exhibition.run(0.2)
+        yield exhibition
+
+
+def kinds(answer: dict[str, Any]) -> list[str]:
+    return [link["kind"] for link in answer["chain"]]
+
+
+def test_a_text_leads_back_to_the_message(greeted: Exhibition) -> None:
+    answer = greeted.why("not hear your name")
+    assert set(answer) == {"what", "at", "chain"}
+    assert all(set(link) == LINK for link in answer["chain"])
+    assert kinds(answer) == ["command", "activity", "transition", "event", "message"]
+    command, _, transition, event, message = answer["chain"]
+    assert command["file"] == transition["file"] == "behaviors/tour.yaml"
+    lines = Path("behaviors/tour.yaml").read_text("utf-8").splitlines()
+    assert "say" in lines[command["line"] - 1]
+    assert "context.name_tries < 2" in lines[transition["line"] - 1]
+    assert transition["values"] == {"context.name_tries": 0}
+    assert event["values"]["event.data.result"] == "?"
+    assert "lumen.audio.speech.recognition" in message["text"]
+
+
+def test_an_answer_leads_on_to_the_command_and_that_to_the_face(greeted: Exhibition) -> None:
+    answer = greeted.why("I am Lumen")
+    found = ["command", "activity", "event", "command", "activity", "transition", "event", "message"]
+    assert kinds(answer) == found
+    assert answer["chain"][2]["id"] == answer["chain"][3]["id"]
+    assert answer["chain"][-2]["text"].startswith("face")
+
+
+def test_a_state_and_nothing_at_all(greeted: Exhibition) -> None:
+    assert kinds(greeted.why("talking"))[0] == "transition"
+    assert greeted.why("idle")["chain"][-1]["kind"] == "start"
+    assert greeted.why()["chain"][0]["text"].startswith("says")
+
+
+def test_what_a_visitor_could_have_said(greeted: Exhibition) -> None:
+    answer = greeted.why_not("how_are_you")
+    assert all(set(reason) == REASON for reason in answer["reasons"])
+    first = answer["reasons"][0]
+    assert first["because"] == "guard"
+    assert first["false"]["values"] == {"event.data.result": "?"}
+    assert first["change"]["event.data.result"].endswith("Ani")
+    dance = greeted.why_not("dance")["reasons"][0]
+    assert (dance["because"], dance["change"]["state"]) == ("inactive", "offer")
+    waits = greeted.why_not("goodbye")["reasons"][0]
+    assert (waits["because"], set(waits["change"])) == ("no-event", {"wait"})
+
+
+@pytest.mark.parametrize(
+    ("question", "what", "said"),
+    [
+        ("why", "dnace", "did you mean `dance`?"),
+        ("why", "dance", "ask `lumen why-not dance`"),
+        ("why-not", "dnace", "did you mean `dance`?"),
+        ("why-not", "talking", "ask `lumen why talking`"),
+        ("why-not", "", "why not what?"),
+    ],
+)
+def test_a_question_without_an_answer_says_what_to_do(greeted: Exhibition, question: str, what: str, said: str) -> None:
+    answer = reply(greeted.history(), {"ask": question, "what": what})
+    assert answer["verdict"] == "refused"
+    assert said in answer["reason"]
+
+
+def test_what_is_no_question_is_refused(greeted: Exhibition) -> None:
+    for body in ({"what": 7}, {"at": 7}, {"at": "soon"}, {"at": "1970-01-01T00:00:00Z"}, {"what": "x" * 10_000}):
+        assert reply(greeted.history(), {"ask": "why", **body})["verdict"] == "refused"
+
+
+def test_it_reads_well(greeted: Exhibition) -> None:
+    told = [*why_lines(greeted.why("not hear your name")), *why_not_lines(greeted.why_not("how_are_you"))]
+    assert all(len(line) <= 100 for line in told)
+    text = "\n".join(told)
+    assert "because ask_name → ask_name, on heard, as context.name_tries < 2" in text
+    assert "context.name_tries is 0" in text
+    assert "it would have, had event.data.result been " in text
+
+
+@pytest.mark.slow
+def test_who_runs_is_asked_and_who_does_not_has_a_journal(
+    exhibition: Exhibition, copy: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["why", "idle", str(copy), "--format", "json"]) == 0
+    assert json.loads(capsys.readouterr().out)["chain"][-1]["kind"] == "start"
+    assert main(["why-not", "dance", str(copy)]) == 0
+    assert "its state was not active" in capsys.readouterr().out
+    assert main(["why-not", "idle", str(copy)]) == 1
+    assert "ask `lumen why idle`" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_a_run_that_is_over_is_asked_by_its_journal(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["why", "idle", str(copy)]) == 1
+    assert "start it with `lumen run`" in capsys.readouterr().err
+    with lumen.open(copy) as exhibition:
+        exhibition.send("face", {"x": 160, "y": 120})
+        exhibition.run(3.0)
+        asked = exhibition.why("greet")
+    assert main(["why", "greet", str(copy), "--format", "json"]) == 0
+    assert json.loads(capsys.readouterr().out) == asked
+
+
+def test_a_time_of_day_is_the_last_one() -> None:
+    here = timezone(timedelta(hours=7))
+    now = datetime(2026, 11, 22, 14, 0, tzinfo=here)
+    assert moment("13:59", now) == "2026-11-22T06:59:59.999000+00:00"
+    assert moment("14:03:20", now) == "2026-11-21T07:03:20.999000+00:00"
+    assert moment("2026-11-20T12:00:00+07:00", now) == "2026-11-20T05:00:00+00:00"
+    with pytest.raises(UsageError, match=r"write 14:03"):
+        moment("soon", now)
