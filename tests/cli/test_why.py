@@ -15,6 +15,7 @@ from lumen.cli.answers import why_lines, why_not_lines
 from lumen.cli.main import main
 from lumen.cli.moments import moment
 from lumen.errors import UsageError
+from lumen.language.people import PersonName
 
 LINK = {"kind", "text", "at", "file", "line", "id", "values"}
 REASON = {"because", "text", "file", "line", "false", "change", "note"}
@@ -129,6 +130,17 @@ def test_a_run_that_is_over_is_asked_by_its_journal(copy: Path, capsys: pytest.C
         asked = exhibition.why("greet")
     assert main(["why", "greet", str(copy), "--format", "json"]) == 0
     assert json.loads(capsys.readouterr().out) == asked
+
+
+@pytest.mark.slow
+def test_who_is_forgotten_is_in_no_answer(copy: Path) -> None:
+    with lumen.open(copy) as exhibition:
+        exhibition.send("recognised", {"name": "Budi"})
+        exhibition.run(0.1)
+        assert "Budi" in str(exhibition.history())
+        exhibition.node.behavior.forget(PersonName("Budi"))
+        exhibition.run(0.1)
+        assert "Budi" not in str(exhibition.history())
 
 
 def test_a_time_of_day_is_the_last_one() -> None:

@@ -36,7 +36,7 @@ def _until(steps: Sequence[RecordedStep], at: str) -> float:
     except (ValueError, OverflowError, OSError):
         raise UsageError(f"`{at[:40]}` is no time: it is written as in 2026-11-22T14:03:00Z") from None
     if not steps:
-        raise UsageError("nothing has happened yet")
+        raise TooLongAgoError("nothing of that time is remembered")
     until = moment - steps[-1].step.snapshot.epoch
     if until < steps[0].at:
         first = datetime.fromtimestamp(steps[0].step.snapshot.epoch + steps[0].at)

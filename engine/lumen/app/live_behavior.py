@@ -23,7 +23,7 @@ class LiveBehavior:
 
     A story says which behaviour it is about, in which language and at what time of day it begins, and remembering
     what. `adopt` lets everything around the loop go by another bundle; it may raise BusError. Where it is `published`,
-    the bus is told of each step.
+    the bus is told of each step. `forgetting` are called with whom to forget, besides.
     """
 
     def __init__(
@@ -35,6 +35,7 @@ class LiveBehavior:
         self.loop.wall_clock = WallClockWatch(self._timezone, real=real)
         self.trace = TracePublisher(bus, lambda: self.loop.project, setup.clock.now)
         self.adopt: Callable[[Project], None] = lambda _: None
+        self.forgetting: list[Callable[[PersonName], None]] = []
         if published:
             self.loop.observers.append(self.trace)
 
@@ -57,6 +58,8 @@ class LiveBehavior:
 
     def forget(self, person: PersonName) -> None:
         """Go on without somebody's name, and tell so."""
+        for forget in self.forgetting:
+            forget(person)
         if self.loop.runtime.forget(person):
             self.trace.standing(self.loop.runtime.snapshot)
 

@@ -6,6 +6,7 @@ from heapq import merge
 
 from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.statechart import Snapshot, Step
+from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.loop import Observer
 
@@ -44,6 +45,11 @@ class StepMemory(Observer):
         project = self._project()
         self._keep(RecordedStep(project.machine, None if step.event is None else self._last, step, project))
         self._last = step.snapshot
+
+    def forget(self, person: PersonName) -> None:
+        """Forget everything: a name may stand anywhere. The journal, of which it is taken out, still answers."""
+        self._changes.clear()
+        self._idle.clear()
 
     def steps(self) -> list[RecordedStep]:
         """All that are kept, the oldest first."""

@@ -13,8 +13,6 @@ from lumen.cli.moments import moment
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import BusUnreachableError, UsageError
 
-Answer = dict[str, Any]
-
 
 def configure_question(parser: argparse.ArgumentParser) -> None:
     configure_reach(parser)
@@ -22,7 +20,7 @@ def configure_question(parser: argparse.ArgumentParser) -> None:
     configure_format(parser)
 
 
-def put(options: argparse.Namespace, question: str, shown: Callable[[Answer], Iterator[str]]) -> int:
+def put(options: argparse.Namespace, question: str, shown: Callable[[dict[str, Any]], Iterator[str]]) -> int:
     """Ask a running exhibition, else the journal of the project, and print what it says; 1 where that is no answer."""
     at = moment(options.at, datetime.now().astimezone()) if options.at else None
     try:
@@ -40,7 +38,7 @@ def put(options: argparse.Namespace, question: str, shown: Callable[[Answer], It
     return 0
 
 
-def _asked(options: argparse.Namespace, question: str, at: str | None) -> Answer:
+def _asked(options: argparse.Namespace, question: str, at: str | None) -> dict[str, Any]:
     what = options.what or ""
     try:
         reached = reach(options)
@@ -48,7 +46,7 @@ def _asked(options: argparse.Namespace, question: str, at: str | None) -> Answer
         return answer_from_journal(options.project, question, what, at, str(error))
     try:
         body = {"ask": question, "what": what, **({"at": at} if at else {})}
-        found: Answer = next(ask(reached.bus, OPERATOR_KEY, body, OPERATOR_ANSWERS))
+        found: dict[str, Any] = next(ask(reached.bus, OPERATOR_KEY, body, OPERATOR_ANSWERS))
     finally:
         reached.bus.close()
     if found.get("kept") == "later":

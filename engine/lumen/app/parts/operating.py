@@ -54,6 +54,7 @@ class OperatorPart(Part, Observer):
         self._bus = behavior.loop.bus
         runtime = behavior.loop.runtime
         self.steps = StepMemory(lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None)
+        behavior.forgetting.append(self.steps.forget)
         self._answering = AnsweringThread(self._bus, self.steps.steps)
         self._undo = self._bus.subscribe(OPERATOR_KEY, self._came.append)
         behavior.loop.observers += [self.steps, self]

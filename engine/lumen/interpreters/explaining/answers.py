@@ -68,7 +68,7 @@ def why_not(
     """
     history = _history(steps, until)
     if not history.steps:
-        raise UsageError("nothing is kept of that time: ask about a later one, or leave out --at")
+        raise UsageError("nothing is kept of that time: ask about another one with --at")
     last = history.steps[-1]
     end = last.at if until is None else until
     first = next((n for n, one in enumerate(history.steps) if one.at >= end - back), len(history.steps) - 1)

@@ -26,7 +26,7 @@ def effect(history: StepHistory, what: str) -> Effect:
     Raises UsageError, saying what to do, where it did not happen as far as is kept.
     """
     if not history.steps:
-        raise UsageError("nothing is kept of that time: ask about a later one, or leave out --at")
+        raise UsageError("nothing is kept of that time: ask about another one with --at")
     found = next(_effects(history, what), None)
     if found is None:
         raise UsageError(_unknown(history, what))
