@@ -58,6 +58,9 @@ def test_it_is_printed_for_people_and_programs(
     text = capsys.readouterr().out
     assert f"stopped   by {person()}: nobody moves it until `lumen resume`" in text
     assert "visitor   no name known, spoken to in en" in text
+    assert main(["goto", "offer", str(copy), "--yes"]) == 0
+    said = capsys.readouterr().out
+    assert said.endswith(f"{person()} stopped the robot: it moves only after `lumen resume`\n")
 
 
 @pytest.mark.slow

@@ -26,7 +26,8 @@ def test_it_stops_stays_and_goes_on_as_a_person_wants_it(
     assert hold.stopped.by == person()
     monkeypatch.setattr("sys.stdin", Terminal("no\n"))
     assert main(["resume", str(copy)]) == 1
-    assert f"{person()} stopped the robot at 20" in capsys.readouterr().out
+    since = f"{hold.stopped.since.astimezone():%Y-%m-%d %H:%M:%S}"
+    assert f"{person()} stopped the robot at {since}.\n" in capsys.readouterr().out
     assert "stopped" in exhibition.configuration
     monkeypatch.setattr("sys.stdin", io.StringIO())
     assert main(["resume", str(copy)]) == 2

@@ -80,6 +80,13 @@ def test_a_stream_that_the_shell_closed_is_none(monkeypatch: pytest.MonkeyPatch)
     assert main(["explain", "nothing-known"]) == 2
 
 
+def test_nothing_to_say_and_a_name_that_no_system_takes_are_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["say", " "]) == 2
+    assert "there is nothing to say" in capsys.readouterr().err
+    assert main(["new", "a" * 300]) == 2
+    assert "a name is too long for this system" in capsys.readouterr().err
+
+
 def test_no_verb_at_all_prints_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 2
     assert "start a project of your own" in capsys.readouterr().out

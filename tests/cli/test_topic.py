@@ -141,6 +141,7 @@ def test_pub_sends_what_fits_its_route_and_prints_the_answer(run: Run) -> None:
     [
         (["echo", "sonra"], "did you mean `sonar`?"),
         (["pub", "face"], "write `lumen topic pub KEY BODY`"),
+        (["pub", "face", "{x: 1"], "the BODY begins like JSON and is none"),
         (["list", "all"], "write `lumen topic list`"),
         (["hz", "sonar", "--for", "2"], "write a number and its unit"),
     ],

@@ -124,7 +124,9 @@ def test_what_the_robot_cannot_do_is_said_where_it_stands() -> None:
 def test_times_that_go_back_are_left_out() -> None:
     data, diagnostics = read("wave.motion", WEBOTS.replace("00:02:500,Pose3,0.5,*", "00:00:700,Pose3,0.5,0.1"))
     assert [frame["at"] for frame in data["keyframes"]] == ["0.5s", "0.7s", "1s"]
-    assert said(diagnostics) == ["4:21 not-carried-over at 0.7 s `HeadYaw` is told of too late: it was at 1 s already"]
+    assert said(diagnostics) == [
+        "4:21 not-carried-over at 0.7 s `HeadYaw` has a key too late: it has one at 1 s already"
+    ]
 
 
 def test_a_time_before_the_beginning_is_left_out() -> None:

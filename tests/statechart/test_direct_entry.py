@@ -85,3 +85,12 @@ def test_a_machine_at_its_end_stays_there() -> None:
     over = Machine.from_dict({"states": {"a": None, "b": {"type": "final"}}, "initial": "b"}, "over")
     with pytest.raises(UsageError, match="at its end"):
         entered_directly(over, initial(over).snapshot, "a", Event("operator.goto"))
+
+
+@pytest.mark.parametrize("name", ["ask", "game/ask"])
+def test_a_state_of_an_invoked_behaviour_is_entered_by_itself_alone(name: str) -> None:
+    quiz = {"initial": "ask", "states": {"ask": {"after": {"5s": "over"}}, "over": {"type": "final"}}}
+    host: dict[str, Any] = {"states": {"playing": {"invoke": {"id": "game", "behavior": "quiz"}}}}
+    machine = Machine.from_dict(host, "host", {"quiz": quiz})
+    with pytest.raises(UsageError, match=r"`ask` is a state of `quiz`, which `playing` invokes: .* Enter `playing`"):
+        entered_directly(machine, initial(machine).snapshot, name, Event("operator.goto", at=1.0))

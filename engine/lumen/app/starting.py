@@ -11,7 +11,7 @@ from lumen.loading.project import main_settings
 STARTERS = {
     "tour": "the shipped one, with everything",
     "museum": "a guide for five exhibits",
-    "minimal": "a greeting, a gesture and a story, in 50 lines",
+    "minimal": "a greeting, a gesture and a story, in 40 lines",
 }
 EXAMPLES = "examples"
 CHECKOUT = "actions/checkout@11bd71901bbe5b1630ceea73d27597364c9af683  # v4.2.2"

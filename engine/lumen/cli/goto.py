@@ -40,6 +40,8 @@ def run(options: argparse.Namespace) -> int:
         print(f"lumen goto: {way['reason']}", file=sys.stderr)
         return 1
     print(f"in {', '.join(way['entered'])}")
+    if by := way.get("stopped_by"):
+        print(f"{by} stopped the robot: it moves only after `lumen resume`")
     return 0
 
 

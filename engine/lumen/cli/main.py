@@ -114,10 +114,13 @@ def _run(options: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         return 130
     except OSError as error:
-        if error.errno != errno.ENOSPC:
+        if error.errno == errno.ENOSPC:
+            hush(sys.stdout)
+            complain(f"lumen {options.verb}: can't print: no space left on device")
+        elif error.errno == errno.ENAMETOOLONG:
+            complain(f"lumen {options.verb}: a name is too long for this system: {str(error.filename)[:40]}…")
+        else:
             raise
-        hush(sys.stdout)
-        complain(f"lumen {options.verb}: can't write: no space left on device")
         return 2
 
 

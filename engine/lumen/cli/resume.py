@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from datetime import datetime
 from typing import Any
 
 from lumen.cli.commanding import answered, told
@@ -37,10 +38,18 @@ def run(options: argparse.Namespace) -> int:
     return told(options, answer, "the robot may move again")
 
 
+def _here(since: object) -> str:
+    """A time as the clocks here show it."""
+    try:
+        return f"{datetime.fromisoformat(str(since)).astimezone():%Y-%m-%d %H:%M:%S}"
+    except ValueError:
+        return str(since)
+
+
 def _sure(stopped: Any) -> bool:
     """Whether whoever is asked says yes; who stopped it is said before."""
     by, since = (stopped.get(key) for key in ("stopped_by", "since")) if isinstance(stopped, dict) else ("", "")
-    print(f"{by} stopped the robot at {since}." if by else "Nobody has stopped the robot.")
+    print(f"{by} stopped the robot at {_here(since)}." if by else "Nobody has stopped the robot.")
     if not sys.stdin.isatty():
         raise UsageError("resume asks first, but this is not a terminal: say --yes if there is room around the robot")
     return input("It may stand up at once. Is there room around it? [y/N] ").strip().lower() in ("y", "yes", "ya")

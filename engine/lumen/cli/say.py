@@ -5,6 +5,7 @@ import argparse
 from lumen.cli.commanding import command
 from lumen.cli.formats import configure_format
 from lumen.cli.reach import configure_reach
+from lumen.errors import UsageError
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -16,5 +17,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0 once it has said it, 1 where it could not."""
+    if not options.text.strip():
+        raise UsageError("there is nothing to say: write the text in quotes")
     parameter = {"text": options.text, "language": options.language}
     return command(options, {"type": "texttospeech", "method": "say", "parameter": parameter}, "said")

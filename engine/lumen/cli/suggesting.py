@@ -35,7 +35,7 @@ class Suggesting(argparse.ArgumentParser):
         if isinstance(action, argparse._SubParsersAction):
             raise argparse.ArgumentError(None, f"there is no verb `{value}`{_meant(value, action.choices)}")
         hint = did_you_mean(value, map(str, action.choices), "one of")
-        raise argparse.ArgumentError(action, f"`{value}` is none of its words: {hint}")
+        raise argparse.ArgumentError(action, f"`{value}` can't stand here: {hint}")
 
 
 def parse(parser: Suggesting, arguments: Sequence[str]) -> argparse.Namespace:

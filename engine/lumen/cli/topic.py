@@ -124,10 +124,7 @@ def _echo(options: argparse.Namespace, bus: Bus, project: Project | None) -> int
 
 
 def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
-    try:
-        body = json.loads(options.words[1])
-    except (ValueError, RecursionError):
-        body = options.words[1]
+    body = _body(options.words[1])
     patience = _seconds(options.wait, "--wait") if options.wait else 0.0
     key, answers = _key(options.words[0], project), queue.SimpleQueue[Any]()
     reached, returned = bus, list[str]()
@@ -150,6 +147,17 @@ def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
         return 1
     print(json.dumps(came[0], ensure_ascii=False) if options.format == "json" else _short(came[0]))
     return 0
+
+
+def _body(text: str) -> Any:
+    """What is sent: JSON, or else a text. Raises UsageError where JSON was begun and is none."""
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        if text.lstrip()[:1] in ("{", "[") and not isinstance(error, RecursionError):
+            hint = "write it as '{\"count\": 3}', the whole in single quotes"
+            raise UsageError(f"the BODY begins like JSON and is none ({error}): {hint}") from None
+        return text
 
 
 def _within(answers: queue.SimpleQueue[Any], patience: float) -> list[Any]:

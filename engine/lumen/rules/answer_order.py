@@ -67,7 +67,7 @@ def _taken(
     phrases = [phrase for texts in row.phrases.values() for phrase in texts]
     takers = [_taker(machine, phrase, before) for phrase in phrases for before in several]
     if phrases and takers and all(takers):
-        message = f"this is never answered: `{phrases[0]}` is taken for the phrases `{takers[0]}`, asked for first"
+        message = f"this is never answered: `{phrases[0]}` counts as the phrases `{takers[0]}`, which are tried before"
         hint = f"ask for the answers `{table}` before `heard(…, '{takers[0]}')`, or take other phrases"
         report(SHADOWED_ANSWER, ("answers", table, i, "phrases"), message, hint, key=True)
 

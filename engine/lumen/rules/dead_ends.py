@@ -224,7 +224,7 @@ class _Ways:
     def dead_end(self, path: str) -> None:
         state = self.machine.states[path]
         hint = "give it a transition, or `type: final` where the behaviour is at its end"
-        message = f"nothing leads on from `{state.name}`: whoever comes here stays for ever"
+        message = f"nothing leads out of `{state.name}`: the behaviour would stay here for ever"
         self.report(DEAD_END, state.where, message, hint, key=True, related=self.from_where(path))
 
     def lost(self, track: State, home: State, lost: list[str], dead: Iterable[str]) -> None:

@@ -114,7 +114,8 @@ class OperatorPart(Part, Observer):
             step = entered_directly(loop.project.machine, loop.runtime.snapshot, state, event)
         except LumenError as error:
             return _refusal(str(error))
-        said = {"exited": list(step.exited), "entered": list(step.entered)}
+        stopped = self._stopped()
+        said = {"exited": list(step.exited), "entered": list(step.entered), "stopped_by": stopped and stopped.by}
         if only:
             return {"verdict": "possible", **said}
         self._narrator.line("operator", f"goes to {state}, by {by}")

@@ -92,7 +92,7 @@ class MotionWriter:
             if point.time < 0:
                 self.findings.lost(point.place, f"`{joint}` is somewhere {-point.time:g} s before the motion begins")
             elif kept and point.time < kept[-1].time + MIN_KEY_DISTANCE:
-                message = f"at {point.time:g} s `{joint}` is told of too late: it was at {kept[-1].time:g} s already"
+                message = f"at {point.time:g} s `{joint}` has a key too late: it has one at {kept[-1].time:g} s already"
                 self.findings.lost(point.place, message, "times have to increase")
             else:
                 kept.append(point._replace(angle=self._inside(joint, point)))

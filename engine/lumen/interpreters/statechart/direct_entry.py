@@ -8,6 +8,7 @@ from lumen.interpreters.statechart.compiled_machine import compiled
 from lumen.interpreters.statechart.invocations import open_context
 from lumen.interpreters.statechart.macrostep import complete
 from lumen.interpreters.statechart.microstep import microstep
+from lumen.interpreters.statechart.nesting import ID_SEPARATOR
 from lumen.interpreters.statechart.plans import Configuration
 from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.diagnostics import did_you_mean
@@ -20,10 +21,10 @@ def entered_directly(machine: MachineDefinition, snapshot: Snapshot, name: str, 
 
     Left is only what excludes it: regions beside it stay as they are. A state that is active is left and entered again.
     `name` is an alias or a path, or the end of one where no other state has it. Raises UsageError where there is no
-    such state, or the machine is at its end.
+    such state, where it belongs to a behaviour that is invoked, or where the machine is at its end.
     """
     program = compiled(machine)
-    target = _named(program.chart, name)
+    target = _named(machine, program.chart, name)
     context = open_context(program, snapshot, event, max(snapshot.at, event.at))
     if context.configuration.finished:
         raise UsageError(f"`{machine.id}` is at its end: nothing can be entered any more")
@@ -42,7 +43,7 @@ def _way(target: StateNode, standing: Configuration) -> tuple[StateNode, tuple[S
     return next(node for node in target.ancestors if node in standing.nodes), (target,)
 
 
-def _named(chart: Chart, name: str) -> StateNode:
+def _named(machine: MachineDefinition, chart: Chart, name: str) -> StateNode:
     nodes = [node for node in chart.nodes.values() if node.path]
     found = [node for node in nodes if name in (node.name, node.path)]
     found = found or [node for node in nodes if node.path.rpartition(".")[2] == name]
@@ -50,7 +51,20 @@ def _named(chart: Chart, name: str) -> StateNode:
         return found[0]
     if found:
         raise UsageError(f"`{name}` is the end of several: {', '.join(f'`{node.path}`' for node in found)}")
+    if inside := next(_invoked(machine, name), ""):
+        raise UsageError(inside)
     raise UsageError(f"there is no state `{name}`: {did_you_mean(name, _names(nodes), 'there are')}")
+
+
+def _invoked(machine: MachineDefinition, name: str) -> Iterator[str]:
+    """Why a state of that name can't be entered: it is one of a behaviour that the machine invokes."""
+    for state in machine.states.values():
+        for invoke in state.invoke:
+            inner, end = machine.invoked.get(invoke.behavior), name.removeprefix(f"{invoke.id}{ID_SEPARATOR}")
+            paths = [(s.name, s.path, s.path.rpartition(".")[2]) for s in inner.states.values()] if inner else []
+            if any(end in names for names in paths):
+                where = f"a state of `{invoke.behavior}`, which `{state.name}` invokes"
+                yield f"`{end}` is {where}: only its own events lead there. Enter `{state.name}`, where it begins"
 
 
 def _names(nodes: list[StateNode]) -> Iterator[str]:
