@@ -1,6 +1,8 @@
 """The smaller verbs: new, graph, play."""
 
+import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -92,3 +94,15 @@ def test_a_film_of_a_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert main(["play", str(short), "--video", str(file)]) == 0
     assert file.stat().st_size > 1000
     assert file.read_bytes()[4:8] == b"ftyp"
+
+
+def test_what_was_made_is_said_as_one_object(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def printed(*words: str) -> Any:
+        assert main([*words, "--format", "json"]) == 0
+        return json.loads(capsys.readouterr().out)
+
+    folder, file = tmp_path / "exhib", tmp_path / "tour.svg"
+    made = printed("new", str(folder), "--minimal")
+    assert made == {"folder": str(folder), "like": "minimal", "behavior": "hello", "story": "visitor"}
+    assert printed("graph", "-o", str(file), "--layout", "own") == {"behavior": "tour", "wrote": str(file)}
+    assert printed("graph")["mermaid"].startswith("stateDiagram-v2")

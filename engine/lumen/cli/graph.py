@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import lumen
+from lumen.cli.formats import configure_format, print_object
 from lumen.errors import UsageError
 from lumen.formats.diagrams import dot_text, neighbourhood, overview, region, svg
 from lumen.formats.diagrams.diagram import Diagram
@@ -28,6 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--project", metavar="DIR", help="default: here or above, else the shipped one")
     add("-o", "--output", metavar="FILE", type=Path, help=".svg or .png: a picture; .dot: for Graphviz; else Mermaid")
     add("--layout", choices=LAYOUTS, default="auto", help="who lays a picture out: Graphviz's dot where it is, or we")
+    configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -37,6 +39,9 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
     output: Path | None = options.output
     content = _content(options, project.behaviors[name], output.suffix.lower() if output else "")
+    if output is None and options.format == "json":
+        print_object({"behavior": name, "mermaid": content.decode()})
+        return 0
     if output is None:
         print(content.decode(), end="")
         return 0
@@ -44,7 +49,10 @@ def run(options: argparse.Namespace) -> int:
         output.write_bytes(content)
     except OSError as error:
         raise UsageError(f"can't write {output}: {error.strerror}") from None
-    print(f"wrote {output}")
+    if options.format == "json":
+        print_object({"behavior": name, "wrote": str(output)})
+    else:
+        print(f"wrote {output}")
     return 0
 
 

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from lumen.app.starting import STARTERS, start_project
+from lumen.cli.formats import configure_format, print_object
 from lumen.errors import UsageError
 from lumen.loading.project import main_settings
 
@@ -27,6 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default=ACTION,
         help="where its file for GitHub finds Lumen's action: the repository, and the 40 digits of a commit",
     )
+    configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -39,6 +41,9 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(f"can't write {error.filename or folder}: {error.strerror}") from None
     settings = main_settings(folder)
     behavior, story = (settings.behavior, settings.story) if settings else ("", "")
+    if options.format == "json":
+        print_object({"folder": str(folder), "like": options.like, "behavior": behavior, "story": story})
+        return 0
     print(f"{folder} holds a whole exhibition now; its README.md says what is where. Next:")
     print(f"  cd {folder}")
     print(f"  {f'lumen run --story {story}':<29}a scripted visitor meets the robot")

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 import lumen
+from lumen.cli.formats import configure_format, print_object
 from lumen.cli.projects import shown_project
 from lumen.errors import UsageError
 from lumen.formats.plots import PLOT_ENDINGS, PlotSheet, controller_sheet, draw, explained_sheet, motion_sheet
@@ -20,6 +21,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="fuzzy/NAME.yaml or motions/NAME.yaml")
     parser.add_argument("--at", metavar="INPUT=VALUE", nargs="+", default=[], help="a value for each input")
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="a .png or .svg; default: NAME.png, here")
+    configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -35,7 +37,10 @@ def run(options: argparse.Namespace) -> int:
         output.write_bytes(content)
     except OSError as error:
         raise UsageError(f"can't write {output}: {(error.strerror or str(error)).lower()}") from None
-    print(f"wrote {output.absolute()}")
+    if options.format == "json":
+        print_object({"file": options.file, "wrote": str(output.absolute())})
+    else:
+        print(f"wrote {output.absolute()}")
     return 0
 
 
