@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lumen.app.exhibition import Exhibition
     from lumen.app.opening import open
+    from lumen.app.recalling import why, why_not
     from lumen.errors import (
         BadCommandError,
         BadMessageError,
@@ -76,11 +77,14 @@ __all__ = [
     "check",
     "load",
     "open",
+    "why",
+    "why_not",
 ]
 
 _HOMES = {
     "lumen.app.exhibition": ("Exhibition",),
     "lumen.app.opening": ("open",),
+    "lumen.app.recalling": ("why", "why_not"),
     "lumen.errors": (
         "BadCommandError",
         "BadMessageError",

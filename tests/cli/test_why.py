@@ -38,8 +38,12 @@ def kinds(answer: dict[str, Any]) -> list[str]:
 
 def test_a_text_leads_back_to_the_message(greeted: Exhibition) -> None:
     answer = greeted.why("not hear your name")
-    assert set(answer) == {"what", "at", "chain"}
-    assert all(set(link) == LINK for link in answer["chain"])
+    assert set(answer) == {"what", "at", "chain", "needs"}
+    assert all(set(link) == LINK for link in (*answer["chain"], *answer["needs"]))
+    assert [link["text"].partition(":")[0] for link in answer["needs"]] == [
+        "entered ask_name",
+        "entered talking, greet",
+    ]
     assert kinds(answer) == ["command", "activity", "transition", "event", "message"]
     command, _, transition, event, message = answer["chain"]
     assert command["file"] == transition["file"] == "behaviors/tour.yaml"
@@ -129,7 +133,7 @@ def test_a_run_that_is_over_is_asked_by_its_journal(copy: Path, capsys: pytest.C
         exhibition.run(3.0)
         asked = exhibition.why("greet")
     assert main(["why", "greet", str(copy), "--format", "json"]) == 0
-    assert json.loads(capsys.readouterr().out) == asked
+    assert json.loads(capsys.readouterr().out) == asked == lumen.why("greet", str(copy))
 
 
 @pytest.mark.slow

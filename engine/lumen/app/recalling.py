@@ -6,7 +6,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from lumen.app.answering import answer
+from lumen.app.answering import WHY, WHY_NOT, answer
 from lumen.errors import JournalError, UsageError
 from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
@@ -21,6 +21,7 @@ from lumen.runtime.inputs.journal_file import read_journal
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
 from lumen.runtime.snapshot_store import SnapshotStore
 
+NOT_ASKED = "no running exhibition is asked"
 MAX_FILES = 8
 """Of a run that many files before the moment asked about are read, some hours each."""
 
@@ -35,6 +36,20 @@ def answer_from_journal(project: str | None, question: str, what: str, at: str |
     if not steps:
         raise UsageError(f"{why}; and its journal in {home_of(root) / JOURNAL_FOLDER} holds nothing of that time")
     return answer(steps, question, what, at)
+
+
+def why(what: str = "", path: str | None = None, at: str | None = None) -> dict[str, Any]:
+    """Why something happened in the last run of a project, as `lumen why --format json` prints it.
+
+    `path` is the project's folder, else that here or above; `at` an ISO 8601 time until which it happened. Raises
+    UsageError, saying what to do, where it did not, or no journal is kept.
+    """
+    return answer_from_journal(path, WHY, what, at, NOT_ASKED)
+
+
+def why_not(what: str, path: str | None = None, at: str | None = None) -> dict[str, Any]:
+    """Why something did not happen in the last run of a project; as `why`."""
+    return answer_from_journal(path, WHY_NOT, what, at, NOT_ASKED)
 
 
 def recalled(root: Path, until: float | None = None) -> Iterator[RecordedStep]:

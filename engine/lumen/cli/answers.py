@@ -20,6 +20,9 @@ MAX_INACTIVE = 3
 """Ways from states that were not active that are shown; of the others only how many there are."""
 
 
+MAX_NEEDS = 5
+
+
 def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
     """What happened, then a link each, what it rests on beneath it; a time where it is another one."""
     at = ""
@@ -33,6 +36,10 @@ def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
             yield from (f"{INDENT}{' ' * 10}{line}" for line in _values(link["values"]))
         if link["file"]:
             yield f"{INDENT}{' ' * 8 if number else '  '}{_place(link)}"
+    if answer["needs"]:
+        yield f"{INDENT}It rests on what was before:"
+    for link in answer["needs"][:MAX_NEEDS]:
+        yield from _block(_time(link["at"]), f"  {link['text']}", "    ")
 
 
 def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:

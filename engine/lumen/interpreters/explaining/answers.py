@@ -7,12 +7,14 @@ from typing import Any
 from lumen.errors import UsageError
 from lumen.interpreters.explaining.activities import unreached
 from lumen.interpreters.explaining.chains import chain
+from lumen.interpreters.explaining.dependence import directly_needed
 from lumen.interpreters.explaining.effects import effect
 from lumen.interpreters.explaining.history import RecordedStep, StepHistory
 from lumen.interpreters.explaining.links import Link, utc
 from lumen.interpreters.explaining.names import KnownNames, state_named
 from lumen.interpreters.explaining.refusals import ORDER, Reason, TransitionRefusals
 from lumen.interpreters.explaining.ways import deeds, ways
+from lumen.interpreters.explaining.words import of_event
 from lumen.interpreters.statechart.nesting import active_names
 
 LOOKED_BACK = 60.0
@@ -21,15 +23,21 @@ LOOKED_BACK = 60.0
 
 @dataclass(frozen=True, slots=True)
 class WhyAnswer:
-    """Why something happened: the effect first, its cause last. `at` is when it happened [s since 1970, in UTC]."""
+    """Why something happened: the effect first, its cause last. `at` is when it happened [s since 1970, in UTC].
+
+    `needs` are the earlier steps on which it rests beside that: those that entered the states that were active, and
+    that gave what was read its value. What is none of them, or of theirs, made no difference.
+    """
 
     what: str
     at: float
     links: tuple[Link, ...]
+    needs: tuple[Link, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """The object of `lumen why --format json`."""
-        return {"what": self.what, "at": utc(self.at), "chain": [link.to_json() for link in self.links]}
+        chain, needs = ([link.to_json() for link in links] for links in (self.links, self.needs))
+        return {"what": self.what, "at": utc(self.at), "chain": chain, "needs": needs}
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +63,17 @@ def why(steps: Iterable[RecordedStep], what: str = "", until: float | None = Non
     found = effect(history, what)
     links = tuple(chain(history, found))
     one = history.steps[found.number]
-    return WhyAnswer(found.what, one.step.snapshot.epoch + one.at, links)
+    return WhyAnswer(found.what, one.step.snapshot.epoch + one.at, links, tuple(_needs(history, found.number, links)))
+
+
+def _needs(history: StepHistory, number: int, links: tuple[Link, ...]) -> Iterator[Link]:
+    """The newest first, but for what the chain names, and for the start."""
+    named = {link.number for link in links}
+    for earlier in sorted(set(directly_needed(history, number)) - named - {0}, reverse=True):
+        step = history.steps[earlier].step
+        entered = f"entered {', '.join(step.entered)}" if step.entered else "changed what is remembered"
+        by = f": {of_event(step.event)}" if step.event else ""
+        yield Link("event", f"{entered}{by}", step.snapshot.epoch + step.snapshot.at, number=earlier)
 
 
 def why_not(

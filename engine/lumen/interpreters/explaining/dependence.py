@@ -22,11 +22,11 @@ def needed(history: StepHistory, number: int) -> tuple[int, ...]:
         one = left.pop()
         if one not in found:
             found.add(one)
-            left += _directly(history, one)
+            left += directly_needed(history, one)
     return tuple(sorted(found))
 
 
-def _directly(history: StepHistory, number: int) -> Iterator[int]:
+def directly_needed(history: StepHistory, number: int) -> Iterator[int]:
     """The steps that made what a step was decided by: active states, what is remembered, timers and commands."""
     one = history.steps[number]
     before, event = one.before, one.step.event
