@@ -1,0 +1,28 @@
+"""docs/lint-compared.md shows what lint says today; what its peers say is printed by the benchmark."""
+
+import re
+from pathlib import Path
+
+import pytest
+from benchmarks.compare_lint import Mistake, cell, mistakes
+
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs/lint-compared.md").read_text("utf-8")
+
+
+def without_places(text: str) -> str:
+    """Lines move with every change of the tour, for the peers as for us."""
+    return re.sub(r"(?<![\d`])\d+:\d+(?= )|(?<=in line )\d+", "N", text)
+
+
+@pytest.mark.parametrize("mistake", mistakes(), ids=lambda mistake: mistake.what)
+def test_the_page_shows_what_lint_says(mistake: Mistake) -> None:
+    files = read_files(ROOT)
+    files[mistake.file] = files[mistake.file].decode().replace(mistake.old, mistake.new, 1).encode()
+    found = [d for d in check_files(ROOT, files)[1] if d.place.file == mistake.file]
+    said = "; ".join(f"{d.place.line}:{d.place.column} {d.message}{f' ({d.hint})' if d.hint else ''}" for d in found)
+    [row] = re.findall(rf"\*\*{re.escape(mistake.what)}\*\*[\s\S]*?\| lumen lint \| (.*) \|\n", PAGE)
+    assert without_places(row) == without_places(cell(said, ROOT))
