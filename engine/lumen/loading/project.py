@@ -146,8 +146,7 @@ def _each(
     """
     names, read = set(), dict[str, BuiltFile[T]]()
     for file, content in (found.files if files is None else files).items():
-        path = PurePosixPath(file)
-        if str(path.parent) != folder or path.suffix not in (".yaml", ".yml"):
+        if file.rpartition("/")[0] != folder or (path := PurePosixPath(file)).suffix not in (".yaml", ".yml"):
             continue
         if path.suffix == ".yml":
             hint = f"rename it to {path.stem}.yaml, or delete it"
