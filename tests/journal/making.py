@@ -24,6 +24,7 @@ from lumen.runtime.resuming import Resumption, resume
 from lumen.runtime.runtime import Runtime
 
 ROOT = Path(__file__).parents[2]
+MAX_TIMERS = 12
 
 
 @cache
@@ -50,7 +51,12 @@ class Recorded:
         self.runtime.start(self.now, epoch=1_700_000_000.0, timezone="Europe/Berlin")
 
     def happen(self, happening: tuple[str, Any] | None, number: int) -> None:
-        """An event from outside; or by turns time that passes, an answer and a refusal of what is awaited."""
+        """An event from outside; or by turns time that passes, an answer and a refusal of what is awaited.
+
+        Nothing any more where timers have set more and more timers.
+        """
+        if len(self.runtime.snapshot.timers) > MAX_TIMERS:
+            return
         if happening is None and number % 3 == 0 and (event := due(self.runtime.snapshot)):
             self.now = max(self.now, to_the_nanosecond(event.at + 0.001))
             self.runtime.tick(self.now)

@@ -35,6 +35,7 @@ VERBS = {
     "why-not": "say why something did not happen in an exhibition, and what would have made it",
     "goto": "let a running exhibition enter a state",
     "reload": "let a running exhibition read its files again, or say which files run",
+    "replay": "take the steps of a journal again, with the files that ran then or with others",
     "diff": "say what differs between two versions of a project, and where a reload would lead",
     "topic": "list, print, measure and send the messages of a running exhibition",
     "doctor": "check an exhibition's bus, and say what is missing on it",

@@ -9,15 +9,20 @@ from typing import NamedTuple
 
 from lumen.errors import LumenError
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.interpreters.replay.journal_clock import JournalClock
 from lumen.interpreters.statechart import initial
 from lumen.language.machines import MachineDefinition, StateKind
 
+BROKEN = ("start", "gap")
+"""Jumps before which something is missing, or another run was."""
+
 
 class RecordedVisit(NamedTuple):
-    """The entries from `first` to `last` of a journal, by their positions, and when they were [s since 1970, in UTC].
+    """A visit, and when it was [s since 1970, in UTC]; `first` and `last` are the positions of its entries.
 
-    `whole` is whether the behaviour came back home; `redacted` whether somebody was named in it who is forgotten.
-    `bundle` ran when it began.
+    `whole` is whether the behaviour came back home, with nothing missing between; `redacted` whether somebody was named
+    in it who is forgotten. `home` says where the behaviour stood before, None where that is not in the journal, and
+    `inputs` are what happened from then on.
     """
 
     number: int
@@ -25,7 +30,8 @@ class RecordedVisit(NamedTuple):
     last: int
     began: float
     ended: float
-    bundle: str
+    home: JournalJump | None = None
+    inputs: tuple[JournalInput, ...] = ()
     whole: bool = False
     redacted: bool = False
 
@@ -49,11 +55,16 @@ class VisitWatch:
 
     def __init__(self) -> None:
         self._homes: dict[tuple[str, str], str] = {}
-        self._home, self.away, self.epoch, self.bundle = "", False, 0.0, ""
+        self._home, self.away, self.bundle = "", False, ""
+        self._clock = JournalClock()
+        self.at = 0.0
 
     def take(self, entry: RecordedEntry, machine: MachineDefinition | None) -> bool:
-        """Whether the entry is part of a visit; `away` is then whether that goes on. `machine` is the one that runs."""
-        before = self.away
+        """Whether the entry is part of a visit; `away` is then whether that goes on. `machine` is the one that runs.
+
+        `at` is when it was made [s since 1970, in UTC].
+        """
+        before, self.at = self.away, self._clock.of(entry)
         match entry:
             case JournalJump(bundle=bundle, behavior=behavior, snapshot=snapshot):
                 self.bundle = bundle
@@ -61,13 +72,10 @@ class VisitWatch:
                     self._homes[bundle, behavior] = home_of(machine)
                 self._home = self._homes.get((bundle, behavior), "")
                 if isinstance(snapshot, Mapping):
-                    self.epoch = snapshot.get("epoch", self.epoch)
                     self.away = bool(self._home) and self._home not in snapshot.get("configuration", ())
                 if entry.kind in ("start", "resume"):
                     return self.away
-            case JournalInput(event=event, exited=exited, entered=entered):
-                if event.name == event.sendid == "clock set" and isinstance(event.data, Mapping):
-                    self.epoch = event.data.get("epoch", self.epoch)
+            case JournalInput(exited=exited, entered=entered):
                 if self._home and self._home in entered:
                     self.away = False
                 elif self._home and self._home in exited:
@@ -76,21 +84,29 @@ class VisitWatch:
 
 
 def visits(entries: Iterable[tuple[RecordedEntry, MachineDefinition | None]]) -> Iterator[RecordedVisit]:
-    """The visits in a journal, each as it ends; the last may not be `whole`."""
-    watch, current, number = VisitWatch(), None, 0
+    """The visits in a journal, each as it ends; the last may not be `whole`. With each entry comes what ran then."""
+    watch, number = VisitWatch(), 0
+    current: RecordedVisit | None = None
+    home: JournalJump | None = None
+    inputs = list[JournalInput]()
     for entry, machine in entries:
         part = watch.take(entry, machine)
-        at = watch.epoch + (entry.at if isinstance(entry, JournalJump) else entry.event.at)
-        if current and (not part or (isinstance(entry, JournalJump) and entry.kind == "start")):
-            yield current
+        jump = entry if isinstance(entry, JournalJump) else None
+        if current and (not part or (jump and jump.kind in BROKEN)):
+            yield current._replace(home=home, inputs=tuple(inputs))
             current = None
+        if jump and (jump.kind in BROKEN or not watch.away):
+            home, inputs = (None if watch.away else jump), []
+        elif isinstance(entry, JournalInput):
+            inputs.append(entry)
         if part and current is None:
             number += 1
-            current = RecordedVisit(number, entry.position, entry.position, at, at, watch.bundle)
+            current = RecordedVisit(number, entry.position, entry.position, watch.at, watch.at)
         if current:
-            current = current._replace(last=entry.position, ended=at, redacted=current.redacted or entry.redacted)
+            redacted = current.redacted or entry.redacted
+            current = current._replace(last=entry.position, ended=watch.at, redacted=redacted)
             if not watch.away:
-                yield current._replace(whole=True)
-                current = None
+                yield current._replace(home=home, inputs=tuple(inputs), whole=True)
+                current, home, inputs = None, None, []
     if current:
-        yield current
+        yield current._replace(home=home, inputs=tuple(inputs))

@@ -1,0 +1,91 @@
+"""Which part of a journal somebody means: a file, a day, all visits, or what was played last."""
+
+from collections.abc import Iterable, Iterator
+from datetime import date, datetime, time, timedelta
+from pathlib import Path
+from typing import NamedTuple
+
+from lumen.errors import UsageError
+from lumen.interpreters.replay.entries import RecordedEntry
+from lumen.interpreters.replay.journal_clock import JournalClock
+from lumen.runtime.home import home_of
+from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
+from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
+
+DAYS = {"today": 0, "yesterday": 1}
+
+
+class ChosenJournal(NamedTuple):
+    """Files of one journal, in their order; `root` is the project that they are of."""
+
+    root: Path
+    files: tuple[Path, ...]
+
+    def entries(self) -> Iterator[RecordedEntry]:
+        """What stands in them; of a file that was cut what comes before the cut. Raises JournalError."""
+        for file in self.files:
+            yield from read_journal(file).entries
+
+
+def chosen(root: Path, word: str | None, *, all: bool = False) -> ChosenJournal:
+    """The journal of the project in `root` that a word means: a file, `today`, `yesterday`, or a day as `2026-11-23`.
+
+    Without a word it is the run that was begun last, also one of a story; `all` is every visit that is kept. Raises
+    UsageError where there is none.
+    """
+    folder = home_of(root) / JOURNAL_FOLDER
+    if word and (word.endswith(JOURNAL_SUFFIX) or "/" in word):
+        file = Path(word)
+        if not file.is_file():
+            raise UsageError(f"there is no file {word}: `lumen replay --list` shows which there are")
+        header_of(file)
+        return ChosenJournal(root, (file,))
+    found = [(file, header) for file, header in headers(folder) if file.parent == folder or not (all or word)]
+    if all:
+        wanted = found
+    elif word:
+        day = _day(word)
+        wanted = [(file, header) for file, header in found if datetime.fromtimestamp(header.began).date() == day]
+    else:
+        last = max(found, key=lambda row: row[1].began, default=None)
+        wanted = [row for row in found if last and row[1].run == last[1].run]
+    if not wanted:
+        what = f"of {word} " if word else ""
+        raise UsageError(
+            f"nothing {what}is in {folder}: `lumen run` keeps there what happens; see `lumen replay --list`"
+        )
+    return ChosenJournal(root, tuple(file for file, _ in wanted))
+
+
+def listed(root: Path) -> list[tuple[Path, JournalHeader]]:
+    """The files of the project's journal, those of stories too, the oldest first."""
+    return sorted(headers(home_of(root) / JOURNAL_FOLDER), key=lambda row: row[1].began)
+
+
+def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry]:
+    """The entries up to a time of day, `14:03` or `14:03:20`, where the exhibition was. Raises UsageError."""
+    wanted, clock, limit = time_of_day(text), JournalClock(), None
+    for entry in entries:
+        moment = clock.of(entry)
+        if limit is None:
+            limit = clock.next(moment, wanted)
+        if moment > limit:
+            return
+        yield entry
+
+
+def time_of_day(text: str) -> time:
+    """A time as people write it. Raises UsageError."""
+    try:
+        return time.fromisoformat(text.zfill(5) if text.count(":") == 1 else text.zfill(8))
+    except ValueError:
+        raise UsageError(f"`{text}` is no time of day: write it as 14:03 or 14:03:20") from None
+
+
+def _day(word: str) -> date:
+    if word in DAYS:
+        return date.today() - timedelta(days=DAYS[word])
+    try:
+        return date.fromisoformat(word)
+    except ValueError:
+        raise UsageError(f"`{word}` is no file and no day: write today, yesterday, or one such as 2026-11-23") from None

@@ -1,0 +1,116 @@
+"""What came of a replay: how many visits and steps, and where the first of each visit differs."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.interpreters.replay.replaying import MachineSource, ReplayedStep, replay
+from lumen.interpreters.replay.visits import VisitWatch
+
+
+class ReplayDifference(NamedTuple):
+    """Where a visit was another one than now: its number, 0 outside of visits; when [s since 1970]; what was, and is.
+
+    `how` is `differs`, or with other files `says something else` or `ends elsewhere`.
+    """
+
+    visit: int
+    at: float
+    was: str
+    now: str
+    how: str = "differs"
+
+    def to_json(self) -> dict[str, Any]:
+        return {"visit": self.visit, "at": iso(self.at), "was": self.was, "is": self.now, "how": self.how}
+
+
+@dataclass
+class ReplayReport:
+    """How many `visits` there were, how many of them are the `same`; `redacted` ones are not compared.
+
+    `steps` were taken again. `unknown` says why others were not, and of how many entries that is so.
+    """
+
+    visits: int = 0
+    steps: int = 0
+    same: int = 0
+    redacted: int = 0
+    lost: int = 0
+    differ: list[ReplayDifference] = field(default_factory=list)
+    unknown: dict[str, int] = field(default_factory=dict)
+
+    def to_json(self) -> dict[str, Any]:
+        """As `lumen replay --format json` prints it."""
+        return {
+            "visits": self.visits,
+            "steps": self.steps,
+            "same": self.same,
+            "differ": [row.to_json() for row in self.differ],
+            "redacted": self.redacted,
+            "lost": self.lost,
+            "unknown": [{"why": why, "entries": count} for why, count in self.unknown.items()],
+        }
+
+
+class ReplayCount:
+    """Counts replayed steps by their visits; `report` is what they come to."""
+
+    def __init__(self) -> None:
+        self.report = ReplayReport()
+        self._watch, self._inside, self._differs, self._redacted = VisitWatch(), False, False, False
+        self._outside = False
+
+    def take(self, row: ReplayedStep) -> None:
+        """The next step."""
+        report, entry = self.report, row.entry
+        part = self._watch.take(entry, row.machine)
+        begins = isinstance(entry, JournalJump) and entry.kind == "start"
+        if self._inside and (not part or begins):
+            self.end()
+        if part and not self._inside:
+            report.visits += 1
+            self._inside, self._differs, self._redacted = True, False, False
+        report.steps += row.step is not None
+        self._redacted |= entry.redacted
+        if isinstance(entry, JournalJump):
+            report.lost += int(entry.said.get("lost", 0))
+        if row.unknown and not entry.redacted:
+            report.unknown[row.unknown] = report.unknown.get(row.unknown, 0) + 1
+        if row.differs and not (self._differs if self._inside else self._outside):
+            self._tell(row)
+        if self._inside and not self._watch.away:
+            self.end()
+
+    def end(self) -> None:
+        """Nothing follows, or nothing of this visit."""
+        if self._inside:
+            self._inside = False
+            self.report.redacted += self._redacted
+            self.report.same += not self._redacted and not self._differs
+
+    def _tell(self, row: ReplayedStep) -> None:
+        entry = row.entry
+        at = self._watch.at
+        number = self.report.visits if self._inside else 0
+        what = entry.event.name if isinstance(entry, JournalInput) else entry.kind
+        self.report.differ.append(ReplayDifference(number, at, f"{what}: {row.was}", f"{what}: {row.now}"))
+        if self._inside:
+            self._differs = True
+        else:
+            self._outside = True
+
+
+def replayed(entries: Iterable[RecordedEntry], machines: MachineSource) -> ReplayReport:
+    """What comes of taking all steps again with the files that ran then."""
+    count = ReplayCount()
+    for row in replay(entries, machines):
+        count.take(row)
+    count.end()
+    return count.report
+
+
+def iso(at: float) -> str:
+    """A time [s since 1970] as everything that prints JSON writes it: ISO 8601 in UTC."""
+    return datetime.fromtimestamp(at, UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

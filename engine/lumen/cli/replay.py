@@ -1,0 +1,100 @@
+"""`lumen replay`: what happened, taken again with the files that ran then, or with others."""
+
+import argparse
+from collections.abc import Iterator
+from datetime import datetime
+from pathlib import Path
+
+from lumen.app.replaying.journals import chosen, listed, until
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.replaying.other_files import against
+from lumen.app.replaying.replay_report import ReplayReport, replayed
+from lumen.app.versions import version
+from lumen.cli.formats import configure_format, print_object
+from lumen.cli.progress import progress
+from lumen.loading.packaged import find_project
+
+SHOWN = 10
+"""How many differences are shown."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add(
+        "what",
+        nargs="?",
+        metavar="FILE|DAY",
+        help="a .journal file, today, yesterday or 2026-11-23; default: the last run",
+    )
+    add("--all", action="store_true", help="every visit that is kept")
+    add("--list", action="store_true", help="list the files of the journal")
+    add("--project", metavar="DIR", help="whose journal; default: that of the project here or above")
+    add("--until", metavar="14:03", help="only up to that time of day")
+    add("--bundle", metavar="DIR", help="with these files: a folder, or a revision such as HEAD~1")
+    configure_format(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """1 where anything differs."""
+    root = find_project(options.project)
+    if options.list:
+        return _list(root)
+    journal = chosen(root, options.what, all=options.all)
+    entries = journal.entries()
+    if options.until:
+        entries = until(entries, options.until)
+    bundles = KeptBundles(root)
+    if options.bundle is None:
+        report = replayed(entries, bundles.machine)
+    else:
+        new = version(options.bundle, root).project
+        with progress() as tell:
+            report = against(entries, bundles, new, tell=lambda done: tell(done, 0.0, f"{done} visits played"))
+    if options.format == "json":
+        print_object(report.to_json())
+    else:
+        print("\n".join(_lines(report, other=options.bundle is not None)))
+    return int(bool(report.differ))
+
+
+def _lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
+    """What a person reads."""
+    counts = [f"{report.same} the same"]
+    for how in ("differs", "says something else", "ends elsewhere"):
+        count = sum(row.how == how and row.visit > 0 for row in report.differ)
+        if count:
+            counts.append(f"{count} {_plural(how, count)}")
+    if report.redacted:
+        counts.append(f"{report.redacted} redacted, for somebody was forgotten")
+    yield f"{report.visits} visit{'s' * (report.visits != 1)}, {report.steps:,} steps: {', '.join(counts)}"
+    for row in report.differ[:SHOWN]:
+        when = datetime.fromtimestamp(row.at).strftime("%Y-%m-%d %H:%M:%S")
+        yield f"  {f'visit {row.visit}' if row.visit else 'between visits'}, {when}: {row.how}"
+        yield f"    was  {row.was}"
+        yield f"    {'here' if other else 'now '} {row.now}"
+    if len(report.differ) > SHOWN:
+        yield f"  and {len(report.differ) - SHOWN} more"
+    if report.lost:
+        yield f"  not in the journal: {report.lost:,} entries, which the disk refused or was too slow for"
+    for why, count in report.unknown.items():
+        yield f"  not compared: {count:,} {why if other else f'entries: {why}'}"
+
+
+def _plural(how: str, count: int) -> str:
+    if count == 1:
+        return how
+    return {"differs": "differ", "says something else": "say something else", "ends elsewhere": "end elsewhere"}[how]
+
+
+def _list(root: Path) -> int:
+    for file, header in listed(root):
+        when = datetime.fromtimestamp(header.began).strftime("%Y-%m-%d %H:%M:%S")
+        what = (
+            f"the story {header.story}"
+            if header.story
+            else "a program"
+            if file.parent.name == "rehearsed"
+            else "visits"
+        )
+        print(f"{when}  {file.stat().st_size:>9,} B  {what:<20} {file}")
+    return 0

@@ -1,0 +1,40 @@
+"""What time it was, by the clock on the wall, when an entry of a journal was made."""
+
+from collections.abc import Mapping
+from datetime import datetime, time, timedelta, tzinfo
+
+from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
+from lumen.interpreters.wall_clock import zone
+from lumen.language.events import CLOCK_SET
+
+
+class JournalClock:
+    """Follows the entries of a journal: `epoch` is when time 0 was [s since 1970, in UTC]."""
+
+    def __init__(self) -> None:
+        self.epoch, self._timezone = 0.0, ""
+
+    def of(self, entry: RecordedEntry) -> float:
+        """When the next entry was made [s since 1970, in UTC]."""
+        if isinstance(entry, JournalJump):
+            self._set(entry.snapshot)
+            return self.epoch + entry.at
+        event = entry.event
+        if event.name == event.sendid == CLOCK_SET:
+            self._set(event.data)
+        return self.epoch + event.at
+
+    def local(self, moment: float) -> datetime:
+        """That moment where the exhibition was."""
+        where: tzinfo | None = zone(self._timezone) if self._timezone else None
+        return datetime.fromtimestamp(moment, where)
+
+    def next(self, moment: float, wanted: time) -> float:
+        """The first time after a moment at which the clock there shows what is wanted [s since 1970, in UTC]."""
+        here = self.local(moment)
+        then = datetime.combine(here.date(), wanted, here.tzinfo)
+        return (then if then >= here else then + timedelta(days=1)).timestamp()
+
+    def _set(self, said: object) -> None:
+        if isinstance(said, Mapping):
+            self.epoch, self._timezone = said.get("epoch", self.epoch), said.get("timezone", self._timezone)

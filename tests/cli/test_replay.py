@@ -1,0 +1,70 @@
+"""`lumen replay`: the last run, a day, and what other files would have done."""
+
+import json
+from datetime import date
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+
+import lumen
+from lumen.cli.main import main
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def played(tmp_path: Path) -> Path:
+    """A small exhibition in which a visitor was."""
+    folder = copytree(ROOT / "examples" / "minimal", tmp_path / "minimal")
+    (story,) = lumen.load(folder).stories
+    with lumen.open(folder, story=story) as exhibition:
+        exhibition.run()
+    return folder
+
+
+def replayed(folder: Path, capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, dict[str, object]]:
+    capsys.readouterr()
+    code = main(["replay", "--project", str(folder), "--format", "json", *words])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_the_last_run_is_the_same_again_and_other_files_are_not(
+    played: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, same = replayed(played, capsys)
+    assert (code, same["visits"], same["same"], same["differ"], same["unknown"]) == (0, 1, 1, [], [])
+    code, same = replayed(played, capsys, "--bundle", str(played))
+    assert (code, same["same"], same["differ"]) == (0, 1, [])
+    behavior = next((played / "behaviors").glob("*.yaml"))
+    text = behavior.read_text("utf-8")
+    assert "Hello" in text
+    behavior.write_text(text.replace("Hello", "Ahoy"), "utf-8")
+    code, other = replayed(played, capsys, "--bundle", str(played))
+    assert (code, other["same"]) == (1, 0)
+    (row,) = other["differ"]  # type: ignore[misc]  # a list
+    assert (row["visit"], row["how"]) == (1, "says something else")
+    assert "Hello" in row["was"]
+    assert "Ahoy" in row["is"]
+    assert replayed(played, capsys)[0] == 0, "the files that ran then are kept"
+
+
+def test_what_there_is_to_replay(played: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["replay", "--project", str(played), "--list"]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    file = line.split()[-1]
+    assert replayed(played, capsys, file)[1]["visits"] == 1
+    assert replayed(played, capsys, file, "--until", "00:00")[0] == 0
+    for words, says in (
+        (["tomorrow"], "is no file and no day"),
+        ([date.today().isoformat()], "nothing of"),
+        (["nothing.journal"], "there is no file"),
+        (["--all"], "nothing is in"),
+        (["--until", "25:00"], "is no time of day"),
+    ):
+        assert main(["replay", "--project", str(played), *words]) == 2
+        assert says in capsys.readouterr().err
+    Path(file).write_bytes(b"not a journal")
+    assert main(["replay", "--project", str(played), file]) == 2
+    assert "no journal" in capsys.readouterr().err
