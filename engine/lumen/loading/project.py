@@ -172,7 +172,9 @@ def _folders(found: ProjectDraft) -> None:
             found.say(UNREADABLE_FILE, name, f"this can't be read: {content.decode()}", hint)
             found.missing |= {folder for folder in FOLDERS if folder == name or folder.startswith(f"{name}/")}
     for folder, meant in MISTAKEN_FOLDERS.items():
-        if astray := next((name for name in found.files if name.startswith(f"{folder}/")), ""):
+        inside = [name for name in found.files if name.startswith(f"{folder}/")]
+        linked = {name for name in inside if found.files.get(meant + name[len(folder) :]) == found.files[name]}
+        if astray := next((name for name in inside if name not in linked), ""):
             hint = f"move the files that belong to the exhibition to {meant}/"
             found.say(NOT_READ, astray, f"files in {folder}/ are not read", hint)
 
