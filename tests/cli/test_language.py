@@ -160,3 +160,12 @@ def test_what_can_t_be_is_one_line(hall: Path, capsys: pytest.CaptureFixture[str
     assert says in said
     assert said.count("\n") == 1
     assert read_files(hall) == before
+
+
+def test_what_is_said_without_a_language_was_said_in_the_only_one(hall: Path) -> None:
+    file = hall / "behaviors/hello.yaml"
+    file.write_text(BEHAVIOR.replace("{say: {en: Hello!}}", "{say: Hello you!}"), "utf-8")
+    assert main(["language", "add", "de", "--project", str(hall)]) == 0
+    text = file.read_text("utf-8")
+    assert '{say: {en: "Hello you!", de: "TODO Hello you!"}}' in text
+    assert '- say: "{{ state.path }}"\n' in text

@@ -8,8 +8,11 @@ from pathlib import Path
 import pytest
 
 import lumen
+from lumen.cli.agreeing import agrees
 from lumen.cli.main import main
 from lumen.cli.transcript import Transcript
+from lumen.errors import UsageError
+from tests.cli.conftest import Terminal
 from tests.guarded import DEVNULL, PIPE, Guarded
 
 ROOT = Path(__file__).parents[2]
@@ -83,8 +86,28 @@ def test_a_stream_that_the_shell_closed_is_none(monkeypatch: pytest.MonkeyPatch)
 def test_nothing_to_say_and_a_name_that_no_system_takes_are_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["say", " "]) == 2
     assert "there is nothing to say" in capsys.readouterr().err
-    assert main(["new", "a" * 300]) == 2
+    assert main(["test", "a" * 300]) == 2
     assert "a name is too long for this system" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["lint"], ["graph"], ["status"], ["language", "list"]], ids=" ".join)
+def test_a_working_directory_that_is_gone_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: list[str]
+) -> None:
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    assert main(words) == 2
+    assert capsys.readouterr().err == f"lumen {words[0]}: the folder that you are in is gone: `cd` to another one\n"
+
+
+def test_a_question_that_is_not_answered_is_a_no(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", Terminal(""))
+    assert not agrees("Go?", "say --yes")
+    monkeypatch.setattr("sys.stdin", None)
+    with pytest.raises(UsageError, match="say --yes"):
+        agrees("Go?", "say --yes")
 
 
 def test_no_verb_at_all_prints_the_help(capsys: pytest.CaptureFixture[str]) -> None:

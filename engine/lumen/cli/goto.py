@@ -5,6 +5,7 @@ import sys
 from typing import Any
 
 from lumen.app.asking import OPERATOR_ANSWERS, OPERATOR_KEY, ask
+from lumen.cli.agreeing import agrees
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, reach
@@ -54,6 +55,4 @@ def _sure(state: str, way: dict[str, Any]) -> bool:
     """Whether whoever is asked says yes; what it leaves and enters is said before."""
     left = f"leaves {', '.join(way['exited'])} and " if way["exited"] else ""
     print(f"It {left}enters {', '.join(way['entered'])}, whatever any guard says.")
-    if not sys.stdin.isatty():
-        raise UsageError("goto asks first, but this is not a terminal: say --yes")
-    return input(f"Go to {state}? [y/N] ").strip().lower() in ("y", "yes", "ya")
+    return agrees(f"Go to {state}?", "goto asks first, but this is not a terminal: say --yes")

@@ -4,6 +4,7 @@ import argparse
 import errno
 import importlib
 import logging
+import os
 import sys
 import time
 from collections.abc import Collection, Sequence
@@ -120,9 +121,19 @@ def _run(options: argparse.Namespace) -> int:
             complain(f"lumen {options.verb}: can't print: no space left on device")
         elif error.errno == errno.ENAMETOOLONG:
             complain(f"lumen {options.verb}: a name is too long for this system: {str(error.filename)[:40]}…")
+        elif not _somewhere():
+            complain(f"lumen {options.verb}: the folder that you are in is gone: `cd` to another one")
         else:
             raise
         return 2
+
+
+def _somewhere() -> bool:
+    """Whether the working directory is there: somebody may have deleted it."""
+    try:
+        return bool(os.getcwd())
+    except FileNotFoundError:
+        return False
 
 
 if __name__ == "__main__":

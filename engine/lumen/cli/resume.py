@@ -1,10 +1,10 @@
 """`lumen resume`: a robot that a person stopped may move again."""
 
 import argparse
-import sys
 from datetime import datetime
 from typing import Any
 
+from lumen.cli.agreeing import agrees
 from lumen.cli.commanding import answered, told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
@@ -50,6 +50,5 @@ def _sure(stopped: Any) -> bool:
     """Whether whoever is asked says yes; who stopped it is said before."""
     by, since = (stopped.get(key) for key in ("stopped_by", "since")) if isinstance(stopped, dict) else ("", "")
     print(f"{by} stopped the robot at {_here(since)}." if by else "Nobody has stopped the robot.")
-    if not sys.stdin.isatty():
-        raise UsageError("resume asks first, but this is not a terminal: say --yes if there is room around the robot")
-    return input("It may stand up at once. Is there room around it? [y/N] ").strip().lower() in ("y", "yes", "ya")
+    otherwise = "resume asks first, but this is not a terminal: say --yes if there is room around the robot"
+    return agrees("It may stand up at once. Is there room around it?", otherwise)

@@ -9,13 +9,14 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.fixes.edits import Edit, FileText, edited
 from lumen.rules.lookups import value_at
-from lumen.rules.translation import TO_DO, language_entries
+from lumen.rules.translation import TO_DO, language_entries, plain_texts
 
 
 def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str, source: str) -> dict[str, bytes]:
     """The files with a place for the language wherever there is one for `source`, whose words stand there to be read.
 
-    Everything else in them stays as it is, comments included.
+    A text that is said in whatever language was said in the only one so far: it gets both. Everything else in the files
+    stays as it is, comments included.
     """
     assert draft.main is not None  # the caller has checked the project
     edits: dict[str, list[Edit]] = {}
@@ -26,6 +27,13 @@ def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str
             last = (*path, list(by_language)[-1])
             edits.setdefault(text.file, []).append(_beside(report, text, path, last, f"{language}: {words}"))
     main = draft.main
+    if list(value_at(main, ("languages",))) == [source]:
+        for report, path in plain_texts(draft):
+            text, said = FileText(report.document.file, files[report.document.file]), value_at(report, path)
+            both = ", ".join(f"{name}: {json.dumps(words, ensure_ascii=False)}" for name, words in (
+                (source, said), (language, _to_do(said))
+            ))  # fmt: skip
+            edits.setdefault(text.file, []).append(Edit(report.document.place(path), f"{{{both}}}"))
     text = FileText(main.document.file, files[main.document.file])
     spoken = value_at(main, ("languages",))
     last = ("languages", len(spoken) - 1)

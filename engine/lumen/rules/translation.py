@@ -1,5 +1,6 @@
 """What a project says and hears in its languages, and what is missing in one."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -13,6 +14,7 @@ from lumen.rules.lookups import value_at
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import word_tables
 
+_HOLE = re.compile(r"\{\{.*?\}\}")
 TO_DO = "TODO "
 """What a text begins with that is to be translated yet."""
 
@@ -41,6 +43,18 @@ def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
         if isinstance(value, Mapping) and value and value.keys().isdisjoint(("", "any")):
             entries.append(LanguageEntry(report, path, value))
     return entries
+
+
+def plain_texts(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
+    """Where something is said in one line without a language, and is more than a value to fill in."""
+    for name, machine in draft.behaviors.items():
+        report = draft.report("behaviors", name)
+        for site in action_sites(machine):
+            path = (*site.step.where, "say")
+            said = value_at(report, path) if isinstance(site.step.action, SayText) else None
+            place = report.document.place(path)
+            if isinstance(said, str) and place.line == place.end_line and _HOLE.sub("", said).strip(" .,!?"):
+                yield report, path
 
 
 def switched_to(draft: ProjectDraft) -> set[str]:
