@@ -36,7 +36,8 @@ def complain(text: str) -> None:
 def finish() -> str:
     """Print what still waits; why that can't be printed, empty where it could or where nobody reads it."""
     try:
-        sys.stdout.flush()
+        if not sys.stdout.closed:  # as the language server leaves it
+            sys.stdout.flush()
     except BrokenPipeError:
         hush(sys.stdout)
     except OSError as error:
