@@ -6,12 +6,18 @@ from collections.abc import Iterator
 from typing import Any
 
 from lumen.errors import BusUnreachableError
+from lumen.language.routing_keys import OPERATOR_ANSWER, OPERATOR_REQUEST, key_of_robot
 from lumen.ports import Bus
 
-OPERATOR_KEY, OPERATOR_ANSWERS = "lumen.operator.request", "lumen.operator.answer"
-"""Where operators ask a running exhibition, and where its answers come."""
+OPERATOR_ANSWERS = OPERATOR_ANSWER
+"""Where the answers of a running exhibition come."""
 FIRST_ANSWER_TIMEOUT = 10.0
 """How long the first answer may take [s]: files are loaded for it."""
+
+
+def operator_key(robot: str) -> str:
+    """Where operators ask that robot's exhibition."""
+    return key_of_robot(OPERATOR_REQUEST, robot)
 
 
 def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_ANSWER_TIMEOUT) -> Iterator[Any]:

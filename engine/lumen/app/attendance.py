@@ -6,7 +6,7 @@ from contextlib import suppress
 from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
-from lumen.runtime.presence import HERE, PRESENCE_KEY, PRESENCE_PERIOD, PRESENCE_ROUTE, ROBOT_PART
+from lumen.runtime.presence import HERE, PRESENCE_PERIOD, PRESENCE_ROUTE, ROBOT_PART
 
 PRESENCE_TIMEOUT = 4 * PRESENCE_PERIOD
 
@@ -16,9 +16,8 @@ class RobotAttendance:
 
     def __init__(self, bus: Bus, project: Project) -> None:
         self._robot, self._here = project.robot, threading.Event()
-        row = project.routes.get(PRESENCE_ROUTE)
         with suppress(BusError):  # who may not read it is told so elsewhere
-            bus.subscribe(row.key_for(project.robot) if row else PRESENCE_KEY, self._hear)
+            bus.subscribe(project.key_of(PRESENCE_ROUTE), self._hear)
 
     def robot(self) -> bool:
         """Whether it is there; waits for as long as it may take to say so."""

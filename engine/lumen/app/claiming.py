@@ -7,7 +7,7 @@ from lumen.errors import UsageError
 from lumen.language.modules import MODULES
 from lumen.language.projects import Project
 from lumen.ports import Bus
-from lumen.runtime.presence import BRAIN, MOTION, PRESENCE_KEY, PRESENCE_ROUTE, ROBOT_PART, Presence, where_it_runs
+from lumen.runtime.presence import BRAIN, MOTION, PRESENCE_ROUTE, ROBOT_PART, Presence, where_it_runs
 
 CLAIM_DURATION = 0.8
 """How long a process asks whether somebody is already what it wants to be [s]."""
@@ -19,8 +19,7 @@ CLAIM_INTERVAL = 0.02
 
 def presence_of(project: Project, bus: Bus, parts: tuple[str, ...], more: Callable[[], Mapping[str, Any]]) -> Presence:
     """The presence of a process that is these parts, on the project's route."""
-    row = project.routes.get(PRESENCE_ROUTE)
-    return Presence(bus, project.robot, parts, key=row.key_for(project.robot) if row else PRESENCE_KEY, more=more)
+    return Presence(bus, project.robot, parts, key=project.key_of(PRESENCE_ROUTE), more=more)
 
 
 def refuse_rivals(presence: Presence) -> None:

@@ -11,15 +11,17 @@ from lumen.language.causes import TERMINAL
 from lumen.language.routing_keys import default_key
 from lumen.loading.packaged import find_project
 from lumen.loading.project import main_settings
+from lumen.loading.settings import Settings
 from lumen.ports import Bus
 from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
 from lumen.runtime.home import ADDRESS_FILE, Home, home_of, homes
 
 
 class Reached(NamedTuple):
-    """A running exhibition's bus, its broker's address, if any, and the keys under which its robot takes commands."""
+    """A running exhibition's bus, its robot, the keys under which that takes commands, and its broker's address."""
 
     bus: Bus
+    robot: str
     command: str
     stop: str
     broker: str = ""
@@ -34,15 +36,15 @@ def reach_exhibition(project: str | None, bus: str | None) -> Reached:
     found = _running(root)
     url = bus or os.environ.get("LUMEN_BUS") or ("" if found is None else str(found.get("bus", "")))
     if url and not url.startswith("memory:"):
-        return Reached(connect(url, sender=TERMINAL), *_keys(root, found), url)
+        return Reached(connect(url, sender=TERMINAL), _robot(root, found), *_keys(root, found), url)
     if found is None:
         settings = main_settings(root)
         if settings and not settings.bus.startswith("memory:"):
-            return Reached(connect(settings.bus, sender=TERMINAL), *_keys(root, None), settings.bus)
+            return Reached(connect(settings.bus, sender=TERMINAL), settings.robot, *_keys(root, None), settings.bus)
         raise BusUnreachableError(
             f"no exhibition of {root.absolute()} runs on this machine: start it with `lumen run`, or say --bus URL"
         )
-    return Reached(LocalBusClient(LocalAddress.of(found), TERMINAL), *_keys(root, found))
+    return Reached(LocalBusClient(LocalAddress.of(found), TERMINAL), _robot(root, found), *_keys(root, found))
 
 
 def _running(root: Path) -> dict[str, Any] | None:
@@ -72,6 +74,14 @@ def _same_folder(one: object, other: Path) -> bool:
         return isinstance(one, str) and os.path.samefile(one, other)
     except (OSError, ValueError):
         return False
+
+
+def _robot(root: Path, found: dict[str, Any] | None) -> str:
+    """The robot's name, as the exhibition says, else as lumen.yaml does despite its errors."""
+    if found and isinstance(found.get("robot"), str):
+        return str(found["robot"])
+    settings = main_settings(root)
+    return settings.robot if settings else Settings.robot
 
 
 def _keys(root: Path, found: dict[str, Any] | None) -> tuple[str, str]:

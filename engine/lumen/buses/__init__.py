@@ -9,6 +9,7 @@ What crosses a bus:
 
     bodies.py         JSON data as bytes and back, and what bodies and keys may be
     identities.py     ids of messages, and what others say theirs are
+    aliases.py        second names of keys, while one robot is on the bus
     checking.py       what is wrong with a body, by its JSON Schema, in a line
 
 How RabbitMQ is used, from the inside out:

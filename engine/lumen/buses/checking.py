@@ -20,9 +20,11 @@ def body_checks(project: Project) -> dict[str, BodyCheck]:
     """A check for every key of the project's routes that names a schema; schemas are compiled when first needed."""
     compiled = {name: SchemaCheck(schema) for name, schema in project.messages.items()}
     return {
-        route.key_for(project.robot): compiled[route.schema]
+        key: compiled[route.schema]
         for route in project.routes.values()
         if route.schema in compiled
+        for key in (route.alias, route.key_for(project.robot))
+        if key
     }
 
 

@@ -2,10 +2,13 @@
 
 import logging
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
+from lumen.buses.aliases import COPY, Aliases
 from lumen.buses.bodies import check_subscription
 from lumen.buses.checking import BodyCheck, body_checks
+from lumen.buses.identities import filled
 from lumen.errors import BadMessageError, Refused
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.projects import Project
@@ -25,8 +28,8 @@ class ValidatedBus:
 
     A body of our own that does not is our own fault: `publish` raises BusError. One that comes in is not handed to the
     subscriber: `on_refused` is called, the bus puts it aside and answers the sender. Keys without a route pass
-    unchecked where they begin with `avatar` or `lumen`, else they don't pass. `use` takes another bundle of the project
-    while messages flow.
+    unchecked where they begin with `avatar` or `lumen`, else they don't pass. What has an alias is sent and heard under
+    that, too. `use` takes another bundle of the project while messages flow.
     """
 
     def __init__(self, bus: Bus, project: Project, on_refused: OnRefused | None = None) -> None:
@@ -34,7 +37,13 @@ class ValidatedBus:
         self._on_refused = on_refused or ReasonLog(_log, "a message on `%(key)s` was refused: %(reason)s")
         self._checks: dict[str, BodyCheck] = {}
         self._routed: frozenset[str] = frozenset()
+        self._aliases, self._listening = Aliases(), list[_Listening]()
         self.use(project)
+
+    @property
+    def sender(self) -> str:
+        """The program whose handle this is."""
+        return str(getattr(self._bus, "sender", ""))
 
     @property
     def host(self) -> str:
@@ -62,6 +71,10 @@ class ValidatedBus:
         routes = by_key(project)
         self._checks, self._routed = body_checks(project), frozenset(routes)
         self._bus.carry(routes)
+        if not isinstance(self._bus, ValidatedBus):  # whose aliases are sent and heard already
+            self._aliases.use(project, self._bus)
+            for listening in tuple(self._listening):
+                self._listen(listening)
 
     def carry(self, routes: Mapping[str, Route]) -> None:
         self._bus.carry(routes)
@@ -78,7 +91,17 @@ class ValidatedBus:
                 raise Refused(reason)
             handler(message)
 
-        return self._bus.subscribe(pattern, checked)
+        listening = _Listening(pattern, checked, self._bus.subscribe(pattern, checked))
+        self._listening.append(listening)
+        self._listen(listening)
+
+        def undo() -> None:
+            if listening in self._listening:
+                self._listening.remove(listening)
+                listening.undo()
+                listening.undo_alias()
+
+        return undo
 
     def publish(
         self,
@@ -92,13 +115,29 @@ class ValidatedBus:
     ) -> None:
         if reason := self._wrong(key, body):
             raise BadMessageError(f"a message on `{key}` can't be sent: {reason}")
+        alias = self._aliases.names.get(key) if self._aliases.used else None
+        if alias:
+            origin = filled(origin, self.sender)
         self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
+        if alias:
+            copy = origin._replace(id=f"{origin.id}{COPY}")
+            self._bus.publish(alias, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=copy)
 
     def reply(self, message: Message, body: Any) -> None:
         self._bus.reply(message, body)
 
     def close(self) -> None:
         self._bus.close()
+
+    def _listen(self, listening: "_Listening") -> None:
+        """Listen under the alias that the pattern has now, if any."""
+        alias = self._aliases.names.get(listening.pattern, "")
+        if alias == listening.alias:
+            return
+        before, listening.alias, listening.undo_alias = listening.undo_alias, alias, _nothing
+        if alias:
+            listening.undo_alias = self._bus.subscribe(alias, self._aliases.taking(listening.handler))
+        before()
 
     def _wrong(self, key: str, body: Any) -> str:
         check = self._checks.get(key)
@@ -108,10 +147,26 @@ class ValidatedBus:
         return "" if known else "no route of lumen.yaml has this key, and it begins with neither `avatar` nor `lumen`"
 
 
+@dataclass(eq=False)
+class _Listening:
+    """A subscription, and the one under the alias of its key."""
+
+    pattern: str
+    handler: MessageHandler
+    undo: Callable[[], None]
+    alias: str = ""
+    undo_alias: Callable[[], None] = lambda: None
+
+
+def _nothing() -> None:
+    """Ends a subscription that there is not."""
+
+
 def by_key(project: Project) -> dict[str, Route]:
-    """The project's routes under their keys; of several with the same key, the one that promises most."""
+    """The project's routes under their keys and aliases; of several with the same key, the one that promises most."""
     routes = sorted(project.routes.values(), key=lambda route: route.must_arrive)
-    return {route.key_for(project.robot): route for route in routes}
+    aliases = {route.alias: route for route in routes if route.alias and project.aliases is not False}
+    return aliases | {route.key_for(project.robot): route for route in routes}
 
 
 def validated(bus: Bus, project: Project, on_refused: OnRefused | None = None) -> ValidatedBus:

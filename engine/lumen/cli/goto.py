@@ -4,13 +4,13 @@ import argparse
 import sys
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, OPERATOR_KEY, ask
+from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.app.reaching import Reached
 from lumen.cli.agreeing import agrees
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import UsageError
-from lumen.ports import Bus
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -26,12 +26,12 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError("--format json is for programs, which can't be asked: say --yes as well")
     reached = reach(options)
     try:
-        way = _ask(reached.bus, options.state, only="check")
+        way = _ask(reached, options.state, only="check")
         if way["verdict"] != "refused":
             if not options.yes and not _sure(options.state, way):
                 print("it stays where it is")
                 return 1
-            way = _ask(reached.bus, options.state, by=person())
+            way = _ask(reached, options.state, by=person())
     finally:
         reached.bus.close()
     if options.format == "json":
@@ -46,8 +46,9 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _ask(bus: Bus, state: str, **more: str) -> dict[str, Any]:
-    answer: dict[str, Any] = next(ask(bus, OPERATOR_KEY, {"ask": "goto", "state": state, **more}, OPERATOR_ANSWERS))
+def _ask(reached: Reached, state: str, **more: str) -> dict[str, Any]:
+    question = {"ask": "goto", "state": state, **more}
+    answer: dict[str, Any] = next(ask(reached.bus, operator_key(reached.robot), question, OPERATOR_ANSWERS))
     return answer
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, OPERATOR_KEY, ask
+from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
 from lumen.cli.printing import clock_time
 from lumen.cli.reach import configure_reach, reach
 
@@ -20,7 +20,7 @@ def run(options: argparse.Namespace) -> int:
     """0 where one runs and says how it is."""
     reached = reach(options)
     try:
-        status = next(ask(reached.bus, OPERATOR_KEY, {"ask": "status"}, OPERATOR_ANSWERS))
+        status = next(ask(reached.bus, operator_key(reached.robot), {"ask": "status"}, OPERATOR_ANSWERS))
     finally:
         reached.bus.close()
     if options.format == "json":

@@ -2,7 +2,7 @@
 
 import argparse
 
-from lumen.app.reload.requests import COMMAND
+from lumen.app.reload.requests import COMMAND, command_key
 from lumen.cli.commanding import answered, told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
@@ -25,7 +25,8 @@ def run(options: argparse.Namespace) -> int:
     try:
         answer = answered(reached.bus, reached.stop, rest, STOP_TIMEOUT)
     except BusError:
-        reached.bus.publish(COMMAND, {"command": "stop"})  # the behaviour, where only the robot is gone
+        for key in (command_key(reached.robot), COMMAND):  # the behaviour, where only the robot is gone
+            reached.bus.publish(key, {"command": "stop"})
         raise BusUnreachableError(
             f"no robot answers on `{reached.stop}`: it may still move. Press the button on its chest"
         ) from None

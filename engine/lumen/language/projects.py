@@ -13,6 +13,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.retention import JournalRetention
 from lumen.language.robots import Body
 from lumen.language.routes import Route
+from lumen.language.routing_keys import default_key
 from lumen.language.show import Show
 from lumen.language.stories import Story
 
@@ -36,7 +37,8 @@ class Project:
     default first; `messages` maps a message's name to its JSON Schema; `documents` know where in each file what
     stands. `timezone` is where it is, empty for wherever it runs. `patience` [s] is how long saved files wait for what
     is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by name;
-    `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened.
+    `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened. `aliases` is
+    whether routes have their aliases: None for as long as no other robot is seen on the bus.
     """
 
     root: str
@@ -62,6 +64,7 @@ class Project:
     places: Mapping[str, HallPlace] = field(default_factory=dict)
     show: Show = field(default_factory=Show)
     journal: JournalRetention = field(default_factory=JournalRetention)
+    aliases: bool | None = None
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 
@@ -69,6 +72,11 @@ class Project:
     def machine(self) -> MachineDefinition:
         """The behaviour that runs."""
         return self.behaviors[self.behavior]
+
+    def key_of(self, route: str) -> str:
+        """The routing key of a route, which the project need not list if it is one of Lumen's own."""
+        row = self.routes.get(route)
+        return row.key_for(self.robot) if row else default_key(route, self.robot)
 
     def place(self, file: str, where: NodePath) -> Place:
         """Where in a file stands what a state, transition, action or scene calls its `where`."""

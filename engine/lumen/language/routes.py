@@ -81,10 +81,11 @@ SHORTEST_IMAGE_INTERVAL = 0.033
 class Route:
     """A row of the route table in `lumen.yaml`.
 
-    `key` may hold `{robot}`. `schema` names a file of `schemas/messages/`. `event` is the event that a message
-    becomes for the behaviour. `every` [s] is the period of a sense, `size` that of its images, None for the camera's
-    own; `ttl` [s] the time to live, `keep` how many messages wait at most, `most` how many are taken a second,
-    `latency` [s] how old a body without a `time` is taken to be. `must_arrive`: who sends it keeps it until the
+    `key` may hold `{robot}`; `alias` is what it is called besides while one robot is on the bus: what goes out goes out
+    under both, what comes in may come under either. `schema` names a file of `schemas/messages/`. `event` is the event
+    that a message becomes for the behaviour. `every` [s] is the period of a sense, `size` that of its images, None for
+    the camera's own; `ttl` [s] the time to live, `keep` how many messages wait at most, `most` how many are taken a
+    second, `latency` [s] how old a body without a `time` is taken to be. `must_arrive`: who sends it keeps it until the
     broker has it, who takes it gives it back unless it was handled.
     """
 
@@ -101,6 +102,7 @@ class Route:
     must_arrive: bool = False
     latency: float = 0.15
     most: float | None = None
+    alias: str = ""
     where: NodePath = field(default=(), compare=False)
 
     def key_for(self, robot: str) -> str:

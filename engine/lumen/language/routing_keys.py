@@ -19,9 +19,31 @@ DEFAULT_KEYS: Mapping[str, str] = {
     "noticed": "avatar.{robot}.event.noticed",
     "hall": "avatar.{robot}.hall",
     "seen": "avatar.{robot}.hall.seen",
+    "presence": "lumen.{robot}.presence",
+    "state": "lumen.{robot}.state",
+    "motion": "lumen.motion.{robot}.command",
+    "heard": "lumen.{robot}.audio.speech.recognition",
+    "gender": "lumen.{robot}.audio.gender.identification",
+    "wav_stream": "lumen.{robot}.audio.wav.stream",
+    "text_stream": "lumen.{robot}.audio.text.stream",
+    "text_to_speech": "lumen.{robot}.audio.text.to.speech",
+    "face": "lumen.{robot}.visual.face.detection",
+    "recognised": "lumen.{robot}.visual.face.recognition",
+    "face_tracking": "lumen.{robot}.visual.face.tracking",
+    "human": "lumen.{robot}.visual.human.detection",
+    "visual_command": "lumen.{robot}.visual.command",
+    "social_perception": "lumen.{robot}.social.perception",
+    "social_expression": "lumen.{robot}.social.expression",
+    "fact": "lumen.{robot}.persistence.fact",
+    "forgotten": "lumen.{robot}.persistence.forgotten",
+    "journal": "lumen.{robot}.persistence.journal",
+    "trouble": "lumen.{robot}.trouble",
+}
+"""The routes that Lumen and its modules use, and the key of each where lumen.yaml does not say otherwise."""
+
+DEFAULT_ALIASES: Mapping[str, str] = {
     "presence": "lumen.presence",
     "state": "lumen.state",
-    "motion": "lumen.motion.{robot}.command",
     "heard": "lumen.audio.speech.recognition",
     "gender": "lumen.audio.gender.identification",
     "wav_stream": "lumen.audio.wav.stream",
@@ -32,14 +54,9 @@ DEFAULT_KEYS: Mapping[str, str] = {
     "face_tracking": "lumen.visual.face.tracking",
     "human": "lumen.visual.human.detection",
     "visual_command": "lumen.visual.command",
-    "social_perception": "lumen.{robot}.social.perception",
-    "social_expression": "lumen.{robot}.social.expression",
-    "fact": "lumen.{robot}.persistence.fact",
-    "forgotten": "lumen.{robot}.persistence.forgotten",
-    "journal": "lumen.{robot}.persistence.journal",
     "trouble": "lumen.trouble",
 }
-"""The routes that Lumen and its modules use, and the key of each where lumen.yaml does not say otherwise."""
+"""The keys of 2015, which knew of one robot, for routes that lumen.yaml does not list (`Route.alias`)."""
 
 SHARED_ROUTES = frozenset((
     "heard", "gender", "wav_stream", "text_stream", "text_to_speech", "face", "recognised", "face_tracking", "human",
@@ -47,8 +64,22 @@ SHARED_ROUTES = frozenset((
 ))  # fmt: skip
 """Where modules and behaviours speak with each other: any route may send under their keys, whatever its name."""
 
-INTERNAL_KEYS = ("lumen.config.command", "lumen.config.status", "lumen.operator.request", "lumen.operator.answer")
-"""Keys of ours that have no route: orders to reload, what comes of them, what operators ask, and the answers."""
+CONFIG_COMMAND, CONFIG_STATUS = "lumen.{robot}.config.command", "lumen.{robot}.config.status"
+"""Keys of ours that have no route: orders to reload, and what comes of them."""
+OPERATOR_REQUEST, OPERATOR_ANSWER = "lumen.{robot}.operator.request", "lumen.operator.answer"
+"""What operators ask, and the answers, which are told apart by their `correlation_id`."""
+INTERNAL_ALIASES: Mapping[str, str] = {
+    CONFIG_COMMAND: "lumen.config.command",
+    CONFIG_STATUS: "lumen.config.status",
+    OPERATOR_REQUEST: "lumen.operator.request",
+}
+"""What these are called where there is one robot."""
+INTERNAL_KEYS = (*INTERNAL_ALIASES.values(), *INTERNAL_ALIASES, OPERATOR_ANSWER)
+
+
+def key_of_robot(key: str, robot: str) -> str:
+    """The key with the robot's name in it."""
+    return key.replace("{robot}", robot)
 
 
 def default_key(route: str, robot: str) -> str:

@@ -110,6 +110,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         alerts=settings.alerts,
         places=settings.places,
         journal=settings.journal,
+        aliases=settings.aliases,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )

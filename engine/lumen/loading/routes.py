@@ -18,18 +18,20 @@ _USUAL = {COMMAND: Carried.COMMAND, STOP: Carried.STOP}
 """How the routes are carried whose names say it."""
 
 
-def build_routes(data: Mapping[str, Any], report: DocumentReport, where: NodePath = ("routes",)) -> dict[str, Route]:
-    """The routes by name, in the order written."""
-    return {name: build_route(name, row, report, (*where, name)) for name, row in data.items()}
+def build_routes(
+    data: Mapping[str, Any], report: DocumentReport, where: NodePath = ("routes",), stand: str = ""
+) -> dict[str, Route]:
+    """The routes by name, in the order written; `{stand}` in their keys is the stand's name, where it has one."""
+    return {name: build_route(name, row, report, (*where, name), stand) for name, row in data.items()}
 
 
-def build_route(name: str, data: Mapping[str, Any], report: DocumentReport, where: NodePath) -> Route:
+def build_route(name: str, data: Mapping[str, Any], report: DocumentReport, where: NodePath, stand: str = "") -> Route:
     """One row; a duration that can't be read is reported and left out."""
     latency = duration(data, "latency", report, where)
     carried = Carried(data.get("carried", _USUAL.get(name, Carried.TELEMETRY)))
     return Route(
         name=name,
-        key=data["key"],
+        key=data["key"].replace("{stand}", stand or "{stand}"),
         direction=Direction(data["direction"]),
         schema=data.get("schema", ""),
         event=data.get("event", ""),
@@ -40,6 +42,7 @@ def build_route(name: str, data: Mapping[str, Any], report: DocumentReport, wher
         carried=carried,
         must_arrive=data.get("must_arrive", carried is not Carried.TELEMETRY),
         most=_rate(data),
+        alias=data.get("alias", ""),
         latency=DEFAULT_LATENCY if latency is None else latency,
         where=where,
     )

@@ -51,6 +51,8 @@ class Settings:
     places: Mapping[str, HallPlace] = field(default_factory=dict)
     show: Show = field(default_factory=Show)
     journal: JournalRetention = field(default_factory=JournalRetention)
+    stand: str = ""
+    aliases: bool | None = None
 
 
 def build_settings(data: Any, report: DocumentReport) -> Settings:
@@ -68,7 +70,7 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         story=data.get("story", ""),
         languages=tuple(data.get("languages", ())),
         timezone=_timezone(data, report),
-        routes=build_routes(data.get("routes", {}), report),
+        routes=build_routes(data.get("routes", {}), report, stand=robot.get("stand", "")),
         stage=_stage(data, report),
         bus=data.get("bus", Settings.bus),
         patience=_patience(data, report),
@@ -77,6 +79,8 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         places=_places(data, report),
         show=build_show(modules.get(SHOW, {})),
         journal=_journal(data, report),
+        stand=robot.get("stand", ""),
+        aliases=data.get("aliases"),
     )
 
 

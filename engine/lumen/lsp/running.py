@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from threading import Event
 
-from lumen.app.asking import OPERATOR_ANSWERS, OPERATOR_KEY, ask
+from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
 from lumen.app.reaching import Reached, reach_exhibition, runs_here
 from lumen.errors import LumenError
 
@@ -46,8 +46,9 @@ class RunningExhibitions:
                 return ()
             if root not in self._reached:
                 self._reached[root] = reach_exhibition(str(root), None)
-            bus = self._reached[root].bus
-            status = next(ask(bus, OPERATOR_KEY, {"ask": "status"}, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
+            found = self._reached[root]
+            key = operator_key(found.robot)
+            status = next(ask(found.bus, key, {"ask": "status"}, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
             return tuple(map(str, status["configuration"]))
         except (LumenError, KeyError, TypeError, StopIteration):
             self._lose(root)

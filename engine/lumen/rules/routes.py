@@ -17,7 +17,7 @@ from lumen.language.routes import (
     Direction,
     Route,
 )
-from lumen.language.routing_keys import DEFAULT_KEYS
+from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.events import descriptors, hears
@@ -54,7 +54,8 @@ def check(draft: ProjectDraft) -> None:
             references.look_up(report, (*route.where, "schema"), "message", route.schema)
         if route.event:
             _event(draft, report, route)
-            other = events.setdefault((route.key_for(settings.robot), route.event), name)
+            keys = (key for key in (route.key_for(settings.robot), route.alias) if key)
+            other = next((o for key in keys if (o := events.setdefault((key, route.event), name)) != name), name)
             if other != name:
                 message = f"`{other}` has the same key and becomes the same event"
                 related = [((*settings.routes[other].where, "key"), "the other one stands here")]
@@ -117,7 +118,7 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
 
 def _meant(route: Route) -> Iterator[str]:
     """The routes of Lumen's own whose key a route has."""
-    return (name for name, key in DEFAULT_KEYS.items() if key == route.key)
+    return (name for keys in (DEFAULT_KEYS, DEFAULT_ALIASES) for name, key in keys.items() if key == route.key)
 
 
 def _moves_joints(draft: ProjectDraft, action: object) -> bool:

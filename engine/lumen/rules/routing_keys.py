@@ -6,12 +6,13 @@ from difflib import get_close_matches
 
 from lumen.language.diagnostics import ERROR, WARNING, Code
 from lumen.language.routes import MEANINGS, Direction, Route
-from lumen.language.routing_keys import DEFAULT_KEYS, INTERNAL_KEYS, KEY_PREFIXES, SHARED_ROUTES
+from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS, INTERNAL_KEYS, KEY_PREFIXES, SHARED_ROUTES
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.settings import Settings
 
 ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has a form that no message could have")
 TAKEN_KEY = Code("taken-key", "routes", ERROR, "a route sends under a key that Lumen itself uses for something else")
+SHARED_KEY = Code("shared-key", "routes", WARNING, "robots that share a bus have the same key")
 NEAR_KEY = Code("near-key", "routes", WARNING, "a routing key is almost one of Lumen's own")
 
 MAX_ROUTING_KEY_BYTES = 255
@@ -25,10 +26,12 @@ _WORD = re.compile(r"[^\s.*#{}]+|\{robot\}")
 def check_key(report: DocumentReport, route: Route, settings: Settings) -> bool:
     """Whether the routing key could be a message's of that exhibition; what is wrong or odd is reported."""
     path = (*route.where, "key")
-    message, hint = _fault(route.key)
-    if message:
-        report(ROUTE_KEY, path, message, hint)
-        return False
+    for key, name in ((route.key, "key"), (route.alias, "alias")):
+        message, hint = _fault(key) if key or name == "key" else ("", "")
+        if message:
+            report(ROUTE_KEY, (*route.where, name), message, hint)
+            return False
+    _shared(report, route, settings)
     if route.direction is Direction.OUT and _taken(report, route, settings):
         return False
     first = route.key.split(".")[0]
@@ -47,6 +50,8 @@ def _fault(key: str) -> tuple[str, str]:
         return f"`{key}` has an empty word", "write words with single dots between them"
     if " " in key:
         return f"`{key}` holds a blank", f"write dots between its words: {'.'.join(key.replace('.', ' ').split())}"
+    if "{stand}" in words:
+        return "`{stand}` is the name of a stand, and none has one", "write `stand:` beside the `name:` of `robot:`"
     if bad := [word for word in words if not _WORD.fullmatch(word)]:
         return f"`{bad[0]}` can't be a word of a routing key", "`{robot}` stands for the robot's name, as a whole word"
     if len(key.encode("utf-8", "replace")) > MAX_ROUTING_KEY_BYTES:
@@ -74,4 +79,21 @@ def _owners(settings: Settings) -> Mapping[str, str]:
     """The names of the routes that are Lumen's alone by the keys that they have in this exhibition."""
     own = {name: key for name, key in DEFAULT_KEYS.items() if name not in SHARED_ROUTES}
     keys = {name: settings.routes[name].key if name in settings.routes else key for name, key in own.items()}
-    return {key.replace("{robot}", settings.robot): name for name, key in keys.items()}
+    aliases = {alias: name for name, alias in DEFAULT_ALIASES.items() if name in own and name not in settings.routes}
+    return aliases | {key.replace("{robot}", settings.robot): name for name, key in keys.items()}
+
+
+def _shared(report: DocumentReport, route: Route, settings: Settings) -> None:
+    """Where several robots share a broker, what one of them hears must say whom it is for."""
+    ours = route.name in DEFAULT_KEYS
+    if settings.aliases is not False or "{robot}" in route.key or not (ours or route.event):
+        return
+    what = f"becomes `{route.event}` for all of them" if route.event else "is nobody's in particular"
+    message = f"what comes on `{route.key}` {what}: several robots share the bus (`aliases: false`)"
+    hint = f"write {DEFAULT_KEYS[route.name] if ours else _with_robot(route.key)}"
+    report(SHARED_KEY, (*route.where, "key"), message, hint)
+
+
+def _with_robot(key: str) -> str:
+    first, *rest = key.split(".")
+    return ".".join((first, "{robot}", *rest))

@@ -13,11 +13,12 @@ from typing import Any
 from lumen.errors import BusError
 from lumen.language.events import Event
 from lumen.language.modules import MODULES
-from lumen.language.routing_keys import DEFAULT_KEYS
+from lumen.language.routing_keys import DEFAULT_ALIASES
 from lumen.ports import Bus, Message
 
 PRESENCE_ROUTE = "presence"
-PRESENCE_KEY = DEFAULT_KEYS[PRESENCE_ROUTE]
+PRESENCE_KEY = DEFAULT_ALIASES[PRESENCE_ROUTE]
+"""Where a process says that it is there if nobody says under which key: the one of a bus with one robot."""
 ROBOT_PART, BRAIN, MOTION, VISITOR = PROCESS_PARTS = ("robot", "brain", "motion", "visitor")
 PRESENCE_PERIOD = 0.5
 """How often a process says that it is there [s]."""

@@ -11,12 +11,10 @@ from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.language.commands import Command, Log, Publish, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.language.routing_keys import DEFAULT_KEYS
 from lumen.ports import Bus
 from lumen.runtime.loop import Observer
 
 TRACE_ROUTE = "state"
-TRACE_KEY = DEFAULT_KEYS[TRACE_ROUTE]
 TRACE_TTL = 10.0
 
 _log = logging.getLogger(__name__)
@@ -69,7 +67,8 @@ class TracePublisher(Observer):
     def _tell(self, what: dict[str, Any]) -> None:
         project = self._project()
         row = project.routes.get(TRACE_ROUTE)
-        key, ttl = (row.key_for(project.robot), row.ttl) if row else (TRACE_KEY, TRACE_TTL)
+        ttl = row.ttl if row else TRACE_TTL
+        key = project.key_of(TRACE_ROUTE)
         try:
             self._bus.publish(key, {"robot": project.robot, "time": round(self._now(), 3), **what}, ttl=ttl)
         except BusError as error:

@@ -9,7 +9,7 @@ from lumen.language.commands import BodyCommand, Command, Publish, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
-from lumen.runtime.trace_publisher import TRACE_KEY, TRACE_ROUTE
+from lumen.runtime.trace_publisher import TRACE_ROUTE
 from lumen.upkeep.threads import MessageGuard
 
 MAX_PENDING_TRACES = 10_000
@@ -43,8 +43,7 @@ class TraceSubscriber:
         self.watchers: list[TraceListener] = []
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_TRACES)
         self._guard = MessageGuard(_log, "who watches the behaviour")
-        row = project.routes.get(TRACE_ROUTE)
-        self._undo = bus.subscribe(row.key_for(project.robot) if row else TRACE_KEY, self._came.append)
+        self._undo = bus.subscribe(project.key_of(TRACE_ROUTE), self._came.append)
 
     def tick(self, now: float) -> None:
         """Tell of all that has come."""

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from lumen.app.answering import WHY, WHY_NOT, AnsweringThread
-from lumen.app.asking import OPERATOR_KEY
+from lumen.app.asking import operator_key
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
@@ -56,7 +56,7 @@ class OperatorPart(Part, Observer):
         self.steps = StepMemory(lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None)
         behavior.forgetting.append(self.steps.forget)
         self._answering = AnsweringThread(self._bus, self.steps.steps)
-        self._undo = self._bus.subscribe(OPERATOR_KEY, self._came.append)
+        self._undo = self._bus.subscribe(operator_key(behavior.project.robot), self._came.append)
         behavior.loop.observers += [self.steps, self]
 
     def begin(self, now: float) -> None:

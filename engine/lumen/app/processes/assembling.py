@@ -127,7 +127,8 @@ def assemble(
         node.parts.append(RemoteVisitorPart(project, bus, narrator, story, telling=BRAIN not in names))
     node.parts += [ModulePart(name, project, bus, narrator.line, folder) for name in names if name in MODULES]
     if BRAIN not in names:
-        follower = BundleFollower(Path(project.root), bus, node.use, lambda line: narrator.line("reload", line))
+        root = Path(project.root)
+        follower = BundleFollower(root, project.robot, bus, node.use, lambda line: narrator.line("reload", line))
         node.before.append(follower.tick)
         node.closing.append(follower.close)
     return node

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from lumen.app.reload.requests import STATUS
+from lumen.app.reload.requests import status_key
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.ports import Bus, Message
@@ -17,16 +17,19 @@ MOVED = ("applied", "rolled back")
 
 
 class BundleFollower:
-    """Hears what becomes of saved files, and loads them on a thread of its own; `tick` hands on what was loaded.
+    """Hears what becomes of the saved files of that robot's brain, and loads them on a thread of its own.
 
-    `tell` hears where the files here are not those that the brain runs on: another machine may have others.
+    `tick` hands on what was loaded. `tell` hears where the files here are not those that the brain runs on: another
+    machine may have others.
     """
 
-    def __init__(self, root: Path, bus: Bus, use: Callable[[Project], None], tell: Callable[[str], None]) -> None:
+    def __init__(
+        self, root: Path, robot: str, bus: Bus, use: Callable[[Project], None], tell: Callable[[str], None]
+    ) -> None:
         self._root, self._use, self._tell = root, use, tell
         self._wanted: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._loaded: queue.SimpleQueue[Project | str] = queue.SimpleQueue()
-        self._undo = bus.subscribe(STATUS, self._hear)
+        self._undo = bus.subscribe(status_key(robot), self._hear)
         self._thread = WatchedThread("lumen-bundles", self._run)
         self._thread.start()
 

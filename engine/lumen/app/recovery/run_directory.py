@@ -107,6 +107,7 @@ class RunDirectory:
             "root": str(self.root.absolute()),
             "process": os.getpid(),
             "bus": self._bus,
+            "robot": project.robot,
             "command": key_of(project, COMMAND_ROUTE),
             "stop": key_of(project, STOP_ROUTE),
             "path": address.path if address else "",

@@ -8,7 +8,7 @@ from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.report import ReloadReport
-from lumen.app.reload.requests import STATUS, ReloadRequest
+from lumen.app.reload.requests import ReloadRequest, status_key
 from lumen.errors import BusError
 
 _log = logging.getLogger(__name__)
@@ -35,7 +35,8 @@ class ReloadNotifier:
         for order in orders:
             order.answer(told)
         try:
-            self._behavior.loop.bus.publish(STATUS, told)
+            loop = self._behavior.loop
+            loop.bus.publish(status_key(loop.project.robot), told)
         except BusError as error:
             _log.warning("what came of the saved files was not published: %s", error)
 

@@ -14,7 +14,7 @@ from lumen.app.reload.migration_queue import MigrationQueue, StagedBundle
 from lumen.app.reload.notifier import ReloadNotifier
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.report import ReloadReport
-from lumen.app.reload.requests import COMMAND, WAITING, ReloadRequest, answering, request_from
+from lumen.app.reload.requests import WAITING, ReloadRequest, answering, command_key, request_from
 from lumen.app.reload.validation_worker import FileJudge, ValidationWorker
 from lumen.app.reload.validator import BUDGET, BundleValidator, Validation, fault_of, told
 from lumen.app.status import LastReload
@@ -74,7 +74,7 @@ class Reloader:
             leisure=self._advise,
             noticed=self._worker.begin,
         )
-        self._undo = self._bus.subscribe(COMMAND, self._came.append)
+        self._undo = self._bus.subscribe(command_key(behavior.project.robot), self._came.append)
         self._watcher.start()
 
     @property

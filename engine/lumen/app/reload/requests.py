@@ -6,11 +6,23 @@ from typing import Any
 
 from lumen.errors import BusError, UsageError
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.routing_keys import CONFIG_COMMAND, CONFIG_STATUS, INTERNAL_ALIASES, key_of_robot
 from lumen.ports import Bus, Message
 
-COMMAND, STATUS = "lumen.config.command", "lumen.config.status"
+COMMAND, STATUS = INTERNAL_ALIASES[CONFIG_COMMAND], INTERNAL_ALIASES[CONFIG_STATUS]
+"""Where orders come, and what becomes of them is told, while one robot is on the bus."""
 REQUESTS = ("reload", "apply", "rollback", "dry-run", "status", "stop")
 WAITING = 100
+
+
+def command_key(robot: str) -> str:
+    """Where orders to that robot's exhibition come."""
+    return key_of_robot(CONFIG_COMMAND, robot)
+
+
+def status_key(robot: str) -> str:
+    """Where that robot's exhibition tells what becomes of saved files."""
+    return key_of_robot(CONFIG_STATUS, robot)
 
 
 @dataclass(frozen=True)

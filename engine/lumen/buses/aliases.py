@@ -1,0 +1,97 @@
+"""The second names of keys: those of 2015, which knew of one robot, and how long they are used.
+
+A message of ours goes out under its key and under the alias; the copy is marked in its id, so that whoever listens to
+both takes it once. While another robot is on the same bus neither happens: nobody hears another's visitor.
+"""
+
+import logging
+import time
+from collections.abc import Callable, Mapping
+
+from lumen.errors import BusError
+from lumen.language.projects import Project
+from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS, INTERNAL_ALIASES, default_key, key_of_robot
+from lumen.ports import Bus, Message, MessageHandler
+
+COPY = "/alias"
+"""How the id of a copy ends that goes out under an alias."""
+AWAY_AFTER = 10.0
+"""How long another robot has to be silent to be gone [s]; it says every half second that it is there."""
+MAX_ROBOTS = 100
+"""How many other robots are remembered: nobody fills the memory."""
+PRESENCE = "presence"
+
+_log = logging.getLogger(__name__)
+
+
+def aliases_of(project: Project) -> Mapping[str, str]:
+    """The aliases of a project's keys, and of those of ours that it does not list."""
+    if project.aliases is False:
+        return {}
+    listed = {row.key_for(project.robot): row.alias for row in project.routes.values() if row.alias}
+    unlisted = DEFAULT_ALIASES.keys() - project.routes.keys()
+    own = {default_key(route, project.robot): DEFAULT_ALIASES[route] for route in unlisted}
+    return {key_of_robot(key, project.robot): alias for key, alias in INTERNAL_ALIASES.items()} | own | listed
+
+
+class Aliases:
+    """Which aliases are used now; `listen` has others' presence say so. Safe from any thread."""
+
+    def __init__(self) -> None:
+        self.names: Mapping[str, str] = {}
+        self._project: Project | None = None
+        self._others: dict[str, float] = {}
+        self._undo: list[Callable[[], None]] = []
+
+    def use(self, project: Project, bus: Bus) -> None:
+        """Go on with this project's aliases, and look out for other robots where there are any."""
+        old, self._undo, self._project = self._undo, [], project
+        self.names = aliases_of(project)
+        for pattern in _presences(project) if self.names else ():
+            try:
+                self._undo.append(bus.subscribe(pattern, self._hear))
+            except BusError as error:
+                _log.debug("who else is on the bus can't be heard: %s", error)
+        for undo in old:
+            undo()
+
+    @property
+    def used(self) -> bool:
+        """Whether messages travel under aliases now: while no other robot is there, or where the project insists."""
+        if not self._others or (self._project and self._project.aliases):
+            return True
+        return time.monotonic() - max(self._others.values()) > AWAY_AFTER
+
+    def taking(self, handler: MessageHandler) -> MessageHandler:
+        """What listens under an alias: it leaves out what comes under the key, too."""
+
+        def take(message: Message) -> None:
+            if self.used and not message.id.endswith(COPY):
+                handler(message)
+
+        return take
+
+    def _hear(self, message: Message) -> None:
+        match message.body:
+            case {"robot": str(robot), "state": str()} if self._project and robot != self._project.robot:
+                known = robot in self._others
+                if known or len(self._others) < MAX_ROBOTS:
+                    self._others[robot] = time.monotonic()
+                if not known:
+                    self._warn(robot, self._project)
+
+    def _warn(self, robot: str, project: Project) -> None:
+        shared = [f"`{n}`" for n, row in project.routes.items() if row.event and "{robot}" not in row.key]
+        both = f"; both hear what comes on {', '.join(shared)}: write `{{robot}}` into the key" if shared else ""
+        if project.aliases:
+            what = f"lumen.yaml of {project.robot} says `aliases: true`: it alone may say so"
+        else:
+            what = "messages under an `alias` are neither taken nor sent while it is there (`aliases` in lumen.yaml)"
+        _log.warning("another robot, %.100s, is on this bus: %s%s", robot, what, both)
+
+
+def _presences(project: Project) -> tuple[str, ...]:
+    """Where robots say that they are there: each under a key of its own, or all under one."""
+    row = project.routes.get(PRESENCE)
+    key, alias = (row.key, row.alias) if row else (DEFAULT_KEYS[PRESENCE], DEFAULT_ALIASES[PRESENCE])
+    return tuple(dict.fromkeys(found for found in (key.replace("{robot}", "*"), alias) if found))

@@ -1,0 +1,70 @@
+"""Two robots on one bus: each hears its own visitors, and nothing crosses."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import pytest
+
+import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.setup import set_up
+from lumen.interpreters.statechart import Step
+from lumen.language.projects import Project
+from tests.rabbitmq import RabbitMQ
+from tests.waiting import Collector
+
+VISITORS = {"Ana": "visitor", "Ben": "indonesian"}
+
+
+def exhibition(project: Project, story: str, bus: str, speed: str = "max") -> Exhibition:
+    told = project.stories[story]
+    return Exhibition(project, set_up("recording", project, speed, told), bus, told)
+
+
+def play(shows: Mapping[str, Exhibition]) -> dict[str, list[tuple[object, ...]]]:
+    """All of them, tick by tick, until their stories end; what each behaviour did."""
+    seen: dict[str, list[tuple[object, ...]]] = {name: [] for name in shows}
+    for name, show in shows.items():
+        show.observe(lambda step, seen=seen[name]: seen.append(_seen(step)))
+        show.start()
+    while any(not show.over for show in shows.values()):
+        for show in shows.values():
+            if not show.over:
+                show.tick()
+    for show in shows.values():
+        show.close()
+        assert not show.node.failed
+    return seen
+
+
+def _seen(step: Step) -> tuple[object, ...]:
+    event = step.event
+    return event and event.name, step.exited, step.entered, dict(step.snapshot.context)
+
+
+@pytest.fixture
+def robots() -> dict[str, Project]:
+    shipped = lumen.load()
+    return {name: replace(shipped, robot=name, aliases=False) for name in VISITORS}
+
+
+def test_two_tours_on_one_bus_are_as_each_is_alone(robots: dict[str, Project]) -> None:
+    alone = {name: play({name: exhibition(robots[name], story, "memory://")}) for name, story in VISITORS.items()}
+    heard = lumen.bus.connect("memory://two")
+    everything = Collector()
+    heard.subscribe("#", everything)
+    together = play({name: exhibition(robots[name], story, "memory://two") for name, story in VISITORS.items()})
+    heard.close()
+    for name in VISITORS:
+        assert together[name] == alone[name][name]
+    for message in everything.messages:
+        assert set(message.key.split(".")) & set(VISITORS), f"{message.key} is nobody's"
+
+
+@pytest.mark.broker
+def test_two_tours_on_one_broker_hear_their_own_visitors(robots: dict[str, Project], broker: RabbitMQ) -> None:
+    shipped = {name: replace(project, aliases=None) for name, project in robots.items()}
+    shows = {name: exhibition(shipped[name], story, broker.url, "8") for name, story in VISITORS.items()}
+    seen = play(shows)
+    names = {name: {step[-1]["visitor"] for step in steps} - {""} for name, steps in seen.items()}  # type: ignore[index]
+    assert names == {"Ana": {"Budi"}, "Ben": {"Siti"}}
