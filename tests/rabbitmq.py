@@ -38,7 +38,7 @@ USERS = {
     "guest": (".*", ".*"),
     "visual": (r"^lumen\.visual\.", r"^avatar\."),
     "lamp": (r"^museum\.button$", r"^museum\.lamp\."),
-    "eyes": (r"^lumen\.visual\.", r"^avatar\.NAO\.data\.image$"),
+    "eyes": (r"^lumen\.(NAO\.)?visual\.", r"^avatar\.NAO\.data\.image$"),
 }
 """Who may use the broker: which keys of `amq.topic` each may write, and which read."""
 RIGHTS = {

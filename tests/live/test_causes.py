@@ -1,6 +1,7 @@
 """Every event of a running exhibition says who or what brought it about; every message says where it comes from."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -9,6 +10,8 @@ from lumen.bus import Bus, connect
 from lumen.interpreters.statechart import Step
 from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.events import Event
+from lumen.language.machines import Transition
+from lumen.language.projects import Project
 from lumen.runtime.causes import caused
 from tests.waiting import Collector
 
@@ -90,3 +93,31 @@ def test_a_message_of_a_module_is_the_cause(bus: Bus) -> None:
 )
 def test_what_nobody_named_a_cause_of_has_one(event: Event, cause: Cause) -> None:
     assert caused(event) == event._replace(cause=cause)
+
+
+def test_the_state_says_where_the_transition_stands_and_what_caused_it(bus: Bus) -> None:
+    told = Collector()
+    bus.subscribe("lumen.NAO.state", told)
+    with lumen.open(robot="recording", bus="memory://causes", story="visitor") as show:
+        show.run()
+        project = show.project
+    bodies = [message.body for message in told.messages]
+    steps = [body for body in bodies if body.get("transitions")]
+    assert [body["step"] for body in steps] == sorted({body["step"] for body in steps})
+    heard = next(body for body in steps if body["event"] == "heard")
+    assert heard["data"]["result"]
+    assert heard["cause"]["kind"] == "person"
+    assert heard["bundle"] == project.hash
+    taken = heard["transitions"][0]
+    source = Path(project.root, taken["file"]).read_text("utf-8").splitlines()
+    assert taken["file"] == "behaviors/tour.yaml"
+    assert set(taken["targets"]) & {transition.targets[0] for transition in _candidates(project) if transition.targets}
+    assert source[taken["line"] - 1].strip()
+    asked = [body["step"] for body in bodies if "command" in body]
+    assert asked == sorted(asked)
+    assert set(asked) & {body["step"] for body in steps}
+
+
+def _candidates(project: Project) -> Iterator[Transition]:
+    for state in project.machine.states.values():
+        yield from state.transitions

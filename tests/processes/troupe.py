@@ -107,7 +107,7 @@ class Troupe:
         self.told = StringIO()
         self.ear: Bus = connect(url)
         self.trace = Collector()
-        self.ear.subscribe("lumen.state", self.trace)
+        self.ear.subscribe("lumen.NAO.state", self.trace)
 
     def join(self, *names: str, story: str = "", robot: str = "NAO", url: str = "") -> Member:
         member = Member(self.folder, url or self.url, names, story, robot, self.speed)

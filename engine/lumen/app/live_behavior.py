@@ -33,7 +33,13 @@ class LiveBehavior:
         self.loop = BehaviorLoop(staged(project, story), setup.robot, bus, setup.clock, setup.tracking)
         real = story is None and getattr(setup.clock, "speed", None) == 1.0
         self.loop.wall_clock = WallClockWatch(self._timezone, real=real)
-        self.trace = TracePublisher(bus, lambda: self.loop.project, setup.clock.now)
+        self.trace = TracePublisher(
+            bus,
+            lambda: self.loop.project,
+            setup.clock.now,
+            lambda: self.loop.runtime.steps,
+            lambda: self.loop.step,
+        )
         self.adopt: Callable[[Project], None] = lambda _: None
         self.forgetting: list[Callable[[PersonName], None]] = []
         if published:

@@ -8,14 +8,18 @@ from typing import Any
 from lumen.errors import BusError
 from lumen.interpreters.statechart import Snapshot, Step
 from lumen.interpreters.statechart.nesting import active_names, entered_names
+from lumen.language.causes import Cause
 from lumen.language.commands import Command, Log, Publish, Start
 from lumen.language.events import Event
+from lumen.language.machines import Transition
 from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.runtime.loop import Observer
 
 TRACE_ROUTE = "state"
 TRACE_TTL = 10.0
+MAX_DATA_CHARACTERS = 10_000
+"""How long the body of an event may be that is told."""
 
 _log = logging.getLogger(__name__)
 
@@ -23,11 +27,20 @@ _log = logging.getLogger(__name__)
 class TracePublisher(Observer):
     """Publishes each step that changed something, each command as it is given, and its answer.
 
-    `project` returns the bundle that runs, `now` for the time [s].
+    `project` returns the bundle that runs, `now` for the time [s]. `count` for how many steps the run has had, and
+    `emitting` which of them asked for the command that is being performed; 0 where nobody counts.
     """
 
-    def __init__(self, bus: Bus, project: Callable[[], Project], now: Callable[[], float]) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        project: Callable[[], Project],
+        now: Callable[[], float],
+        count: Callable[[], int] = lambda: 0,
+        emitting: Callable[[], int] = lambda: 0,
+    ) -> None:
         self._bus, self._project, self._now = bus, project, now
+        self._count, self._emitting = count, emitting
         self._told: tuple[dict[str, Any], str] | None = None
 
     def stepped(self, step: Step) -> None:
@@ -35,8 +48,12 @@ class TracePublisher(Observer):
         if not came and not gone and (context, step.snapshot.place) == self._told:
             return
         self._told = context, step.snapshot.place
-        event = step.event.name if step.event else ""
-        self._tell({**_standing(step.snapshot), "entered": came, "exited": gone, "event": event})
+        project = self._project()
+        body = {**_standing(step.snapshot), "entered": came, "exited": gone, "event": ""}
+        if step.event:
+            body |= {"event": step.event.name, "cause": _cause(step.event.cause)}
+        taken = [_transition(project, transition) for transition in step.transitions]
+        self._tell({**body, "step": self._count(), "transitions": taken, "bundle": project.hash, "data": _data(step)})
 
     def standing(self, snapshot: Snapshot) -> None:
         """Tell somebody who has just come where the behaviour stands."""
@@ -49,9 +66,10 @@ class TracePublisher(Observer):
     def performing(self, command: Command, now: float) -> None:
         match command:
             case Start(id, wanted):
-                self._tell({"command": {"verb": type(wanted).__name__.lower(), "id": id, **asdict(wanted)}})
+                said = {"verb": type(wanted).__name__.lower(), "id": id, **asdict(wanted)}
+                self._tell({"command": said, "step": self._emitting()})
             case Publish(route, body):
-                self._tell({"command": {"verb": "publish", "route": route, "body": body}})
+                self._tell({"command": {"verb": "publish", "route": route, "body": body}, "step": self._emitting()})
             case Log():
                 pass
 
@@ -73,6 +91,24 @@ class TracePublisher(Observer):
             self._bus.publish(key, {"robot": project.robot, "time": round(self._now(), 3), **what}, ttl=ttl)
         except BusError as error:
             _log.debug("what the behaviour does was not published: %s", error)
+
+
+def _transition(project: Project, transition: Transition) -> dict[str, Any]:
+    """Which transition of the behaviour was taken, and where it stands."""
+    place = project.place(f"behaviors/{project.behavior}.yaml", transition.where)
+    said = {"source": transition.source, "targets": list(transition.targets)}
+    return {**said, "file": place.file, "line": place.line}
+
+
+def _cause(cause: Cause | None) -> dict[str, Any]:
+    """What brought the event about; what is not known is left out."""
+    return {key: value for key, value in cause._asdict().items() if value} if cause else {}
+
+
+def _data(step: Step) -> Any:
+    """The event's body; a long one is left out, for it would leave no room for the rest."""
+    data = step.event.data if step.event else None
+    return data if len(repr(data)) <= MAX_DATA_CHARACTERS else None
 
 
 def _standing(snapshot: Snapshot) -> dict[str, Any]:
