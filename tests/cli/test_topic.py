@@ -183,7 +183,9 @@ def test_who_may_not_send_is_told_so_in_one_line(broker: RabbitMQ, capsys: pytes
     assert "refuses to let us send `avatar.NAO.command`: ACCESS_REFUSED" in said.err
     assert said.err.count("\n") == 1
     assert main([*words, "face", '{"x": 160, "y": 120}']) == 1
-    assert "nobody listens to `lumen.NAO.visual.face.detection`: does an exhibition run there?" in capsys.readouterr().err
+    assert (
+        "nobody listens to `lumen.NAO.visual.face.detection`: does an exhibition run there?" in capsys.readouterr().err
+    )
 
 
 @pytest.mark.parametrize(

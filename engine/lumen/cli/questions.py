@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from datetime import datetime
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, OPERATOR_KEY, ask
+from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
 from lumen.app.recalling import answer_from_journal
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.moments import moment
@@ -46,7 +46,7 @@ def _asked(options: argparse.Namespace, question: str, at: str | None) -> dict[s
         return answer_from_journal(options.project, question, what, at, str(error))
     try:
         body = {"ask": question, "what": what, **({"at": at} if at else {})}
-        found: dict[str, Any] = next(ask(reached.bus, OPERATOR_KEY, body, OPERATOR_ANSWERS))
+        found: dict[str, Any] = next(ask(reached.bus, operator_key(reached.robot), body, OPERATOR_ANSWERS))
     finally:
         reached.bus.close()
     if found.get("kept") == "later":
