@@ -18,6 +18,7 @@ from lumen.formats.diagrams.placing import ROW, PlacedBox, place, text_width
 from lumen.formats.diagrams.transition_rows import guard_phrase
 from lumen.language.actions import Expression
 from lumen.language.machines import MachineDefinition
+from lumen.statechart import Machine
 
 ROOT = Path(__file__).parents[2]
 TOUR = lumen.load(ROOT).machine
@@ -176,3 +177,12 @@ def test_what_can_t_be_drawn_is_one_line(
     said = capsys.readouterr().err
     assert says in said
     assert said.count("\n") == 1
+
+
+def test_a_long_row_of_states_is_drawn_in_whatever_order_it_is_written() -> None:
+    count = 1_500
+    states = {f"s{i}": {"on": {"go": f"s{(i + 1) % count}"}} for i in reversed(range(count))}
+    machine = Machine.from_dict({"initial": "s0", "states": states, "events": {"go": None}}, "row")
+    boxes = place(overview(machine)).boxes
+    assert len(boxes) == count
+    assert len({box.corner for box in boxes}) == count

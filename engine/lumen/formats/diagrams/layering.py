@@ -105,18 +105,19 @@ def _without_cycles(nodes: Sequence[N], edges: Sequence[Edge[N]]) -> list[Edge[N
 
 def _ranks(nodes: Sequence[N], down: Sequence[Edge[N]]) -> dict[N, int]:
     """The longest way from above to each node."""
-    above: dict[N, list[N]] = {n: [] for n in nodes}
+    below: dict[N, list[N]] = {n: [] for n in nodes}
+    above = dict.fromkeys(nodes, 0)
     for one, other in down:
-        above[other].append(one)
-    ranks: dict[N, int] = {}
-
-    def rank(n: N) -> int:
-        if n not in ranks:
-            ranks[n] = max((rank(m) + 1 for m in above[n]), default=0)
-        return ranks[n]
-
-    for n in nodes:
-        rank(n)
+        below[one].append(other)
+        above[other] += 1
+    ranks = dict.fromkeys(nodes, 0)
+    ready = [n for n in nodes if not above[n]]
+    for n in ready:  # which grows meanwhile
+        for other in below[n]:
+            ranks[other] = max(ranks[other], ranks[n] + 1)
+            above[other] -= 1
+            if not above[other]:
+                ready.append(other)
     return ranks
 
 

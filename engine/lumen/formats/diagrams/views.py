@@ -20,14 +20,15 @@ def overview(machine: MachineDefinition) -> Diagram:
     """The whole behaviour, the behaviours that it invokes as rows."""
     root = machine.root
     rows = len(machine.states) <= MAX_STATES_WITH_ROWS
-    box = _box(machine, root, rows=rows)
+    box = _box(machine, root, _led_here(machine), rows=rows)
     return Diagram(machine.id, (box,) if root.kind is StateKind.PARALLEL or box.rows else box.within, _arrows(machine))
 
 
 def region(machine: MachineDefinition, name: str) -> Diagram:
     """What is within one state, with what leads on. Raises UsageError where there is none of that name."""
     state = _named(machine, name, lambda state: bool(state.children))
-    return Diagram(f"{machine.id}: {state.name}", (_box(machine, state, rows=True),), _arrows(machine, state.path))
+    box = _box(machine, state, _led_here(machine), rows=True)
+    return Diagram(f"{machine.id}: {state.name}", (box,), _arrows(machine, state.path))
 
 
 def neighbourhood(machine: MachineDefinition, name: str) -> Diagram:
@@ -46,11 +47,12 @@ def neighbourhood(machine: MachineDefinition, name: str) -> Diagram:
     return Diagram(f"{machine.id}: {state.name}", boxes, tuple(arrows))
 
 
-def _box(machine: MachineDefinition, state: State, *, rows: bool, first: bool = False) -> StateBox:
+def _box(machine: MachineDefinition, state: State, led: Counter[str], *, rows: bool, first: bool = False) -> StateBox:
+    """A state with what is within it; `led` is how many others lead to each."""
     children = [machine.states[path] for path in state.children]
     within = [child for child in children if child.kind is not StateKind.HISTORY and not made(child.where)]
     begins = [within[0].path] if state.for_each else state.initial
-    hub = _led_here(machine)[state.path]
+    hub = led[state.path]
     said = list(_rows(machine, state)) if rows else list(_runs(state))
     if hub > MAX_ARROWS_IN:
         said.append(f"← from {hub} states")
@@ -58,7 +60,7 @@ def _box(machine: MachineDefinition, state: State, *, rows: bool, first: bool = 
         state.path or machine.id,
         _title(machine, state),
         tuple(said),
-        tuple(_box(machine, child, rows=rows, first=child.path in begins) for child in within),
+        tuple(_box(machine, child, led, rows=rows, first=child.path in begins) for child in within),
         parallel=state.kind is StateKind.PARALLEL,
         final=state.kind is StateKind.FINAL,
         first=first,
