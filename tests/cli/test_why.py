@@ -11,6 +11,7 @@ import pytest
 import lumen
 from lumen.app.answering import reply
 from lumen.app.exhibition import Exhibition
+from lumen.app.journal_pages import journal_page
 from lumen.cli.answers import why_lines, why_not_lines
 from lumen.cli.main import main
 from lumen.cli.moments import moment
@@ -18,6 +19,7 @@ from lumen.errors import UsageError
 from lumen.language.people import PersonName
 
 LINK = {"kind", "text", "at", "file", "line", "id", "values"}
+NOWHERE = Path("no such folder")
 REASON = {"because", "text", "file", "line", "false", "change", "note"}
 
 
@@ -93,14 +95,14 @@ def test_what_a_visitor_could_have_said(greeted: Exhibition) -> None:
     ],
 )
 def test_a_question_without_an_answer_says_what_to_do(greeted: Exhibition, question: str, what: str, said: str) -> None:
-    answer = reply(greeted.history(), {"ask": question, "what": what})
+    answer = reply(greeted.history(), {"ask": question, "what": what}, NOWHERE)
     assert answer["verdict"] == "refused"
     assert said in answer["reason"]
 
 
 def test_what_is_no_question_is_refused(greeted: Exhibition) -> None:
     for body in ({"what": 7}, {"at": 7}, {"at": "soon"}, {"at": "1970-01-01T00:00:00Z"}, {"what": "x" * 10_000}):
-        assert reply(greeted.history(), {"ask": "why", **body})["verdict"] == "refused"
+        assert reply(greeted.history(), {"ask": "why", **body}, NOWHERE)["verdict"] == "refused"
 
 
 def test_it_reads_well(greeted: Exhibition) -> None:
@@ -134,6 +136,24 @@ def test_a_run_that_is_over_is_asked_by_its_journal(copy: Path, capsys: pytest.C
         asked = exhibition.why("greet")
     assert main(["why", "greet", str(copy), "--format", "json"]) == 0
     assert json.loads(capsys.readouterr().out) == asked == lumen.why("greet", str(copy))
+
+
+@pytest.mark.slow
+def test_the_journal_is_read_page_by_page(copy: Path) -> None:
+    with lumen.open(copy) as exhibition:
+        exhibition.send("face", {"x": 160, "y": 120})
+        exhibition.run(3.0)
+    journal = copy / ".lumen" / "journal"
+    for file in (journal / "rehearsed").iterdir():
+        file.rename(journal / file.name)
+    whole = journal_page(journal.parent, 0)
+    assert [entry["position"] for entry in whole["entries"]] == list(range(whole["next"]))
+    assert whole["entries"][0]["jump"] == "start"
+    two = reply([], {"ask": "journal", "from": 2}, journal.parent)
+    assert two["entries"] == whole["entries"][2:]
+    assert journal_page(journal.parent, 1, 1) == {"entries": whole["entries"][1:2], "next": 2}
+    assert journal_page(journal.parent, 1000) == {"entries": [], "next": 1000}
+    assert reply([], {"ask": "journal", "from": "soon"}, journal.parent)["verdict"] == "refused"
 
 
 @pytest.mark.slow

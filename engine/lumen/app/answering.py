@@ -4,8 +4,10 @@ import logging
 import queue
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
+from pathlib import Path
 from typing import Any
 
+from lumen.app.journal_pages import journal_page
 from lumen.errors import BusError, LumenError, UsageError
 from lumen.interpreters.explaining import RecordedStep, why, why_not
 from lumen.ports import Bus, Message
@@ -14,7 +16,9 @@ from lumen.upkeep.threads import WatchedThread
 MAX_WAITING_QUESTIONS = 20
 MAX_QUESTION = 500
 """Characters of what somebody asks about."""
-WHY, WHY_NOT = "why", "why-not"
+WHY, WHY_NOT, JOURNAL = "why", "why-not", "journal"
+QUESTIONS = (WHY, WHY_NOT, JOURNAL)
+"""What may be asked of the past."""
 
 _log = logging.getLogger(__name__)
 
@@ -49,10 +53,13 @@ class TooLongAgoError(UsageError):
 
 
 class AnsweringThread:
-    """Answers questions one after another; `steps` is asked for what has happened, on the thread that asks."""
+    """Answers questions one after another; `steps` is asked for what has happened, on the thread that asks.
 
-    def __init__(self, bus: Bus, steps: Callable[[], list[RecordedStep]]) -> None:
-        self._bus, self._steps = bus, steps
+    The journal that is asked for is the one in `home`.
+    """
+
+    def __init__(self, bus: Bus, steps: Callable[[], list[RecordedStep]], home: Path) -> None:
+        self._bus, self._steps, self._home = bus, steps, home
         self._waiting: queue.Queue[tuple[Message, Sequence[RecordedStep]] | None] = queue.Queue(MAX_WAITING_QUESTIONS)
         self._thread = WatchedThread("lumen-answering", self._run)
 
@@ -75,13 +82,18 @@ class AnsweringThread:
         while (asked := self._waiting.get()) is not None:
             message, steps = asked
             try:
-                self._bus.reply(message, reply(steps, message.body))
+                self._bus.reply(message, reply(steps, message.body, self._home))
             except BusError:
                 continue  # who asked is gone
 
 
-def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any]) -> dict[str, Any]:
+def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], home: Path) -> dict[str, Any]:
     """What is sent back: the answer, or a verdict that says why there is none."""
+    if body.get("ask") == JOURNAL:
+        position = body.get("from", 0)
+        if type(position) is not int:
+            return {"verdict": "refused", "reason": "`from` is the position of an entry: a whole number"}
+        return journal_page(home, position)
     what, at = body.get("what", ""), body.get("at")
     if not isinstance(what, str) or not (at is None or isinstance(at, str)):
         return {"verdict": "refused", "reason": "`what` and `at` are texts"}

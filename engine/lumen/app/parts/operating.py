@@ -2,9 +2,10 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
-from lumen.app.answering import WHY, WHY_NOT, AnsweringThread
+from lumen.app.answering import QUESTIONS, AnsweringThread
 from lumen.app.asking import operator_key
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
@@ -18,6 +19,7 @@ from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.ports import Message, Sense
 from lumen.robots.person_hold import StoppedBy
+from lumen.runtime.home import home_of
 from lumen.runtime.loop import Observer
 
 GOTO = "operator.goto"
@@ -55,7 +57,7 @@ class OperatorPart(Part, Observer):
         runtime = behavior.loop.runtime
         self.steps = StepMemory(lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None)
         behavior.forgetting.append(self.steps.forget)
-        self._answering = AnsweringThread(self._bus, self.steps.steps)
+        self._answering = AnsweringThread(self._bus, self.steps.steps, home_of(Path(runtime.project.root)).absolute())
         self._undo = self._bus.subscribe(operator_key(behavior.project.robot), self._came.append)
         behavior.loop.observers += [self.steps, self]
 
@@ -70,7 +72,7 @@ class OperatorPart(Part, Observer):
         self.steps.look()
         while self._came:
             message = self._came.popleft()
-            if isinstance(message.body, dict) and message.body.get("ask") in (WHY, WHY_NOT):
+            if isinstance(message.body, dict) and message.body.get("ask") in QUESTIONS:
                 self._answering.ask(message)
                 continue
             answer = self._answer(message.body, now)

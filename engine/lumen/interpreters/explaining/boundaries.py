@@ -21,6 +21,8 @@ ValuePath = tuple[str, ...]
 ABSENT = object()
 MAX_VALUES = 24
 """How many values of one path are tried."""
+FIRST = 6
+"""How many of those that are mentioned come before plain ones: a text may be compared with a hundred phrases."""
 
 
 def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope) -> dict[ValuePath, list[Any]]:
@@ -32,7 +34,7 @@ def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope)
             found.setdefault(path, []).append(value)
     literals = [n.value for tree in trees for n, _ in walk(tree) if isinstance(n, Literal)]
     return {
-        path: _nearest(path, [*values, *_plain(value_at(path, scope)), *literals], scope)
+        path: _nearest(path, [*values[:FIRST], *_plain(value_at(path, scope)), *values[FIRST:], *literals], scope)
         for path, values in found.items()
     }
 
