@@ -79,15 +79,15 @@ class Chain:
     def because(self, number: int, deed: Deed) -> LinkWalk:
         """What made an action be done."""
         if deed.block == "do":
-            yield partial(self.doing, number, deed.owner, deed.machine.states[deed.state].name)
+            yield partial(self.doing, number, deed.owner, deed.machine.states[deed.state].name, deed.microstep)
         elif deed.microstep:
             yield partial(self.microstep, number, deed.microstep, deed)
         else:
             yield partial(self.trigger, number, deed.owner)
 
-    def doing(self, number: int, owner: str, state: str) -> LinkWalk:
+    def doing(self, number: int, owner: str, state: str, until: TracedMicrostep | None = None) -> LinkWalk:
         """What made a state be entered, or its `do` go on, in that step."""
-        entered = self.history.trace(number).entering(owner, state)
+        entered = self.history.trace(number).entering(owner, state, until)
         if entered:
             yield partial(self.microstep, number, entered, state=state)
         else:
@@ -129,7 +129,7 @@ class Chain:
             yield self._link(
                 number, "activity", f"the `do` of {prefix_of(owner)}{name} {_ended(kind)}", values=brought(event)
             )
-            yield partial(self.doing, number, owner, name)
+            yield partial(self.doing, number, owner, name, raised.microstep)
         elif thing == "invoke" and not raised.where:
             yield self._link(number, "event", f"the behaviour {name} {_ended(kind)}", values=brought(event))
             inner = f"{name}@{owner}" if owner else name
@@ -199,12 +199,12 @@ class Chain:
         host = _machine(self.history.steps[number], around)
         states = [state for state in host.states.values() if any(invoke.id == id for invoke in state.invoke)]
         for state in states:
-            entered = self.history.trace(number).entering(around, state.name)
+            entered = self.history.trace(number).entering(around, state.name, step)
             if entered or state is states[-1]:
                 where = next(invoke.where for invoke in state.invoke if invoke.id == id)
                 text = f"{prefix_of(around)}{state.name} invokes {id}"
                 yield self._link(number, "activity", text, self._place(number, host, where))
-                yield partial(self.doing, number, around, state.name)
+                yield partial(self.doing, number, around, state.name, step)
                 return
 
     def _activity(self, number: int, deed: Deed) -> Link:

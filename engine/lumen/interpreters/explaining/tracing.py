@@ -89,9 +89,10 @@ class Trace:
     deeds: list[Deed] = field(default_factory=list)
     step: Step | None = None
 
-    def entering(self, owner: str, state: str) -> TracedMicrostep | None:
-        """The last microstep that entered the state of that name."""
-        found = (one for one in reversed(self.microsteps) if one.moment.owner == owner and state in one.entered)
+    def entering(self, owner: str, state: str, until: TracedMicrostep | None = None) -> TracedMicrostep | None:
+        """The last microstep that entered the state of that name, `until` one that may be it; else of all."""
+        steps = self.microsteps[: self.microsteps.index(until) + 1] if until else self.microsteps
+        found = (one for one in reversed(steps) if one.moment.owner == owner and state in one.entered)
         return next(found, None)
 
 
