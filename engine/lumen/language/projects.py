@@ -8,7 +8,7 @@ from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.hall_places import HallPlace
 from lumen.language.machines import MachineDefinition
-from lumen.language.modules import ModuleSettings
+from lumen.language.modules import EYES, ModuleSettings
 from lumen.language.motions import MotionDefinition
 from lumen.language.retention import JournalRetention
 from lumen.language.robots import Body
@@ -72,6 +72,12 @@ class Project:
     def machine(self) -> MachineDefinition:
         """The behaviour that runs."""
         return self.behaviors[self.behavior]
+
+    @property
+    def robots(self) -> tuple[str, ...]:
+        """The robot, and those that one of the modules serves besides (`robots` of `eyes`)."""
+        others = self.modules[EYES].options.get("robots", ()) if EYES in self.modules else ()
+        return tuple(dict.fromkeys((self.robot, *others)))
 
     def key_of(self, route: str) -> str:
         """The routing key of a route, which the project need not list if it is one of Lumen's own."""

@@ -1,24 +1,30 @@
 """A module of an exhibition: memory, eyes, ears, voice, social or show, without knowing who else is there."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
+from lumen.app.claiming import presence_of
 from lumen.app.parts.module_factory import make_module
 from lumen.app.parts.part import Part
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.ports import Bus
+from lumen.runtime.presence import Presence
 
 EYES_TIMEOUT = 60.0
 """How long a tick waits for the eyes at most [s], where the machine has much else to do."""
+OWN_OPTIONS = ("camera", "window", "robots")
+"""Options of eyes that are about the robot of the project."""
 
 
 class ModulePart(Part):
     """One of the modules, on a thread of its own; it needs nobody, and hears whoever comes.
 
-    Where it is `awaited` each tick waits for the eyes: what they see does not depend on the machine. Raises
-    ModuleError where it can't work here.
+    Where it is `awaited` each tick waits for the eyes: what they see does not depend on the machine. Eyes may serve
+    several robots (`Project.robots`): then there is one module for each, and each robot's exhibition sees it. Faces
+    that it learns for another robot last as long as the process. Raises ModuleError where it can't work here.
     """
 
     def __init__(
@@ -32,22 +38,47 @@ class ModulePart(Part):
         awaited: bool = False,
     ) -> None:
         self.name = name
-        self._module = make_module(name, project, bus, lambda text: tell(name, text), folder)
+        self._modules = {project.robot: make_module(name, project, bus, lambda text: tell(name, text), folder)}
+        self._presences: list[Presence] = []
+        for robot in project.robots[1:] if name == EYES else ():
+            other = _of_another(project, robot)
+            self._modules[robot] = make_module(name, other, bus, lambda text: tell(name, text), None)
+            self._presences.append(presence_of(other, bus, (name,), dict))
         self._awaited = awaited and name == EYES
 
     def begin(self, now: float) -> None:
-        self._module.begin()
+        for module in self._modules.values():
+            module.begin()
+        for presence in self._presences:
+            presence.settle()
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        for presence in self._presences:
+            presence.tick()
         if self._awaited:
-            self._module.settle(EYES_TIMEOUT)
+            for module in self._modules.values():
+                module.settle(EYES_TIMEOUT)
 
     def use(self, project: Project) -> None:
-        self._module.use(project)
+        """Go on with this bundle; which robots are served is said at the start."""
+        own = next(iter(self._modules))
+        for robot, module in self._modules.items():
+            module.use(project if robot == own else _of_another(project, robot))
 
     def summary(self) -> Iterator[str]:
-        refused = f", {self._module.refused} dropped" if self._module.refused else ""
-        yield f"{self.name}: {self._module.handled} messages{refused}"
+        for robot, module in self._modules.items():
+            what = self.name if len(self._modules) == 1 else f"{self.name} of {robot}"
+            yield f"{what}: {module.handled} messages" + (f", {module.refused} dropped" if module.refused else "")
 
     def close(self) -> None:
-        self._module.close()
+        for module in self._modules.values():
+            module.close()
+        for presence in self._presences:
+            presence.close()
+
+
+def _of_another(project: Project, robot: str) -> Project:
+    """The project of another robot, whose own camera is looked through, and which no window here shows."""
+    settings = project.modules[EYES]
+    options = {key: value for key, value in settings.options.items() if key not in OWN_OPTIONS}
+    return replace(project, robot=robot, modules={**project.modules, EYES: replace(settings, options=options)})
