@@ -7,6 +7,7 @@ LumenError
  ├── ExpressionError   an expression can't be read, or has no value here
  ├── SnapshotError     a snapshot belongs to another machine
  ├── JournalError      a journal, or an entry of it, can't be read
+ ├── RecordingError    a recording can't be read, or can't be written
  ├── RobotError        the robot can't be used, or can't do what it should
  │    ├── RobotUnreachableError   there is no robot at the address
  │    ├── RobotLostError          the connection broke, or the robot does not answer any more
@@ -83,6 +84,10 @@ class SnapshotError(LumenError):
 
 class JournalError(LumenError):
     """A journal of inputs, or an entry of it, can't be read by this Lumen."""
+
+
+class RecordingError(LumenError):
+    """A file is no recording (MCAP), or the disk does not take one."""
 
 
 class RobotError(LumenError):

@@ -1,6 +1,7 @@
 """An exhibition in this process: opened, stepped or run, observed, reloaded, asked to stop, and closed."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -12,6 +13,7 @@ from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
 from lumen.app.parts.kept_hold import keep_hold
 from lumen.app.parts.operating import OperatorPart
+from lumen.app.parts.recording import RecordingPart
 from lumen.app.recovery.recording import record_inputs
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.alerting import RefusalPart
@@ -49,7 +51,8 @@ class Exhibition:
     With a story, its visitor plays it. `narrator` is called with what happens. Its files can be reloaded where `reload`
     says how saved ones are taken (`auto`, `manual`, `off`). With a `run_directory` other terminals reach it, and it
     goes on where the run before ended without notice, unless it is to begin `fresh`. `alerts` has people told of what
-    goes wrong, and is closed with it. Raises BusError where the bus can't be reached.
+    goes wrong, and is closed with it. What is said on its bus is recorded into the file `record`. Raises BusError where
+    the bus can't be reached.
     """
 
     def __init__(
@@ -65,6 +68,7 @@ class Exhibition:
         language: str = "",
         fresh: bool = True,
         alerts: AlertDesk | None = None,
+        record: Path | None = None,
     ) -> None:
         url = bus if isinstance(bus, str) else "memory://"
         shared = not url.startswith("memory:")
@@ -89,6 +93,12 @@ class Exhibition:
             record=directory.records.write if directory else lambda _: None,
         )
         self.node.add(self._operator)
+        if directory:
+            tell = partial(self.node.narrator.line, "recording")
+            ring = directory.home is not None and story is None
+            recording = RecordingPart(project, opened, tell, record, ring=ring, patient=story is not None)
+            records.recorder, self._operator.marking = recording.recorder, recording.marking
+            self.node.parts.insert(0, recording)
         watch = self._alert(alerts, opened, records) if alerts else None
         if directory:
             fresh = fresh or story is not None

@@ -46,6 +46,11 @@ class ValidatedBus:
         return str(getattr(self._bus, "sender", ""))
 
     @property
+    def unchecked(self) -> Bus:
+        """The bus beneath, for who only looks on: also what fits no route is said there."""
+        return self._bus
+
+    @property
     def host(self) -> str:
         """The machine of the broker, empty where there is none."""
         return str(getattr(self._bus, "host", ""))

@@ -39,6 +39,7 @@ VERBS = {
     "replay": "take the steps of a journal again, with the files that ran then or with others",
     "diff": "say what differs between two versions of a project, and where a reload would lead",
     "topic": "list, print, measure and send the messages of a running exhibition",
+    "record": "record the messages of a running exhibition, for Foxglove and Lichtblick",
     "doctor": "check an exhibition's bus, and say what is missing on it",
     "alerts": "send a test alert to everybody who is told of trouble",
     "lint": "say what is wrong in a project, and where",

@@ -70,6 +70,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--for", dest="period", metavar="60s", help="end after so much simulated time")
     add("--language", metavar="LANG", help="which language it speaks first")
     add("--video", metavar="FILE.mp4", type=Path, help="write a film of the run (simulation, needs OpenGL)")
+    add("--record", metavar="FILE.mcap", type=Path, help="record what is said on the bus, for Foxglove and Lichtblick")
     add("--voice", choices=VOICES, default="none", help="let espeak-ng say the simulated robot's texts (default: none)")
     add("--sound", metavar="FILE.wav", type=Path, help="with --voice: write what is said instead of playing it")
     add("--reload", choices=MODES, default="auto", help="take saved files while it runs, or wait for `lumen reload`")
@@ -131,7 +132,7 @@ def _whole(
         exhibition = Exhibition(
             project, setup, url, story, performance.transcript,
             run_directory=run_directory, reload=options.reload, language=language, fresh=options.fresh,
-            alerts=_alerts(project, WHOLE, performance.transcript, story),
+            alerts=_alerts(project, WHOLE, performance.transcript, story), record=options.record,
         )  # fmt: skip
         node = exhibition.node
         performance.transcript.unread = lambda: node.interrupt(2, leave=True)
@@ -174,7 +175,7 @@ def _processes(
     how = ProcessOptions(url, speed, options.reload, language, options.fresh)
     bus = validated(connect(url, sender="+".join(parts)), project)
     alerts = _alerts(project, parts, transcript, story)
-    node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts)
+    node = assemble(project, parts, bus, clock, transcript, run_directory, how, setup, story, alerts, options.record)
     transcript.unread = lambda: node.interrupt(2, leave=True)
     visitor = next((part for part in node.parts if isinstance(part, VisitorPart)), None)
     if visitor and story is None:

@@ -10,7 +10,7 @@ from lumen.language.hall_places import HallPlace
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EYES, ModuleSettings
 from lumen.language.motions import MotionDefinition
-from lumen.language.retention import JournalRetention
+from lumen.language.retention import JournalRetention, RecordingSettings
 from lumen.language.robots import Body
 from lumen.language.routes import Route
 from lumen.language.routing_keys import default_key
@@ -37,8 +37,9 @@ class Project:
     default first; `messages` maps a message's name to its JSON Schema; `documents` know where in each file what
     stands. `timezone` is where it is, empty for wherever it runs. `patience` [s] is how long saved files wait for what
     is under way; `alerts` are told of what goes wrong; `places` are those of the hall that the robot knows by name;
-    `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened. `aliases` is
-    whether routes have their aliases: None for as long as no other robot is seen on the bus.
+    `show` is what goes to lamps, screens and sound desks; `journal` is how long it is kept what happened, `record`
+    what is recorded of the bus. `aliases` is whether routes have their aliases: None for as long as no other robot is
+    seen on the bus.
     """
 
     root: str
@@ -65,6 +66,7 @@ class Project:
     show: Show = field(default_factory=Show)
     journal: JournalRetention = field(default_factory=JournalRetention)
     aliases: bool | None = None
+    record: RecordingSettings = field(default_factory=RecordingSettings)
     hash: str = ""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 

@@ -1,4 +1,4 @@
-"""How long the journal of inputs is kept, and how much of it."""
+"""How long what happened is kept, and how much of it: the journal of inputs, and recordings."""
 
 from dataclasses import dataclass
 
@@ -14,3 +14,17 @@ class JournalRetention:
     def wanted(self) -> bool:
         """Whether there is to be a journal at all."""
         return self.keep > 0 and self.size > 0
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingSettings:
+    """What is recorded of the bus without being asked for.
+
+    `ring` is how much of the past is always at hand [s], 0 for none; where something happened it is kept for `keep`
+    days and up to `size` MB in all. Without the `camera` no recording has images.
+    """
+
+    ring: float = 0.0
+    keep: float = 30.0
+    size: float = 5000.0
+    camera: bool = True

@@ -111,6 +111,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         places=settings.places,
         journal=settings.journal,
         aliases=settings.aliases,
+        record=settings.record,
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )

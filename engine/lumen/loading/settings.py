@@ -13,7 +13,7 @@ from lumen.language.diagnostics import ERROR, Code, Diagnostic, nearest
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace
 from lumen.language.modules import SHOW, ModuleSettings
 from lumen.language.projects import DEFAULT_PATIENCE, Stage
-from lumen.language.retention import JournalRetention
+from lumen.language.retention import JournalRetention, RecordingSettings
 from lumen.language.routes import Route
 from lumen.language.show import Show
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
@@ -53,6 +53,7 @@ class Settings:
     journal: JournalRetention = field(default_factory=JournalRetention)
     stand: str = ""
     aliases: bool | None = None
+    record: RecordingSettings = field(default_factory=RecordingSettings)
 
 
 def build_settings(data: Any, report: DocumentReport) -> Settings:
@@ -81,6 +82,7 @@ def build_settings(data: Any, report: DocumentReport) -> Settings:
         journal=_journal(data, report),
         stand=robot.get("stand", ""),
         aliases=data.get("aliases"),
+        record=_record(data, report),
     )
 
 
@@ -139,6 +141,13 @@ def _stage(data: Mapping[str, Any], report: DocumentReport) -> Stage | None:
 def _journal(data: Mapping[str, Any], report: DocumentReport) -> JournalRetention:
     said = data.get("journal", {})
     return JournalRetention(**{key: value for key, value in said.items() if finite(value, report, ("journal", key))})
+
+
+def _record(data: Mapping[str, Any], report: DocumentReport) -> RecordingSettings:
+    said = data.get("record", {})
+    numbers = {key: said[key] for key in ("keep", "size") if key in said and finite(said[key], report, ("record", key))}
+    ring = duration(said, "ring", report, ("record",), positive=True)
+    return RecordingSettings(ring=ring or 0.0, camera=said.get("camera", True), **numbers)
 
 
 def _places(data: Mapping[str, Any], report: DocumentReport) -> Mapping[str, HallPlace]:

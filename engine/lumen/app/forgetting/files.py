@@ -9,7 +9,10 @@ from contextlib import suppress
 from pathlib import Path
 
 from lumen.app.forgetting.report import Forgetting, ForgottenPlace
-from lumen.errors import JournalError, ModuleError
+from lumen.app.recording.recordings_folder import RecordingsFolder
+from lumen.app.recording.redaction import redacted
+from lumen.errors import JournalError, LumenError, ModuleError
+from lumen.formats.recordings.rewriting import rewrite
 from lumen.language.people import PersonName, name_key
 from lumen.loading.json_lines import forget_lines, line_names
 from lumen.modules.eyes.eyes import FACES_FILE
@@ -43,6 +46,7 @@ def forget_in(folder: Path, name: str, found: Forgetting) -> None:
     else:
         _snapshot(home, person, found)
     _attempt(found, folder / JOURNAL_FOLDER, lambda: _journal(folder, person, found))
+    _recordings(home, person, found)
     _drafts(folder)
     found.left += _left(folder, person)
     found.elsewhere += _own_files(folder, person)
@@ -90,6 +94,38 @@ def _journal(folder: Path, person: PersonName, found: Forgetting) -> None:
     files, held = sorted((folder / JOURNAL_FOLDER).rglob(f"*{JOURNAL_SUFFIX}")), Home(folder).held()
     if named := sum(redact(file, person) for file in files if not (held and file == newest(folder))):
         found.deleted.append(ForgottenPlace(JOURNAL_FOLDER, f"the name, in entries: {named}"))
+
+
+def _recordings(home: Home, person: PersonName, found: Forgetting) -> None:
+    """What was recorded of the bus, wherever that is; what is being written, who writes it writes anew."""
+    recordings, held = RecordingsFolder(home.folder), home.held()
+    begun = {each.path.absolute(): each.written for each in recordings.begun()}
+    files = dict.fromkeys([*begun, *(file.absolute() for file in recordings.files()), *recordings.parts()])
+    for file in files:
+        if begun.get(file) or (held and file.parent == recordings.ring):
+            _await(lambda file=file: not _named_in_recording(file, person))  # type: ignore[misc]
+            if _named_in_recording(file, person):
+                found.left.append(ForgottenPlace(str(file), "it is being written, and still says the name"))
+        else:
+            _attempt(found, file, lambda file=file: _recording(file, person, found))  # type: ignore[misc]
+
+
+def _recording(file: Path, person: PersonName, found: Forgetting) -> None:
+    try:
+        gone, changed = redacted(file, person)
+        if gone:
+            rewrite([file], file, changed)
+            said = f"the name, in messages: {gone.messages}, attached files: {gone.files}"
+            found.deleted.append(ForgottenPlace(str(file), f"{said}; pictures and sounds: {gone.pictures}"))
+    except LumenError as error:
+        raise ModuleError(str(error)) from None
+
+
+def _named_in_recording(file: Path, person: PersonName) -> bool:
+    try:
+        return bool(redacted(file, person)[0])
+    except LumenError:
+        return False
 
 
 def _names_in_journal(folder: Path, person: PersonName) -> bool:

@@ -33,7 +33,7 @@ class Forgetting:
 
 
 FILES_ELSEWHERE = "where a part of the exhibition runs, its files hold what it knows: say it there, too"
-COPIES = "films, sounds and transcripts of runs, copies and backups of these files"
+COPIES = "films, sounds and transcripts of runs, recordings that were moved, copies and backups of these files"
 
 
 def out_of_reach(routes: Iterable[Route], broker: bool) -> Iterator[ForgottenPlace]:

@@ -26,7 +26,8 @@ GOTO = "operator.goto"
 """The event of a step that an operator wanted."""
 SOMEBODY = "somebody"
 MAX_PENDING_REQUESTS = 100
-REQUESTS = '`{"ask": "status"}`, `{"ask": "goto", "state": …}`, or `{"ask": "why", "what": …}`'
+NOTHING_RECORDED = "nothing is being recorded: `record: {ring: 10min}` in lumen.yaml keeps the last minutes at hand"
+REQUESTS = '`{"ask": "status"}`, `{"ask": "goto", "state": …}`, `{"ask": "mark"}`, or `{"ask": "why", "what": …}`'
 
 
 class OperatorPart(Part, Observer):
@@ -35,7 +36,8 @@ class OperatorPart(Part, Observer):
     What is asked of the past, `lumen why`, is answered on another thread, from `steps` that it keeps.
 
     `stopped` says who stopped the robot, `realtime` how much of real time is kept, `reloaded` what came of saved files
-    last; `record` keeps an entry of the journal.
+    last; `record` keeps an entry of the journal. `marking` says what becomes of a mark, which the
+    recorder hears by itself; empty where nothing is recorded.
     """
 
     def __init__(
@@ -51,6 +53,7 @@ class OperatorPart(Part, Observer):
     ) -> None:
         self.needs, self._behavior, self._narrator = needs, behavior, narrator
         self._stopped, self._realtime, self._reloaded, self._record = stopped, realtime, reloaded, record
+        self.marking: Callable[[], str] = str
         self._since = 0.0
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_REQUESTS)
         self._bus = behavior.loop.bus
@@ -102,6 +105,9 @@ class OperatorPart(Part, Observer):
         match body:
             case {"ask": "status"}:
                 return self.status()
+            case {"ask": "mark"}:
+                kept = self.marking()
+                return {"verdict": "done", "text": kept} if kept else _refusal(NOTHING_RECORDED)
             case {"ask": "goto", "state": str(state)}:
                 by = body.get("by")
                 return self._goto(state[:200], str(by)[:100] if by else SOMEBODY, now, only=body.get("only") == "check")

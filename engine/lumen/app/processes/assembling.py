@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from lumen.app.parts.module import ModulePart
 from lumen.app.parts.module_troubles import ModuleTroublesPart
 from lumen.app.parts.motion import MotionPart
 from lumen.app.parts.operating import OperatorPart
+from lumen.app.parts.recording import RecordingPart
 from lumen.app.parts.remote_brain import RemoteBody, RemoteBrainPart
 from lumen.app.parts.visitor import RemoteVisitorPart
 from lumen.app.processes.bundles import BundleFollower
@@ -57,10 +59,12 @@ def assemble(
     setup: Setup | None = None,
     story: Story | None = None,
     alerts: AlertDesk | None = None,
+    record: Path | None = None,
 ) -> Node:
     """The process that is these parts of an exhibition; `setup` is its robot, where it has one.
 
-    `alerts` has people told of what goes wrong, and is closed with it.
+    `alerts` has people told of what goes wrong, and is closed with it. What is said on the bus is recorded into the
+    file `record`, and the last minutes by the process that has the brain.
     """
     robot: HostedRobotPart | None = None
 
@@ -74,6 +78,10 @@ def assemble(
     node = Node(project, bus, clock, narrator, presence=presence, speed=options.speed)
     folder, records = home_of(run_directory.root), run_directory.records
     watch = AlertPart(alerts, bus, folder, names, presence, lambda: records.trouble) if alerts else None
+    ring = run_directory.home is not None and story is None
+    recording = RecordingPart(project, bus, partial(narrator.line, "recording"), record, ring=ring)
+    records.recorder = recording.recorder
+    node.parts.append(recording)
     if watch:
         node.parts.append(watch)
     if setup:
@@ -108,17 +116,19 @@ def assemble(
         if watch and alerts:
             behavior.loop.observers.append(watch)
             node.parts.append(RefusalPart(reloader, alerts))
+        operator = OperatorPart(
+            behavior,
+            narrator,
+            stopped=lambda: robot.server.hold.stopped if robot else stopped_there(presence),
+            realtime=lambda: node.pace.realtime,
+            reloaded=lambda: reloader.last_reload,
+            record=run_directory.records.write,
+            needs=brain.needs,
+        )
+        operator.marking = recording.marking
         node.parts += [
             ReloadPart(reloader, brain.needs),
-            OperatorPart(
-                behavior,
-                narrator,
-                stopped=lambda: robot.server.hold.stopped if robot else stopped_there(presence),
-                realtime=lambda: node.pace.realtime,
-                reloaded=lambda: reloader.last_reload,
-                record=run_directory.records.write,
-                needs=brain.needs,
-            ),
+            operator,
             ForgettingPart(project, bus, behavior.forget, records.forget, needs=brain.needs),
             brain,
             RecordsPart(run_directory.records, behavior, brain.needs),

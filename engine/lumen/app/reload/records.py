@@ -7,6 +7,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from typing import Any
 
+from lumen.app.recording.recorder import Recorder
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.crash_counter import CrashCounter
@@ -38,13 +39,16 @@ class RunRecords:
         self.trials = CrashCounter(home) if home else None
         self.journal = Journal(home.folder if home else None)
         self.inputs: JournalWriter | None = None
+        self.recorder: Recorder | None = None
 
     @property
     def trouble(self) -> str:
-        """What can't be written of where the behaviour stands and what happened, and why; empty where all can."""
+        """What can't be written of where the behaviour stands, what happened or is recorded, and why; else empty."""
         if why := self.keeper.trouble if self.keeper else "":
             return f"where the behaviour stands can't be written: {why}"
-        return self.inputs.trouble if self.inputs else ""
+        if why := self.inputs.trouble if self.inputs else "":
+            return why
+        return self.recorder.trouble if self.recorder else ""
 
     def write(self, entry: Mapping[str, Any]) -> None:
         self.journal.write(entry)

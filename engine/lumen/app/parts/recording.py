@@ -1,0 +1,118 @@
+"""What is recorded of a running exhibition: the file that was asked for, and the last minutes where that is wanted."""
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from lumen.app.parts.part import Part
+from lumen.app.recording.notes import NOTES, bundle_files, journal_files, notes_of
+from lumen.app.recording.recorder import Recorder, RecordingTape
+from lumen.app.recording.recordings_folder import RecordingsFolder
+from lumen.app.recording.recovering import RecordingRescue
+from lumen.app.recording.ring import PIECE_PERIOD, RingTape
+from lumen.app.recording.tape_file import FileTape
+from lumen.buses.validated import ValidatedBus
+from lumen.errors import LumenError, RecordingError, UsageError
+from lumen.extras import MissingExtraError
+from lumen.formats.recordings.reading import read_recording
+from lumen.formats.recordings.recorded import Recorded, RecordedNotes
+from lumen.formats.recordings.recording_file import writable
+from lumen.language.projects import Project
+from lumen.runtime.home import home_of
+
+Telling = Callable[[str], None]
+
+
+class RecordingPart(Part):
+    """Records, and recovers what a run before has left half written; the first part, for it is closed last.
+
+    `ring` is whether the last minutes are kept at hand where the project wants that: by the one run that has the home.
+    Raises UsageError where `file` can't be written.
+    """
+
+    def __init__(
+        self,
+        project: Project,
+        bus: ValidatedBus,
+        tell: Telling,
+        file: Path | None,
+        *,
+        ring: bool,
+        patient: bool = False,
+    ) -> None:
+        self._project, self._tell, self._root = project, tell, Path(project.root)
+        self._folder = RecordingsFolder(home_of(self._root))
+        self._rescue = RecordingRescue(self._folder, tell, self._rescued) if ring else None
+        self._file = self._begin(file) if file else None
+        self._ring = self._ringing() if ring and project.record.ring else None
+        tapes: list[RecordingTape] = [tape for tape in (self._file, self._ring) if tape]
+        self.recorder = (
+            Recorder(bus.unchecked, project, tapes, camera=project.record.camera, patient=patient) if tapes else None
+        )
+        if self.recorder:
+            self.recorder.start()
+
+    def marking(self) -> str:
+        """What becomes of a mark; empty where nothing is recorded."""
+        if self._ring:
+            minutes = self._project.record.ring / 60
+            return f"the last {minutes:g} min are kept, and the next minute, in {self._folder.path}"
+        return f"all is recorded into {self._file.path}" if self._file and not self._file.trouble else ""
+
+    def use(self, project: Project) -> None:
+        self._project = project
+        if self.recorder:
+            self.recorder.use(project)
+
+    def summary(self) -> Iterator[str]:
+        if self._file:
+            yield self._file.trouble or f"recorded: {self._file.path}, {self._file.messages:,} messages until now"
+
+    def close(self) -> None:
+        if self.recorder:
+            self.recorder.close()
+            if dropped := self.recorder.dropped:
+                self._tell(f"{dropped:,} messages were not recorded: the disk was too slow for them")
+        if self._rescue:
+            self._rescue.close()
+
+    def _begin(self, file: Path) -> FileTape:
+        try:
+            path = writable(file)
+            first: list[Recorded] = [notes_of(self._project), *bundle_files(self._root, [self._project.hash])]
+            return FileTape(path, self._folder, first, lambda began: journal_files(self._root, began, time.time()))
+        except MissingExtraError:
+            raise
+        except (OSError, LumenError) as error:
+            raise UsageError(f"{file} can't be recorded: {getattr(error, 'strerror', None) or error}") from None
+
+    def _ringing(self) -> RingTape | None:
+        """The ring, None where what it needs is not installed: an exhibition begins all the same."""
+        try:
+            return RingTape(
+                self._folder,
+                self._project.record,
+                lambda: [notes_of(self._project)],
+                lambda began, ended, pieces: [*self._explaining(pieces), *journal_files(self._root, began, ended)],
+                lambda path: self._tell(f"kept: {path}"),
+            )
+        except LumenError as error:
+            self._tell(str(error))
+            return None
+
+    def _rescued(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
+        """The same of pieces that were left, with the journal of their time."""
+        times = [piece.stat().st_mtime for piece in pieces]
+        return [*self._explaining(pieces), *journal_files(self._root, min(times) - PIECE_PERIOD, max(times))]
+
+    def _explaining(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
+        """The files that ran in these pieces."""
+        hashes = list[str]()
+        for piece in pieces:
+            with suppress(RecordingError):
+                notes = (
+                    item for item in read_recording(piece) if isinstance(item, RecordedNotes) and item.name == NOTES
+                )
+                hashes += [dict(found.words).get("bundle", "") for found in notes]
+        return bundle_files(self._root, hashes)

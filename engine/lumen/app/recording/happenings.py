@@ -1,0 +1,32 @@
+"""What on the bus is worth keeping what led to it."""
+
+from lumen.language.routing_keys import CONFIG_STATUS, INTERNAL_ALIASES, OPERATOR_REQUEST, key_of_robot
+from lumen.ports import Message
+
+FALLEN, ERROR, MARK = "fallen", "error", "mark"
+MAX_TEXT = 60
+NOT_TAKEN = {"refused": "reload-refused", "rolled back": "reload-rolled-back"}
+
+
+def happening(message: Message, robot: str) -> str:
+    """What happened to this robot, in a word or what somebody wrote; empty where it is nothing out of the ordinary.
+
+    A fall, an error that the behaviour hears of, files that are refused or taken back, and a mark.
+    """
+    match message.body:
+        case {"ask": "mark", **rest} if message.key in _keys(OPERATOR_REQUEST, robot):
+            text = str(rest.get("text") or "")[:MAX_TEXT]
+            return f"{MARK} {text}".strip()
+        case {"verdict": str(verdict)} if message.key in _keys(CONFIG_STATUS, robot):
+            return NOT_TAKEN.get(verdict, "")
+        case {"noticed": str(name), "robot": str(who)} | {"event": str(name), "robot": str(who)} if who == robot:
+            return FALLEN if name == FALLEN else ERROR if name.partition(".")[0] == ERROR else ""
+        case {"answer": {"kind": "error"}, "robot": str(who)} if who == robot:
+            return ERROR
+        case _:
+            return ""
+
+
+def _keys(key: str, robot: str) -> tuple[str, str]:
+    """A key of ours with the robot's name, and what it is called where there is one robot."""
+    return key_of_robot(key, robot), INTERNAL_ALIASES[key]

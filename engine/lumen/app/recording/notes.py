@@ -1,0 +1,70 @@
+"""What a recording says of itself, and the files that explain it."""
+
+import io
+import platform
+import time
+import zipfile
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+from lumen.errors import LumenError
+from lumen.formats.recordings.foxglove import NANO
+from lumen.formats.recordings.recorded import RecordedFile, RecordedNotes
+from lumen.language.projects import Project
+from lumen.loading.files import fingerprint, read_files
+from lumen.runtime.home import Home, home_of
+from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX
+from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
+from lumen.runtime.snapshot_store import SnapshotStore
+
+NOTES = "lumen"
+"""The name of the metadata that say which files ran; once more after each reload."""
+
+
+def notes_of(project: Project) -> RecordedNotes:
+    """Who and what is recorded, from now on."""
+    said = {
+        "exhibition": project.name,
+        "robot": project.robot,
+        "body": project.body.name,
+        "bundle": project.hash,
+        "behavior": project.behavior,
+        "lumen": version("lumen-robot"),
+        "python": platform.python_version(),
+        "from": datetime.now(UTC).isoformat(timespec="milliseconds"),
+    }
+    return RecordedNotes(NOTES, tuple(said.items()))
+
+
+def bundle_files(root: Path, hashes: Sequence[str]) -> Iterator[RecordedFile]:
+    """The files of these bundles, each as a ZIP, as far as they are kept or are there now."""
+    store = SnapshotStore(Home(home_of(root)))
+    for hash in dict.fromkeys(hashes):
+        files = store.files(hash)
+        if files is None:
+            with suppress(OSError, LumenError):
+                there = read_files(root)
+                files = there if fingerprint(there) == hash else None
+        if files is not None:
+            packed = io.BytesIO()
+            with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+                for name, content in sorted(files.items()):
+                    archive.writestr(name, content)
+            yield RecordedFile(f"bundle-{hash[:16]}.zip", "application/zip", packed.getvalue(), int(time.time() * NANO))
+
+
+def journal_files(root: Path, began: float, ended: float) -> Iterator[RecordedFile]:
+    """The files of the journal that say what happened between two times [s since 1970]."""
+    for file, header in headers(home_of(root) / JOURNAL_FOLDER):
+        with suppress(OSError):
+            changed = file.stat().st_mtime
+            if header.began <= ended and changed >= began:
+                yield RecordedFile(
+                    f"journal/{file.name}",
+                    f"application/x-lumen{JOURNAL_SUFFIX}",
+                    file.read_bytes(),
+                    int(changed * NANO),
+                )

@@ -1,0 +1,205 @@
+"""Who records a bus: on a thread of its own, so that no publisher and no tick waits for a disk."""
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, Protocol
+
+from lumen.app.recording.happenings import happening
+from lumen.app.recording.notes import notes_of
+from lumen.buses.aliases import COPY
+from lumen.formats.recordings.encoding import MessageEncoder
+from lumen.formats.recordings.recorded import Recorded
+from lumen.language.people import PersonName, name_key
+from lumen.language.projects import Project
+from lumen.language.routing_keys import DEFAULT_KEYS, INTERNAL_KEYS, key_of_robot
+from lumen.ports import Bus, Message
+from lumen.upkeep.drops import DropLog
+from lumen.upkeep.threads import WatchedThread
+
+MAX_WAITING = 20_000
+"""Messages that wait to be written; then the oldest give way, and are counted."""
+WRITE_PERIOD = 0.1
+"""How often what waits is written [s]."""
+FORGETTING_SPACING = 2.0
+"""How long after names were taken out the next are [s]: each time files are written anew."""
+FORGETTING_SPAN = 10.0
+"""How long a name that was to be forgotten is taken out of what comes [s]: who was asked to forget it says so."""
+MAX_FORGOTTEN = 100
+"""Names at a time."""
+FORGOTTEN_ROUTE, IMAGE_ROUTE = "forgotten", "image"
+FORGOTTEN_KEY = DEFAULT_KEYS[FORGOTTEN_ROUTE].partition("{robot}")[2]
+
+_log = logging.getLogger(__name__)
+
+
+class RecordingTape(Protocol):
+    """Takes what is recorded; nothing here raises for what a disk does: `trouble` says why it can't be written."""
+
+    trouble: str
+
+    def write(self, items: Sequence[Recorded], now: float) -> None: ...
+
+    def mark(self, why: str, now: float) -> None:
+        """Something happened that is to be kept."""
+        ...
+
+    def settle(self, now: float) -> None:
+        """Nothing more is to be written at the moment, `now` [s since 1970]."""
+        ...
+
+    def forget(self, people: Sequence[PersonName]) -> None:
+        """Take their names out of what was written."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class _Heard(NamedTuple):
+    message: Message
+    came: float
+
+
+class Recorder:
+    """Writes what is said on a bus onto tapes, from `start` to `close`.
+
+    Where it is `patient` whoever publishes waits for it, else messages give way where a disk is too slow: that is said,
+    and counted in `dropped`. Without the `camera` no image is asked for. `extra` makes more of a message than itself.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        project: Project,
+        tapes: Sequence[RecordingTape],
+        *,
+        camera: bool = True,
+        patient: bool = False,
+        extra: Callable[[Message, float], Sequence[Recorded]] = lambda message, came: (),
+    ) -> None:
+        self.tapes, self._bus, self._camera, self._patient, self._extra = tapes, bus, camera, patient, extra
+        self._waiting: deque[_Heard] = deque(maxlen=None if patient else MAX_WAITING)
+        self._drops = DropLog(_log, "messages for the recording")
+        self._encoder = MessageEncoder(project)
+        self._project, self._news = project, deque[Project]()
+        self._undo: list[Callable[[], None]] = []
+        self._forgotten: dict[str, tuple[PersonName, float]] = {}
+        self._to_forget: list[PersonName] = []
+        self._forgot = 0.0
+        self._wake, self._idle, self._closing = threading.Event(), threading.Event(), False
+        self._thread = WatchedThread("lumen-recorder", self._run)
+
+    @property
+    def trouble(self) -> str:
+        """Why something can't be written, empty where all can."""
+        return next((tape.trouble for tape in self.tapes if tape.trouble), "")
+
+    @property
+    def dropped(self) -> int:
+        return sum(self._drops.counts.values())
+
+    def start(self) -> None:
+        self._thread.start()
+        self._undo = [self._bus.subscribe(pattern, self._hear) for pattern in _patterns(self._project, self._camera)]
+
+    def use(self, project: Project) -> None:
+        """Another bundle runs from now on."""
+        self._news.append(project)
+
+    def mark(self, why: str) -> None:
+        """Have kept what is being recorded; any thread may."""
+        for tape in self.tapes:
+            tape.mark(why, time.time())
+
+    def close(self, patience: float = 20.0) -> None:
+        """Write what is left, at most so long [s], and end; harmless when repeated."""
+        for undo in self._undo:
+            undo()
+        self._undo = []
+        self._closing = True
+        self._wake.set()
+        if self._thread.started:
+            self._thread.join(patience)
+        self._drops.tell(all=True)
+
+    def _hear(self, message: Message) -> None:
+        if message.id.endswith(COPY):
+            return  # the message itself comes, too
+        heard = _Heard(message, time.time())
+        if not self._patient:
+            self._drops.push(self._waiting, heard, lambda each: each.message.key, "the disk is too slow for them")
+            return
+        self._waiting.append(heard)
+        if len(self._waiting) > MAX_WAITING:
+            self._idle.clear()
+            self._wake.set()
+            self._idle.wait(FORGETTING_SPAN)
+
+    def _run(self) -> None:
+        while True:
+            self._wake.wait(WRITE_PERIOD)
+            self._wake.clear()
+            closing = self._closing
+            self._write_waiting()
+            self._idle.set()
+            now = time.time()
+            if self._to_forget and (closing or abs(now - self._forgot) > FORGETTING_SPACING):
+                people, self._to_forget, self._forgot = self._to_forget, [], now
+                for tape in self.tapes:
+                    tape.forget(people)
+            for tape in self.tapes:
+                tape.settle(now)
+            self._drops.tell()
+            if closing and not self._waiting:
+                for tape in self.tapes:
+                    tape.close()
+                return
+
+    def _write_waiting(self) -> None:
+        items, marks = list[Recorded](), list[tuple[str, float]]()
+        while self._news:
+            self._project = self._news.popleft()
+            self._encoder.use(self._project)
+            items.append(notes_of(self._project))
+        for _ in range(len(self._waiting)):
+            message, came = self._waiting.popleft()
+            self._look_for_names(message, came)
+            message = self._scrubbed(message, came)
+            items += self._encoder.encode(message, came)
+            items += self._extra(message, came)
+            if why := happening(message, self._project.robot):
+                marks.append((why, came))
+        for tape in self.tapes:
+            tape.write(items, time.time())
+            for why, came in marks:
+                tape.mark(why, came)
+
+    def _look_for_names(self, message: Message, came: float) -> None:
+        if message.key != self._project.key_of(FORGOTTEN_ROUTE) and not message.key.endswith(FORGOTTEN_KEY):
+            return  # the memory of another robot on this bus counts as well: what it hears is recorded, too
+        match message.body:
+            case {"name": str(name)} if (key := name_key(name)) and len(self._forgotten) < MAX_FORGOTTEN:
+                person = PersonName(name)
+                self._to_forget += [person] if key not in self._forgotten else []
+                self._forgotten[key] = person, came + FORGETTING_SPAN
+
+    def _scrubbed(self, message: Message, came: float) -> Message:
+        """A message without those who were forgotten just now."""
+        for key, (person, until) in list(self._forgotten.items()):
+            if came > until:
+                del self._forgotten[key]
+            else:
+                body, sender, cause = map(person.scrubbed, (message.body, message.sender, message.cause))
+                message = message._replace(body=body, sender=sender, cause=cause)
+        return message
+
+
+def _patterns(project: Project, camera: bool) -> Sequence[str]:
+    """Everything; without the camera all keys that are known but the images', which then nobody renders."""
+    if camera:
+        return ("#",)
+    ours = [key_of_robot(key, project.robot) for key in INTERNAL_KEYS]
+    keys = {key for name in project.routes for key in (project.key_of(name), project.routes[name].alias) if key}
+    return sorted((keys | set(ours)) - {project.key_of(IMAGE_ROUTE)})

@@ -1,0 +1,91 @@
+"""The recordings of an exhibition: those in its home, and a note of each that was begun somewhere else."""
+
+import os
+import uuid
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from lumen.errors import UsageError
+from lumen.runtime.home import Home
+from lumen.upkeep.private_folder import private_folder
+
+RECORDINGS_FOLDER, RING_FOLDER = "recordings", "ring"
+SUFFIX = ".mcap"
+DAY, MEGABYTE = 86400.0, 1_000_000
+_NOTE = ".begun"
+
+
+class BegunRecording(NamedTuple):
+    """A recording that somebody began; `written` is whether a process is at it."""
+
+    path: Path
+    written: bool
+
+
+class RecordingsFolder:
+    """`recordings/` in the home of an exhibition."""
+
+    def __init__(self, home: Path) -> None:
+        self.path = home / RECORDINGS_FOLDER
+        self.ring = self.path / RING_FOLDER
+
+    def make(self) -> None:
+        """Raises OSError where it can't be made."""
+        private_folder(self.path.parent)
+        private_folder(self.path)
+        private_folder(self.ring)
+
+    def files(self) -> list[Path]:
+        """The recordings that are kept here, the oldest first."""
+        found = [(file.stat().st_mtime, file) for file in self.path.glob(f"*{SUFFIX}") if file.is_file()]
+        return [file for _, file in sorted(found)]
+
+    def parts(self) -> list[Path]:
+        """The pieces of the ring, the oldest first."""
+        return sorted(self.ring.glob(f"*{SUFFIX}"))
+
+    def begin(self, path: Path) -> Home | None:
+        """Note that this one is being written, until the result is released; None where nothing can be noted."""
+        note = Home(self.path / f"{uuid.uuid4().hex[:12]}{_NOTE}")
+        try:
+            self.make()
+            if not note.hold():
+                return None
+        except (OSError, UsageError):
+            return None
+        note.write("path", os.fsencode(path.absolute()))
+        return note
+
+    def begun(self) -> Iterator[BegunRecording]:
+        """All that were begun and are there still; notes of what is gone are taken away."""
+        for folder in sorted(self.path.glob(f"*{_NOTE}")):
+            note = Home(folder)
+            said = note.read("path")
+            path = Path(os.fsdecode(said)) if said else None
+            written = note.held()
+            if path and path.is_file() and not path.is_symlink():
+                yield BegunRecording(path, written)
+            elif not written:
+                _remove(folder)
+
+    def prune(self, now: float, keep: float, size: float) -> None:
+        """Delete what is older than `keep` days, and the oldest of what is more than `size` MB."""
+        left = 0
+        begun = {each.path.absolute() for each in self.begun() if each.written}
+        for file in reversed(self.files()):
+            with suppress(OSError):
+                said = file.stat()
+                left += said.st_size
+                old = now - said.st_mtime > keep * DAY or left > size * MEGABYTE
+                if old and file.absolute() not in begun:
+                    file.unlink()
+
+
+def _remove(folder: Path) -> None:
+    for file in folder.iterdir():
+        with suppress(OSError):
+            file.unlink()
+    with suppress(OSError):
+        folder.rmdir()

@@ -1,0 +1,89 @@
+"""What a run that was killed has left half written: given its index at the next start."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from lumen.app.recording.recordings_folder import RecordingsFolder
+from lumen.app.recording.ring import kept_as
+from lumen.errors import LumenError, RecordingError
+from lumen.formats.recordings.reading import whole
+from lumen.formats.recordings.recorded import Recorded
+from lumen.formats.recordings.rewriting import recover, rewrite
+from lumen.upkeep.threads import WatchedThread
+
+Explaining = Callable[[Sequence[Path]], Iterable[Recorded]]
+"""What makes the recording of these pieces explain itself."""
+
+
+class RecordingRescue:
+    """Recovers, on a thread of its own, what was begun and left, and says so with `tell`.
+
+    The pieces of a ring are kept: whoever left them ended without notice. It starts none where there is nothing to do.
+    """
+
+    def __init__(
+        self, folder: RecordingsFolder, tell: Callable[[str], None], explaining: Explaining = lambda pieces: ()
+    ) -> None:
+        self._folder, self._tell, self._explaining = folder, tell, explaining
+        self._pieces = folder.parts()
+        self._cut = [each.path for each in folder.begun() if not each.written and _is_cut(each.path)]
+        self._thread = WatchedThread("lumen-recovery", self._run)
+        if self._pieces or self._cut:
+            self._thread.start()
+
+    def close(self, patience: float = 20.0) -> None:
+        """Wait until it is done, at most so long [s]."""
+        if self._thread.started:
+            self._thread.join(patience)
+
+    def _run(self) -> None:
+        while self._cut:
+            path = self._cut.pop()
+            with _telling(self._tell, path):
+                remove_drafts(path)
+                self._tell(f"{path} was cut, and is whole again: {recover(path) or 0:,} messages")
+        pieces, self._pieces = self._pieces, []
+        if pieces:
+            path = kept_as(self._folder, pieces[-1].stat().st_mtime, "crashed")
+            with _telling(self._tell, path):
+                good = [piece for piece in pieces if _readable(piece)]
+                count = rewrite(good, path, more=self._explaining(good)) if good else 0
+                for piece in pieces:
+                    piece.unlink(missing_ok=True)
+                if count:
+                    self._tell(f"the last minutes of the run that ended without notice: {path}, {count:,} messages")
+                else:
+                    path.unlink(missing_ok=True)
+
+
+@contextmanager
+def _telling(tell: Callable[[str], None], path: Path) -> Iterator[None]:
+    """What can't be recovered is told, and left as it is."""
+    try:
+        yield
+    except (LumenError, OSError) as error:
+        tell(f"{path.name} can't be recovered: {error}")
+
+
+def remove_drafts(path: Path) -> None:
+    """Take away what was half written beside a recording."""
+    for draft in path.parent.glob(f"{path.name}.*.new"):
+        with suppress(OSError):
+            draft.unlink()
+
+
+def _is_cut(path: Path) -> bool:
+    try:
+        return not whole(path)
+    except RecordingError:
+        return False
+
+
+def _readable(piece: Path) -> bool:
+    """Whether it is a recording at all: one that was cut in its first bytes is none."""
+    try:
+        whole(piece)
+    except RecordingError:
+        return False
+    return True

@@ -1,0 +1,102 @@
+"""A recording without somebody: no message says their name, no picture or sound is left of when they were there."""
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import orjson
+
+from lumen.formats.recordings.encoding import json_bytes
+from lumen.formats.recordings.foxglove import NANO
+from lumen.formats.recordings.reading import read_recording
+from lumen.formats.recordings.recorded import Recorded, RecordedFile, RecordedMessage
+from lumen.formats.recordings.rewriting import Changed
+from lumen.language.people import PersonName
+from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX
+from lumen.runtime.inputs.redaction import redact
+
+AROUND = 600.0
+"""How long before and after their name was said pictures and sounds may be of them [s]."""
+PICTURE_FORM = "foxglove.CompressedImage"
+SOUND_FORMS = ("lumen.recording", "lumen.wav.stream")
+
+
+class Redaction(NamedTuple):
+    """How many `messages` and attached `files` name somebody, and how many `pictures` and sounds may show them."""
+
+    messages: int = 0
+    files: int = 0
+    pictures: int = 0
+
+    def __bool__(self) -> bool:
+        return any(self)
+
+
+def redacted(path: Path, person: PersonName) -> tuple[Redaction, Changed]:
+    """What in a recording is about somebody, and what takes it out."""
+    times, messages, files = list[int](), 0, 0
+    for item in read_recording(path):
+        match item:
+            case RecordedMessage() if person.is_in(_data(item)):
+                messages += 1
+                times.append(item.came)
+            case RecordedFile() if _without_person(item, person) is not item:
+                files += 1
+    spans = _merged(times)
+
+    def shown(item: Recorded) -> bool:
+        return isinstance(item, RecordedMessage) and _shows(item) and any(a <= item.came <= b for a, b in spans)
+
+    pictures = sum(map(shown, read_recording(path))) if spans else 0
+
+    def changed(item: Recorded) -> Recorded | None:
+        if shown(item):
+            return None
+        match item:
+            case RecordedMessage() if person.is_in(data := _data(item)):
+                return item._replace(data=json_bytes(person.scrubbed(data)))
+            case RecordedFile():
+                return _without_person(item, person)
+            case _:
+                return item
+
+    return Redaction(messages, files, pictures), changed
+
+
+def _shows(item: RecordedMessage) -> bool:
+    return item.channel.form == PICTURE_FORM or item.channel.form in SOUND_FORMS
+
+
+def _data(item: RecordedMessage) -> Any:
+    if item.channel.encoding != "json":
+        return None
+    try:
+        found = orjson.loads(item.data)
+    except ValueError:
+        return item.data.decode("utf-8", "replace")
+    return found if isinstance(found, Mapping) else {"value": found}
+
+
+def _without_person(item: RecordedFile, person: PersonName) -> RecordedFile:
+    """A journal that is attached without the name; itself where it is none, or does not say it."""
+    if not item.name.endswith(JOURNAL_SUFFIX):
+        return item
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / Path(item.name).name
+        file.write_bytes(item.data)
+        if not redact(file, person):
+            return item
+        return item._replace(data=file.read_bytes() if file.exists() else b"")
+
+
+def _merged(times: list[int]) -> list[tuple[int, int]]:
+    """When they were there [ns since 1970]."""
+    spans = list[tuple[int, int]]()
+    around = int(AROUND * NANO)
+    for at in sorted(times):
+        if spans and at - around <= spans[-1][1]:
+            spans[-1] = spans[-1][0], at + around
+        else:
+            spans.append((at - around, at + around))
+    return spans

@@ -1,0 +1,166 @@
+"""The last minutes, always; kept where something happened."""
+
+import logging
+import re
+import time
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from lumen.app.recording.recordings_folder import SUFFIX, RecordingsFolder
+from lumen.app.recording.redaction import redacted
+from lumen.errors import LumenError
+from lumen.formats.recordings.recorded import Recorded
+from lumen.formats.recordings.recording_file import RecordingFile, writable
+from lumen.formats.recordings.rewriting import rewrite
+from lumen.language.people import PersonName
+from lumen.language.retention import RecordingSettings
+
+PIECE_PERIOD = 30.0
+"""How long a piece of the ring is [s]: so much more than wanted is kept at most."""
+AFTER = 60.0
+"""How long it goes on after something happened [s]."""
+RETRY_PERIOD = 30.0
+"""How long after the disk has refused something it is tried again [s]."""
+
+_log = logging.getLogger(__name__)
+
+
+class RingTape:
+    """Keeps the last `settings.ring` seconds in pieces, and makes them a recording where something is marked.
+
+    It goes on for `AFTER` s, and where more happens within them, for so long after that, but no longer than the ring is
+    in all. What one recording holds, the next does not. `first` begins each piece, `last` ends a recording: with the
+    times of its beginning and end [s since 1970]. `kept` hears of each that was written.
+    """
+
+    def __init__(
+        self,
+        folder: RecordingsFolder,
+        settings: RecordingSettings,
+        first: Callable[[], Iterable[Recorded]] = tuple,
+        last: Callable[[float, float, Sequence[Path]], Iterable[Recorded]] = lambda began, ended, pieces: (),
+        kept: Callable[[Path], None] = lambda path: None,
+    ) -> None:
+        self.trouble = ""
+        self._folder, self._settings, self._first, self._last, self._kept = folder, settings, first, last, kept
+        self._file: RecordingFile | None = None
+        self._pieces: list[tuple[float, Path]] = []
+        self._why, self._marked, self._until, self._retry = "", 0.0, 0.0, 0.0
+        self._count = 0
+
+    def write(self, items: Sequence[Recorded], now: float) -> None:
+        if self._file is None and (items and now >= self._retry):
+            self._begin(now)
+        if self._file:
+            try:
+                self._file.write(items)
+            except OSError as error:
+                self._fail(error, now)
+
+    def mark(self, why: str, now: float) -> None:
+        if not self._why:
+            self._why, self._marked = why, now
+        self._until = min(now + AFTER, self._marked + max(AFTER, self._settings.ring))
+
+    def settle(self, now: float) -> None:
+        try:
+            if self._file:
+                self._file.settle()
+            if self._why and now >= self._until:
+                self._keep(now)
+            elif self._pieces and (now - self._pieces[-1][0] >= PIECE_PERIOD or now < self._pieces[-1][0]):
+                self._end()
+                self._drop(now)
+        except (OSError, LumenError) as error:
+            self._fail(error, now)
+
+    def forget(self, people: Sequence[PersonName]) -> None:
+        """Take them out of all pieces, and of what was kept."""
+        self._end()
+        for file in [*(piece for _, piece in self._pieces), *self._folder.files()]:
+            for person in people:
+                try:
+                    found, changed = redacted(file, person)
+                    if found:
+                        rewrite([file], file, changed)
+                except LumenError as error:
+                    _log.warning("a recording still names somebody who was to be forgotten: %s", error)
+
+    def close(self) -> None:
+        """Keep what is marked; what is left of the ring is nobody's."""
+        try:
+            if self._why:
+                self._keep(time.time())
+        except (OSError, LumenError) as error:
+            self._fail(error, time.time())
+        self._end()
+        self._drop(float("inf"))
+
+    def _begin(self, now: float) -> None:
+        try:
+            self._folder.make()
+            self._count += 1
+            path = self._folder.ring / f"{int(now * 1000):015d}-{self._count:06d}{SUFFIX}"
+            self._file = RecordingFile(path)
+            self._pieces.append((now, path))
+            self._file.write(self._first())
+            self.trouble = ""
+        except (OSError, LumenError) as error:
+            self._fail(error, now)
+
+    def _end(self) -> None:
+        file, self._file = self._file, None
+        if file:
+            try:
+                file.finish()
+            except OSError as error:
+                self._fail(error, time.time())
+
+    def _drop(self, now: float) -> None:
+        """Delete the pieces that are over for longer than the ring is long, but for those that are to be kept."""
+        latest = self._marked if self._why else now
+        while self._pieces and self._ended(0) < latest - self._settings.ring:
+            with suppress(OSError):
+                self._pieces[0][1].unlink()
+            del self._pieces[0]
+
+    def _ended(self, number: int) -> float:
+        after = self._pieces[number + 1 :]
+        return after[0][0] if after else self._pieces[number][0] + (PIECE_PERIOD if self._file else 0.0)
+
+    def _keep(self, now: float) -> None:
+        """Make a recording of the pieces, which are gone then."""
+        why, self._why = self._why, ""
+        self._end()
+        pieces = [piece for _, piece in self._pieces]
+        if not pieces:
+            return
+        began = self._pieces[0][0]
+        path = kept_as(self._folder, self._marked, why)
+        rewrite(pieces, path, more=self._last(began, now, pieces))
+        self._pieces = []
+        for piece in pieces:
+            with suppress(OSError):
+                piece.unlink()
+        self._folder.prune(now, self._settings.keep, self._settings.size)
+        self._kept(path)
+
+    def _fail(self, error: Exception, now: float) -> None:
+        """Told once, and tried again later; the pieces that are there stay."""
+        self._retry = now + RETRY_PERIOD
+        if not self.trouble:
+            self.trouble = (
+                f"the last minutes can't be recorded: {(getattr(error, 'strerror', None) or str(error)).lower()}"
+            )
+            _log.warning("%s", self.trouble)
+        if self._file:
+            self._file.abandon()
+            self._file = None
+
+
+def kept_as(folder: RecordingsFolder, at: float, why: str) -> Path:
+    """Where a recording of that time [s since 1970] goes, for that reason."""
+    stamp = time.strftime("%Y-%m-%dT%H-%M-%SZ", time.gmtime(at))
+    word = re.sub(r"[^\w]+", "-", why.lower()).strip("-")[:40]
+    return writable(folder.path / f"{stamp}-{word or 'mark'}{SUFFIX}")

@@ -1,0 +1,84 @@
+"""A recording into one file, from its beginning to its end."""
+
+import logging
+import time
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from lumen.app.recording.recordings_folder import RecordingsFolder
+from lumen.app.recording.redaction import redacted
+from lumen.errors import LumenError
+from lumen.formats.recordings.recorded import Recorded
+from lumen.formats.recordings.recording_file import RecordingFile
+from lumen.formats.recordings.rewriting import reopened
+from lumen.language.people import PersonName
+
+_log = logging.getLogger(__name__)
+
+
+class FileTape:
+    """Writes one recording; `first` begins it, `last` is asked for what ends it, with when it began [s since 1970].
+
+    Where the disk refuses, what was written until then is left, and it is told once. Raises OSError or LumenError where
+    it can't be begun.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        folder: RecordingsFolder,
+        first: Iterable[Recorded] = (),
+        last: Callable[[float], Iterable[Recorded]] = lambda began: (),
+    ) -> None:
+        self.path, self.trouble, self.bytes = path, "", 0
+        self._began, self._last = time.time(), last
+        self._file: RecordingFile | None = RecordingFile(path)
+        self.messages = 0
+        self._note = folder.begin(path)
+        self.write(list(first), self._began)
+
+    def write(self, items: Sequence[Recorded], now: float) -> None:
+        self._try(lambda file: file.write(items))
+
+    def mark(self, why: str, now: float) -> None:
+        """All of it is kept."""
+
+    def settle(self, now: float) -> None:
+        self._try(lambda file: file.settle())
+
+    def forget(self, people: Sequence[PersonName]) -> None:
+        """Write it anew without them, and go on."""
+        for person in people:
+            self._try(lambda file, person=person: self._forget(file, person))  # type: ignore[misc]
+
+    def close(self) -> None:
+        def end(file: RecordingFile) -> None:
+            file.write(self._last(self._began))
+            file.finish()
+            self.bytes = self.path.stat().st_size
+
+        self._try(end)
+        self._file = None
+        if self._note:
+            self._note.release()
+
+    def _forget(self, file: RecordingFile, person: PersonName) -> None:
+        file.finish()
+        self._file = reopened(self.path, redacted(self.path, person)[1])
+
+    def _try(self, work: Callable[[RecordingFile], None]) -> None:
+        """What the disk refuses ends the recording, and nothing else."""
+        if self._file is None:
+            return
+        try:
+            work(self._file)
+            self.messages = self._file.messages
+        except (OSError, LumenError) as error:
+            self.trouble = f"the recording {self.path.name} can't be written: {_reason(error)}"
+            _log.warning("%s; what was written until now can be recovered", self.trouble)
+            self._file.abandon()
+            self._file = None
+
+
+def _reason(error: Exception) -> str:
+    return (getattr(error, "strerror", None) or str(error)).lower()

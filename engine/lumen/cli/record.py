@@ -1,0 +1,130 @@
+"""`lumen record`: what is said on the bus of a running exhibition, into a file for Foxglove and Lichtblick."""
+
+import argparse
+import json
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.app.reaching import Reached
+from lumen.app.recording.notes import bundle_files, journal_files, notes_of
+from lumen.app.recording.recorder import Recorder
+from lumen.app.recording.recordings_folder import SUFFIX, RecordingsFolder
+from lumen.app.recording.recovering import remove_drafts
+from lumen.app.recording.tape_file import FileTape
+from lumen.cli.progress import progress
+from lumen.cli.reach import reach
+from lumen.errors import BusError, UsageError
+from lumen.formats.recordings.recorded import Recorded
+from lumen.formats.recordings.recording_file import writable
+from lumen.formats.recordings.rewriting import recover
+from lumen.language.projects import Project
+from lumen.loading.files import read_files
+from lumen.loading.packaged import find_project
+from lumen.loading.units import seconds
+from lumen.ports import Bus
+from lumen.rules import check_files
+from lumen.runtime.home import Home, home_of
+from lumen.runtime.snapshot_store import SnapshotStore
+
+LOOK = 0.1
+"""How often it is looked whether the time is over, or the exhibition is gone [s]."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("file", nargs="?", metavar="FILE.mcap", type=Path, help="default: a new one in .lumen/recordings/")
+    add("--for", dest="span", metavar="TIME", help="end after so long (default: Ctrl-C ends it)")
+    add("--no-camera", action="store_true", help="leave out the camera's images")
+    add("--mark", nargs="?", const="", metavar="TEXT", help="have the last minutes kept, where they are at hand")
+    add("--recover", metavar="FILE.mcap", type=Path, help="make a recording that was cut whole again")
+    add("--project", metavar="DIR", help="whose exhibition; default: the one here or above")
+    add("--bus", metavar="URL", help="where it runs; default: LUMEN_BUS, then this machine")
+    add("--format", choices=("text", "json"), default="text", help="default: text")
+
+
+def run(options: argparse.Namespace) -> int:
+    """0 where something was recorded, recovered or marked, else 1."""
+    if options.recover:
+        return _recover(options)
+    span = seconds(options.span) if options.span else None
+    if options.span and not span:
+        raise UsageError(f"--for {options.span}: write a number and its unit, such as `20s` or `2min`")
+    reached = reach(options)
+    try:
+        return _record(options, reached, span) if options.mark is None else _mark(options, reached)
+    finally:
+        reached.bus.close()
+
+
+def _recover(options: argparse.Namespace) -> int:
+    path = options.recover
+    remove_drafts(path)
+    count = recover(path)
+    said = f"{path} is whole: nothing to recover" if count is None else f"{path} is whole again: {count:,} messages"
+    _say(options, said, file=str(path), messages=count)
+    return 0
+
+
+def _mark(options: argparse.Namespace, reached: Reached) -> int:
+    answer = next(
+        ask(reached.bus, operator_key(reached.robot), {"ask": "mark", "text": options.mark}, OPERATOR_ANSWERS)
+    )
+    done = answer.get("verdict") == "done" if isinstance(answer, dict) else False
+    text = str(answer.get("text" if done else "reason", "")) if isinstance(answer, dict) else str(answer)
+    _say(options, f"marked: {text}" if done else f"nothing is kept: {text}", marked=done, reason=text)
+    return 0 if done else 1
+
+
+def _record(options: argparse.Namespace, reached: Reached, span: float | None) -> int:
+    root = find_project(options.project)
+    bus = reached.bus
+    project, folder = _running_project(root, reached), RecordingsFolder(home_of(root))
+    path = options.file or folder.path / time.strftime(f"%Y-%m-%dT%H-%M-%SZ-recorded{SUFFIX}", time.gmtime())
+    try:
+        if options.file is None:
+            folder.make()
+        first: list[Recorded] = [notes_of(project), *bundle_files(root, [project.hash])]
+        tape = FileTape(writable(path), folder, first, lambda began: journal_files(root, began, time.time()))
+    except OSError as error:
+        raise UsageError(f"{path} can't be written: {error.strerror}") from None
+    recorder = Recorder(bus, project, [tape], camera=project.record.camera and not options.no_camera)
+    try:
+        recorder.start()
+        _wait(bus, tape, span)
+    finally:
+        recorder.close()
+    lost = f"; {recorder.dropped:,} messages were not: the disk was too slow" if recorder.dropped else ""
+    said = tape.trouble or f"recorded {tape.path}: {tape.messages:,} messages, {tape.bytes / 1e6:.1f} MB{lost}"
+    _say(options, said, file=str(tape.path), messages=tape.messages, bytes=tape.bytes, dropped=recorder.dropped)
+    return 1 if tape.trouble else 0
+
+
+def _wait(bus: Bus, tape: FileTape, span: float | None) -> None:
+    """Until the time is over, somebody presses Ctrl-C, the disk refuses, or the exhibition is gone."""
+    began, gone = time.monotonic(), getattr(bus, "gone", None)
+    with suppress(KeyboardInterrupt), progress() as tell:
+        while not tape.trouble and not (gone and gone.is_set()):
+            waited = time.monotonic() - began
+            if span is not None and waited >= span:
+                return
+            tell(waited, span or 0.0, "s recorded")
+            time.sleep(LOOK)
+
+
+def _running_project(root: Path, reached: Reached) -> Project:
+    """The files that run, where they are kept, else those that are there. Raises UsageError where they have errors."""
+    kept: dict[str, bytes] | None = None
+    with suppress(BusError, TypeError, KeyError):
+        status = next(ask(reached.bus, operator_key(reached.robot), {"ask": "status"}, OPERATOR_ANSWERS))
+        kept = SnapshotStore(Home(home_of(root))).files(str(status["bundle"]))
+    project = check_files(root, kept or read_files(root))[0]
+    if project is None:
+        raise UsageError(f"the files of {root} have errors, so it is not known what its messages are: `lumen lint`")
+    return project
+
+
+def _say(options: argparse.Namespace, text: str, **data: Any) -> None:
+    print(json.dumps(data, ensure_ascii=False) if options.format == "json" else text)

@@ -1,0 +1,114 @@
+"""A recording that is being written: after a cut, all but the last half second can be read."""
+
+import os
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, assert_never
+
+from lumen.errors import RecordingError
+from lumen.extras import demand
+from lumen.formats.recordings.recorded import Recorded, RecordedChannel, RecordedFile, RecordedMessage, RecordedNotes
+
+CHUNK_BYTES = 64_000
+"""After which a piece is closed, which can be read from then on: with the library's 1 MB a kill left nothing."""
+CHUNK_PERIOD = 0.5
+"""After which it is closed in any case [s]."""
+SYNC_PERIOD = 2.0
+"""How often the system is asked to bring it to the disk [s]."""
+MAX_CHANNELS = 60_000
+"""MCAP counts channels with 16 bits; what comes on further ones is left out."""
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0)
+
+
+class RecordingFile:
+    """Writes a new recording, for its owner alone; `messages` counts what is in it, `bytes` how long it is.
+
+    Raises RecordingError where `mcap` is missing, and OSError where the disk refuses: then what was written before can
+    be recovered.
+    """
+
+    def __init__(self, path: Path) -> None:
+        demand("recording", "a recording", "mcap", "google.protobuf", "foxglove_schemas_protobuf")
+        from mcap.writer import Writer  # 0.4 s, and only who records needs it
+
+        self.path, self.messages = path, 0
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | _NO_LINK, 0o600)
+        self._file: Any = open(handle, "wb")  # noqa: SIM115  it is closed by `finish`
+        self._writer: Any = Writer(self._file, chunk_size=CHUNK_BYTES)
+        self._writer.start(profile="", library="lumen")
+        self._channels: dict[RecordedChannel, int] = {}
+        self._schemas: dict[tuple[str, str, bytes], int] = {}
+        self._closed = self._synced = time.monotonic()
+
+    @property
+    def bytes(self) -> int:
+        return int(self._file.tell())
+
+    def write(self, items: Iterable[Recorded]) -> None:
+        """Write these, in their order."""
+        for item in items:
+            match item:
+                case RecordedMessage(channel, came, sent, data):
+                    number = self._channels.get(channel) or self._number(channel)
+                    if number:
+                        self.messages += 1
+                        self._writer.add_message(number, came, data, sent, self.messages & 0xFFFFFFFF)
+                case RecordedFile(name, kind, data, at):
+                    self._writer.add_attachment(at, at, name, kind, data)
+                case RecordedNotes(name, words):
+                    self._writer.add_metadata(name, dict(words))
+                case _:
+                    assert_never(item)
+
+    def settle(self) -> None:
+        """Close the piece that is being written, and bring it to the disk, where either is due."""
+        now = time.monotonic()
+        if now - self._closed >= CHUNK_PERIOD:
+            self._closed = now
+            self._writer.flush()
+        if now - self._synced >= SYNC_PERIOD:
+            self._synced = now
+            os.fsync(self._file.fileno())
+
+    def finish(self) -> None:
+        """Write the index, and close it."""
+        try:
+            self._writer.finish()
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        finally:
+            self.abandon()
+
+    def abandon(self) -> None:
+        """Leave it as it is, without an index; harmless when repeated."""
+        try:
+            self._file.close()
+        except OSError:  # what it holds back the disk does not take
+            return
+
+    def _number(self, channel: RecordedChannel) -> int:
+        """The number of a channel, made known when it is first used; 0 where there are too many."""
+        if len(self._channels) >= MAX_CHANNELS:
+            return 0
+        form = channel.form, channel.language, channel.schema
+        if form not in self._schemas:
+            self._schemas[form] = self._writer.register_schema(*form)
+        number: int = self._writer.register_channel(channel.topic, channel.encoding, self._schemas[form])
+        self._channels[channel] = number
+        return number
+
+
+def writable(path: Path) -> Path:
+    """A path for a new recording: this, or where that is there already, the same with a number.
+
+    Raises RecordingError where its folder is missing.
+    """
+    if not path.parent.is_dir():
+        raise RecordingError(f"{path} can't be written: there is no folder {path.parent}")
+    number = 2
+    found = path
+    while found.exists() or found.is_symlink():
+        found = path.with_name(f"{path.stem}-{number}{path.suffix}")
+        number += 1
+    return found
