@@ -54,7 +54,7 @@ def test_a_text_leads_back_to_the_message(greeted: Exhibition) -> None:
     assert "context.name_tries < 2" in lines[transition["line"] - 1]
     assert transition["values"] == {"context.name_tries": 0}
     assert event["values"]["event.data.result"] == "?"
-    assert "lumen.audio.speech.recognition" in message["text"]
+    assert ".audio.speech.recognition" in message["text"]
 
 
 def test_an_answer_leads_on_to_the_command_and_that_to_the_face(greeted: Exhibition) -> None:

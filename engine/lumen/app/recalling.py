@@ -1,25 +1,22 @@
 """Steps of a run that is over, or of longer ago than a running one remembers: taken again from the journal."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 from lumen.app.answering import WHY, WHY_NOT, answer
+from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.errors import JournalError, UsageError
 from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
 from lumen.interpreters.replay.replaying import Replayer
 from lumen.interpreters.statechart import Snapshot, Step
-from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.loading.packaged import find_project
-from lumen.rules import check_files
-from lumen.runtime.home import Home, home_of
+from lumen.runtime.home import home_of
 from lumen.runtime.inputs.journal_file import read_journal
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
-from lumen.runtime.snapshot_store import SnapshotStore
 
 NOT_ASKED = "no running exhibition is asked"
 MAX_FILES = 8
@@ -57,7 +54,7 @@ def recalled(root: Path, until: float | None = None) -> Iterator[RecordedStep]:
     found = [row for row in headers(home_of(root) / JOURNAL_FOLDER) if until is None or row[1].began <= until]
     last = max(found, key=lambda row: row[1].began, default=None)
     files = sorted((row for row in found if last and row[1].run == last[1].run), key=lambda row: row[1].first)
-    kept = _KeptProjects(root)
+    kept = KeptBundles(root)
     replayer, standing = Replayer(kept.machine), _Standing(kept)
     for file, _ in files[-MAX_FILES:]:
         try:
@@ -71,7 +68,7 @@ def recalled(root: Path, until: float | None = None) -> Iterator[RecordedStep]:
 class _Standing:
     """Turns what was replayed into recorded steps: jumps into reloads, keyframes into nothing."""
 
-    def __init__(self, kept: "_KeptProjects") -> None:
+    def __init__(self, kept: KeptBundles) -> None:
         self._kept = kept
         self._project: Project | None = None
         self._snapshot: Snapshot | None = None
@@ -87,23 +84,3 @@ class _Standing:
             jump = Step(None, tuple(sorted(gone - come)), tuple(sorted(come - gone)), (), taken.before)
             yield RecordedStep(taken.machine, before, jump, self._project)
         self._snapshot = taken.after
-
-
-class _KeptProjects:
-    """The bundles that ran, each read when it is first asked for."""
-
-    def __init__(self, root: Path) -> None:
-        self._root, self._store = root, SnapshotStore(Home(home_of(root)))
-        self._read: dict[tuple[str, str], Project | None] = {}
-
-    def project(self, hash: str, behavior: str) -> Project | None:
-        if (hash, behavior) not in self._read:
-            files = self._store.files(hash)
-            found = check_files(self._root, files)[0] if files else None
-            there = found is not None and behavior in found.behaviors
-            self._read[hash, behavior] = replace(found, behavior=behavior) if found and there else None
-        return self._read[hash, behavior]
-
-    def machine(self, hash: str, behavior: str) -> MachineDefinition | None:
-        project = self.project(hash, behavior)
-        return project.machine if project else None
