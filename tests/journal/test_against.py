@@ -94,7 +94,7 @@ def test_what_other_files_would_have_done(visit: RecordedVisit, change: str) -> 
     assert (verdict.how, verdict.was, verdict.now) == (how, was, now)
 
 
-@settings(PATIENT, max_examples=15)
+@settings(PATIENT, max_examples=8)
 @given(machine_data(deeds=True), happenings)
 def test_the_same_files_would_have_done_the_same(data: Data, events: Happenings) -> None:
     itself(data, events)

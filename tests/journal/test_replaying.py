@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError
 from lumen.interpreters.replay.entries import JournalInput, entry_data, read_entry
+from lumen.interpreters.statechart import Step, microstep, stepping
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.statechart import Machine
@@ -31,11 +32,18 @@ MOVES = st.lists(st.sampled_from(["go", "go", "reload", "crash"]), min_size=1, m
 
 
 @pytest.fixture(autouse=True)
-def quiet() -> Iterator[None]:
-    """A machine that never comes to rest is told of: that is not what is looked at here."""
+def quiet(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A machine that never comes to rest is told of, and soon: that is not what is looked at here."""
+    for module in (stepping, microstep):
+        monkeypatch.setattr(module, "MAX_MICROSTEPS", 50)
     logging.disable(logging.ERROR)
     yield
     logging.disable(logging.NOTSET)
+
+
+def what(step: Step) -> tuple[object, ...]:
+    """What happened in a step; who caused it changes nothing."""
+    return step.event and step.event[:4], step.entered, step.exited, step.snapshot.at
 
 
 def same(data: st.DataObject, machine: Data, events: Happenings, moves: list[str]) -> None:
@@ -59,12 +67,10 @@ def same(data: st.DataObject, machine: Data, events: Happenings, moves: list[str
         taken = [row.step for row in again if row.step]
         assert [(row.entry, row.was, row.now) for row in again if row.differs] == []
         assert [row.unknown for row in again if row.unknown] == []
-        assert [(s.event, s.entered, s.exited) for s in taken] == [
-            (s.event, s.entered, s.exited) for s in recorded.steps
-        ]
+        assert list(map(what, taken)) == list(map(what, recorded.steps))
 
 
-@settings(PATIENT, max_examples=12)
+@settings(PATIENT, max_examples=8)
 @given(st.data(), machine_data(deeds=True), happenings, MOVES)
 def test_random_runs_replay_to_the_same_steps(
     data: st.DataObject, machine: Data, events: Happenings, moves: list[str]
