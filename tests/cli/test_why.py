@@ -139,6 +139,18 @@ def test_a_run_that_is_over_is_asked_by_its_journal(copy: Path, capsys: pytest.C
 
 
 @pytest.mark.slow
+def test_a_story_is_asked_at_its_own_time(copy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with lumen.open(copy, story="shy") as exhibition:
+        exhibition.run()
+        last = exhibition.why()["at"]
+    greeted = datetime.fromisoformat(lumen.why("greet", str(copy))["at"]).astimezone()
+    assert main(["why", "greet", str(copy), "--at", f"{greeted:%H:%M:%S}", "--format", "json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert datetime.fromisoformat(answer["at"]) == greeted
+    assert answer["at"] < last
+
+
+@pytest.mark.slow
 def test_the_journal_is_read_page_by_page(copy: Path) -> None:
     with lumen.open(copy) as exhibition:
         exhibition.send("face", {"x": 160, "y": 120})

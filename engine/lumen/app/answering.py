@@ -14,6 +14,7 @@ from lumen.ports import Bus, Message
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING_QUESTIONS = 20
+DAY = 86_400.0
 MAX_QUESTION = 500
 """Characters of what somebody asks about."""
 WHY, WHY_NOT, JOURNAL = "why", "why-not", "journal"
@@ -41,11 +42,19 @@ def _until(steps: Sequence[RecordedStep], at: str) -> float:
         raise UsageError(f"`{at[:40]}` is no time: it is written as in 2026-11-22T14:03:00Z") from None
     if not steps:
         raise TooLongAgoError("nothing of that time is remembered")
-    until = moment - steps[-1].step.snapshot.epoch
+    until = _on_its_day(moment - steps[-1].step.snapshot.epoch, steps[0].at, steps[-1].at)
     if until < steps[0].at:
         first = datetime.fromtimestamp(steps[0].step.snapshot.epoch + steps[0].at)
         raise TooLongAgoError(f"what is kept begins at {first:%H:%M:%S}: ask about a later time")
     return until
+
+
+def _on_its_day(until: float, first: float, last: float) -> float:
+    """The same time of day at the date that the exhibition believes in: stories live at one of their own."""
+    if until - last < DAY:
+        return until
+    until -= (until - last) // DAY * DAY
+    return until - DAY if until - DAY >= first else until
 
 
 class TooLongAgoError(UsageError):

@@ -50,10 +50,16 @@ def why_not(what: str, path: str | None = None, at: str | None = None) -> dict[s
 
 
 def recalled(root: Path, until: float | None = None) -> Iterator[RecordedStep]:
-    """The steps of the project's last run that began before `until` [s since 1970, in UTC], as far as they are kept."""
-    found = [row for row in headers(home_of(root) / JOURNAL_FOLDER) if until is None or row[1].began <= until]
-    last = max(found, key=lambda row: row[1].began, default=None)
-    files = sorted((row for row in found if last and row[1].run == last[1].run), key=lambda row: row[1].first)
+    """The steps of the project's last run that began before `until` [s since 1970, in UTC], as far as they are kept.
+
+    A story lives at a time of its own: it is meant where nothing is asked of a time, or nobody's visit was before that.
+    """
+    found = sorted(headers(home_of(root) / JOURNAL_FOLDER), key=lambda row: row[1].began)
+    visits = [row for row in found if until is not None and not row[1].story and row[1].began <= until]
+    played = [row for row in found[-1:] if until is None or row[1].story]
+    chosen = visits or (played and found)
+    run = chosen[-1][1].run if chosen else ""
+    files = sorted((row for row in chosen if row[1].run == run), key=lambda row: row[1].first)
     kept = KeptBundles(root)
     replayer, standing = Replayer(kept.machine), _Standing(kept)
     for file, _ in files[-MAX_FILES:]:
