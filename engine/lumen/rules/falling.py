@@ -39,8 +39,6 @@ def check(draft: ProjectDraft) -> None:
 
 def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
     """States that walk and have only `onDone`: where somebody stands in the way, the robot stays there for ever."""
-    if any(event == "*" or event.startswith("error") for event in descriptors(machine)):
-        return  # it answers what fails, in whatever state
     for state in machine.states.values():
         walk = next((step for step in nested(state.do) if isinstance(step.action, GoTo | Walk)), None)
         if walk is None or any(_leads_on(transition) for transition in _around(machine, state)):
@@ -61,7 +59,9 @@ def _around(machine: MachineDefinition, state: State) -> Iterator[Transition]:
 
 def _leads_on(transition: Transition) -> bool:
     """Whether it is taken after an error, or when some time is over, or at once."""
-    return transition.delay is not None or not transition.event or transition.event.startswith("error")
+    event = transition.event
+    after_error = not event or event == "*" or event.startswith("error")
+    return bool(transition.targets) and (transition.delay is not None or after_error)
 
 
 def _legs(draft: ProjectDraft, step: PlacedAction) -> bool:
