@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
@@ -26,6 +26,7 @@ from tests.statechart.oracle.generating import Data, happenings, machine_data
 
 PATIENT = settings(
     deadline=None,
+    phases=(Phase.reuse, Phase.generate),  # shrinking a run with files takes minutes
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much],
 )
 MOVES = st.lists(st.sampled_from(["go", "go", "reload", "crash"]), min_size=1, max_size=4)

@@ -6,18 +6,19 @@ same one, or the next of its kind. A command that has no counterpart takes as lo
 """
 
 import heapq
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
 from lumen.interpreters.migration import MigrationPlan, plan
 from lumen.interpreters.replay.command_data import command_data, started
-from lumen.interpreters.replay.entries import JournalInput, JournalJump
-from lumen.interpreters.replay.visits import RecordedVisit
+from lumen.interpreters.replay.entries import JournalInput
+from lumen.interpreters.replay.visits import RecordedVisit, home_of
 from lumen.interpreters.statechart import Snapshot, deserialize, due, elapse, step
 from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.events import Event
+from lumen.language.nanoseconds import HALF
 from lumen.language.projects import Project
 
 Duration = Callable[[Project, BodyCommand], float]
@@ -62,30 +63,24 @@ def played_against(old: Project, new: Project, visit: RecordedVisit, takes: Dura
             then += ((entry.event.at, command) for command in entry.commands)
             play.hear(entry)
         if visit.whole:
-            play.come_home(frozenset(home_states(home)), entries[-1].event.at)
+            play.come_home(home_of(new.machine), entries[-1].event.at)
     except LumenError as error:
         return VisitVerdict(ENDS, play.steps, play.snapshot.at, "", str(error))
     if not visit.whole:  # nobody knows how it would have gone on
         del play.done[len(then) :]
-        return _verdict(play, then, play.snapshot.configuration)
-    return _verdict(play, then, frozenset(home_states(home)))
+    return _verdict(play, then, home_of(new.machine) if visit.whole else "")
 
 
-def home_states(home: JournalJump) -> Sequence[str]:
-    """The states in which a frozen snapshot stands."""
-    return home.snapshot.get("configuration", ()) if home.snapshot else ()
-
-
-def _verdict(play: "_Play", then: list[tuple[float, Any]], home: frozenset[str]) -> VisitVerdict:
+def _verdict(play: "_Play", then: list[tuple[float, Any]], home: str) -> VisitVerdict:
+    """`home` is where it should have ended, empty for anywhere."""
     was, now = list(_told(then)), list(_told(play.done))
+    elsewhere = bool(home) and home not in play.snapshot.configuration
     for place in range(max(len(was), len(now))):
         one, other = (row[place] if place < len(row) else (play.snapshot.at, "nothing") for row in (was, now))
         if one[1] != other[1]:
-            how = SAYS if play.snapshot.configuration == home else ENDS
-            return VisitVerdict(how, play.steps, min(one[0], other[0]), one[1], other[1])
-    if play.snapshot.configuration != home:
-        away = ", ".join(sorted(play.snapshot.configuration - home))
-        return VisitVerdict(ENDS, play.steps, play.snapshot.at, ", ".join(sorted(home)), away)
+            return VisitVerdict(ENDS if elsewhere else SAYS, play.steps, min(one[0], other[0]), one[1], other[1])
+    if elsewhere:
+        return VisitVerdict(ENDS, play.steps, play.snapshot.at, home, ", ".join(sorted(play.snapshot.configuration)))
     return VisitVerdict(SAME, play.steps)
 
 
@@ -120,7 +115,7 @@ class _Play:
     def hear(self, entry: JournalInput) -> None:
         """What happened then, at its time. Raises LumenError."""
         at = entry.event.at
-        self._pass(at)
+        self._pass(at, one=entry.how == "timer")
         if entry.how == "goto":
             state = str(entry.event.data.get("state")) if isinstance(entry.event.data, Mapping) else ""
             self._take(entered_directly(self._project.machine, self.snapshot, state, entry.event))
@@ -132,9 +127,9 @@ class _Play:
                 self._begun.add(begun[0])
         self._pair()
 
-    def come_home(self, home: frozenset[str], since: float) -> None:
+    def come_home(self, home: str, since: float) -> None:
         """Let what is under way come to its end, where the visit has not ended by then."""
-        while self.snapshot.configuration != home:
+        while home not in self.snapshot.configuration:
             timer = due(self.snapshot)
             waiting = [self._answers[0][0]] if self._answers else []
             following = min([*waiting, *([timer.at] if timer else [])], default=since + GRACE + 1.0)
@@ -142,15 +137,17 @@ class _Play:
                 return
             self._pass(following)
 
-    def _pass(self, until: float) -> None:
-        """Timers and answers that come until then, in their order."""
+    def _pass(self, until: float, *, one: bool = False) -> None:
+        """Timers and answers that come until then, in their order; of the timers of that very moment only `one`."""
         while self._answers and self._answers[0][0] <= until:
             at, id = heapq.heappop(self._answers)
             self._elapse(at)
             if any(id == waiting for waiting, *_ in self._now):
                 self._now = [row for row in self._now if row[0] != id]
                 self._take(step(self._project.machine, self.snapshot, Event(f"done.command.{id}", None, at)))
-        self._elapse(until)
+        self._elapse(until - 2 * HALF if one else until)
+        if one and (timer := due(self.snapshot)) and timer.at < until + HALF:
+            self._take(step(self._project.machine, self.snapshot, timer))
 
     def _elapse(self, until: float) -> None:
         for taken in elapse(self._project.machine, lambda: self.snapshot, until):

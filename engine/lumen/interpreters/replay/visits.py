@@ -13,8 +13,8 @@ from lumen.interpreters.replay.journal_clock import JournalClock
 from lumen.interpreters.statechart import initial
 from lumen.language.machines import MachineDefinition, StateKind
 
-BROKEN = ("start", "gap")
-"""Jumps before which something is missing, or another run was."""
+BROKEN = ("start", "gap", "dropped timer")
+"""Jumps before which something is missing, another run was, or what no files would do again."""
 
 
 class RecordedVisit(NamedTuple):
@@ -76,10 +76,8 @@ class VisitWatch:
                 if entry.kind in ("start", "resume"):
                     return self.away
             case JournalInput(exited=exited, entered=entered):
-                if self._home and self._home in entered:
-                    self.away = False
-                elif self._home and self._home in exited:
-                    self.away = True
+                if self._home:  # one step may leave it and enter it several times
+                    self.away = (not self.away) + entered.count(self._home) - exited.count(self._home) < 1
         return before or self.away
 
 
