@@ -11,13 +11,13 @@ MAX_IDENTITY_BYTES = 255
 MAX_TIME = 253_402_300_800.0
 """The end of the year 9999 [s since 1970]."""
 
-_prefix = secrets.token_hex(5)
-_numbers = count(1)
+PREFIX, NUMBERS = secrets.token_hex(5), count(1)
+"""What every id of this process begins with, and what makes it one of its own."""
 
 
 def new_id() -> str:
     """An id that no other message has, in this run, another process, or after a restart."""
-    return f"{_prefix}-{next(_numbers)}"
+    return f"{PREFIX}-{next(NUMBERS)}"
 
 
 def filled(origin: MessageOrigin, sender: str) -> MessageOrigin:

@@ -17,7 +17,7 @@ from typing import Any
 from weakref import WeakValueDictionary
 
 from lumen.buses.bodies import check_key, check_subscription, copied
-from lumen.buses.identities import filled, new_id
+from lumen.buses.identities import NUMBERS, PREFIX, filled, new_id
 from lumen.errors import BusClosedError, Refused
 from lumen.interpreters.routing import matches
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
@@ -194,7 +194,8 @@ class MemoryBus:
             listeners = hub.find(key)
         if listeners:
             if origin is UNKNOWN_ORIGIN:  # nearly every message: nothing is made that it does not need
-                message = _new(Message, (key, own, reply_to, correlation_id, new_id(), self.sender, time(), ""))
+                id = f"{PREFIX}-{next(NUMBERS)}"
+                message = _new(Message, (key, own, reply_to, correlation_id, id, self.sender, time(), ""))
             else:
                 message = Message(key, own, reply_to, correlation_id, *filled(origin, self.sender))
             hub.queue.append((listeners, message))

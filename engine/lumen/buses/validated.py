@@ -120,11 +120,12 @@ class ValidatedBus:
     ) -> None:
         if reason := self._wrong(key, body):
             raise BadMessageError(f"a message on `{key}` can't be sent: {reason}")
-        alias = self._aliases.names.get(key) if self._aliases.used else None
-        if alias:
+        alias = self._aliases.names.get(key)
+        if alias is None or not self._aliases.used:
+            self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
+        else:
             origin = filled(origin, self.sender)
-        self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
-        if alias:
+            self._bus.publish(key, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=origin)
             copy = origin._replace(id=f"{origin.id}{COPY}")
             self._bus.publish(alias, body, reply_to=reply_to, correlation_id=correlation_id, ttl=ttl, origin=copy)
 
