@@ -91,6 +91,22 @@ def test_timers_lead_to_the_step_that_set_them() -> None:
     assert play.why("d") == [*after, *sent]
 
 
+def test_a_do_that_failed_leads_to_the_answer() -> None:
+    states = {"a": {"on": {"go": "b"}}, "b": {"do": [{"play": "p"}], "onError": "b"}}
+    play = Play({"initial": "a", "states": states})
+    play.happen("go")
+    play.happen("error.command.d1", {"reason": "it fell"})
+    assert play.why("b") == [
+        "transition: b → b, when it fails",
+        "activity: the `do` of b failed",
+        "event: d1 failed: it fell",
+        "command: plays p",
+        "activity: in the `do` of b",
+        "transition: a → b, on go",
+        "event: go",
+    ]
+
+
 def test_it_ends_at_a_person_a_file_or_the_start() -> None:
     play = Play({"initial": "a", "states": {"a": {"entry": {"play": "first"}, "on": {"stop": "b"}}, "b": {}, "c": {}}})
     assert play.why("first")[-1] == "start: m begins"

@@ -78,7 +78,7 @@ class Chain:
 
     def because(self, number: int, deed: Deed) -> LinkWalk:
         """What made an action be done."""
-        if deed.block == "do":
+        if deed.block == "do" and deed.microstep:
             yield partial(self.doing, number, deed.owner, deed.machine.states[deed.state].name, deed.microstep)
         elif deed.microstep:
             yield partial(self.microstep, number, deed.microstep, deed)
@@ -129,7 +129,9 @@ class Chain:
             yield self._link(
                 number, "activity", f"the `do` of {prefix_of(owner)}{name} {_ended(kind)}", values=brought(event)
             )
-            yield partial(self.doing, number, owner, name, raised.microstep)
+            before = raised.microstep  # None where the `do` has run since an earlier step
+            go_on = partial(self.doing, number, owner, name, before)
+            yield go_on if before else partial(self.trigger, number, owner)
         elif thing == "invoke" and not raised.where:
             yield self._link(number, "event", f"the behaviour {name} {_ended(kind)}", values=brought(event))
             inner = f"{name}@{owner}" if owner else name
