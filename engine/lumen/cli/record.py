@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import sys
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -13,6 +14,7 @@ from lumen.app.recording.notes import bundle_files, journal_files, notes_of
 from lumen.app.recording.recorder import Recorder
 from lumen.app.recording.recordings_folder import SUFFIX, RecordingsFolder
 from lumen.app.recording.recovering import remove_drafts
+from lumen.app.recording.robot_view import RobotView
 from lumen.app.recording.tape_file import FileTape
 from lumen.cli.progress import progress
 from lumen.cli.reach import reach
@@ -82,15 +84,16 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
     root = find_project(options.project)
     bus = reached.bus
     project, folder = _running_project(root, reached), RecordingsFolder(home_of(root))
+    view = RobotView(project, lambda text: print(text, file=sys.stderr))
     path = options.file or folder.path / time.strftime(f"%Y-%m-%dT%H-%M-%SZ-recorded{SUFFIX}", time.gmtime())
     try:
         if options.file is None:
             folder.make()
-        first: list[Recorded] = [notes_of(project), *bundle_files(root, [project.hash])]
+        first: list[Recorded] = [notes_of(project), *bundle_files(root, [project.hash]), *view.look(time.time())]
         tape = FileTape(writable(path), folder, first, lambda began: journal_files(root, began, time.time()))
     except OSError as error:
         raise UsageError(f"{path} can't be written: {error.strerror}") from None
-    recorder = Recorder(bus, project, [tape], camera=project.record.camera and not options.no_camera)
+    recorder = Recorder(bus, project, [tape], camera=project.record.camera and not options.no_camera, extra=view)
     try:
         recorder.start()
         _wait(bus, tape, span)

@@ -11,6 +11,7 @@ from lumen.app.recording.recorder import Recorder, RecordingTape
 from lumen.app.recording.recordings_folder import RecordingsFolder
 from lumen.app.recording.recovering import RecordingRescue
 from lumen.app.recording.ring import PIECE_PERIOD, RingTape
+from lumen.app.recording.robot_view import RobotView
 from lumen.app.recording.tape_file import FileTape
 from lumen.buses.validated import ValidatedBus
 from lumen.errors import LumenError, RecordingError, UsageError
@@ -43,12 +44,15 @@ class RecordingPart(Part):
     ) -> None:
         self._project, self._tell, self._root = project, tell, Path(project.root)
         self._folder = RecordingsFolder(home_of(self._root))
+        self._view = RobotView(project, tell) if file or (ring and project.record.ring) else None
         self._rescue = RecordingRescue(self._folder, tell, self._rescued) if ring else None
         self._file = self._begin(file) if file else None
         self._ring = self._ringing() if ring and project.record.ring else None
         tapes: list[RecordingTape] = [tape for tape in (self._file, self._ring) if tape]
         self.recorder = (
-            Recorder(bus.unchecked, project, tapes, camera=project.record.camera, patient=patient) if tapes else None
+            Recorder(bus.unchecked, project, tapes, camera=project.record.camera, patient=patient, extra=self._view)
+            if tapes
+            else None
         )
         if self.recorder:
             self.recorder.start()
@@ -81,6 +85,7 @@ class RecordingPart(Part):
         try:
             path = writable(file)
             first: list[Recorded] = [notes_of(self._project), *bundle_files(self._root, [self._project.hash])]
+            first += self._view.look(time.time()) if self._view else ()
             return FileTape(path, self._folder, first, lambda began: journal_files(self._root, began, time.time()))
         except MissingExtraError:
             raise
@@ -94,17 +99,22 @@ class RecordingPart(Part):
                 self._folder,
                 self._project.record,
                 lambda: [notes_of(self._project)],
-                lambda began, ended, pieces: [*self._explaining(pieces), *journal_files(self._root, began, ended)],
+                self._kept,
                 lambda path: self._tell(f"kept: {path}"),
             )
         except LumenError as error:
             self._tell(str(error))
             return None
 
+    def _kept(self, began: float, ended: float, pieces: Sequence[Path]) -> Iterable[Recorded]:
+        """What makes a recording of these pieces explain itself: the files, the journal, and the robot's looks."""
+        look = self._view.look(began) if self._view else ()
+        return [*self._explaining(pieces), *journal_files(self._root, began, ended), *look]
+
     def _rescued(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
         """The same of pieces that were left, with the journal of their time."""
         times = [piece.stat().st_mtime for piece in pieces]
-        return [*self._explaining(pieces), *journal_files(self._root, min(times) - PIECE_PERIOD, max(times))]
+        return self._kept(min(times) - PIECE_PERIOD, max(times), pieces)
 
     def _explaining(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
         """The files that ran in these pieces."""

@@ -4,7 +4,7 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, Protocol
 
 from lumen.app.recording.happenings import happening
@@ -77,7 +77,7 @@ class Recorder:
         *,
         camera: bool = True,
         patient: bool = False,
-        extra: Callable[[Message, float], Sequence[Recorded]] = lambda message, came: (),
+        extra: Callable[[Message, float], Iterable[Recorded]] | None = None,
     ) -> None:
         self.tapes, self._bus, self._camera, self._patient, self._extra = tapes, bus, camera, patient, extra
         self._waiting: deque[_Heard] = deque(maxlen=None if patient else MAX_WAITING)
@@ -168,7 +168,7 @@ class Recorder:
             self._look_for_names(message, came)
             message = self._scrubbed(message, came)
             items += self._encoder.encode(message, came)
-            items += self._extra(message, came)
+            items += self._extra(message, came) if self._extra else ()
             if why := happening(message, self._project.robot):
                 marks.append((why, came))
         for tape in self.tapes:

@@ -1,0 +1,94 @@
+"""What recording costs a running tour: CPU time, size on the disk, and the latest tick beside that of a tour without.
+
+    python benchmarks/recording.py [--robot recording|simulation] [--seconds S] [--rounds N]
+
+The shipped tour with its visitor in real time, by turns without a recording, with one without images, and with all. A
+tick is late by as much as it comes after its 50th of a second; the greatest of the median round is told. On a crowded
+machine these are upper bounds. CPU time is that of the whole process: what a recording costs is the difference between
+rows, and with images it includes taking and packing them, which nobody does where nobody listens.
+"""
+
+import argparse
+import platform
+import shutil
+import statistics
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.recovery.run_directory import RunDirectory
+from lumen.app.setup import set_up
+from lumen.formats.recordings.reading import read_recording
+from lumen.formats.recordings.recorded import RecordedMessage
+from lumen.runtime.loop import TICK_PERIOD
+
+ROOT = Path(__file__).parents[1]
+SETTLED = 3.0
+"""After which the files and the robot's looks are written [s]."""
+KINDS = {"no recording": None, "without the camera": False, "with the camera": True}
+
+
+class Round(NamedTuple):
+    """CPU time of a second [s], bytes and messages of a second, the latest tick [s]."""
+
+    cpu: float
+    bytes: float
+    messages: float
+    late: float
+
+
+def live(robot: str, camera: bool | None, seconds: float) -> Round:
+    """One run of the tour."""
+    folder = Path(tempfile.mkdtemp())
+    try:
+        project = lumen.load(ROOT)
+        project = replace(project, record=replace(project.record, camera=bool(camera)))
+        story = project.stories["visitor"]
+        path = folder / "tour.mcap"
+        setup, directory = set_up(robot, project, "1", story), RunDirectory(folder)
+        late, first = 0.0, 0
+        with Exhibition(
+            project, setup, story=story, run_directory=directory, record=None if camera is None else path
+        ) as exhibition:
+            exhibition.start()
+            cpu, began, before = time.process_time(), time.monotonic(), time.monotonic()
+            while time.monotonic() - began < seconds and not exhibition.over:
+                exhibition.tick()
+                now = time.monotonic()
+                late, before = max(late, now - before - TICK_PERIOD), now
+                if not first and now - began > SETTLED and path.exists():
+                    first = path.stat().st_size  # what is written once is not counted
+            took, cpu = time.monotonic() - began, time.process_time() - cpu
+            size = path.stat().st_size - first if path.exists() else 0
+        directory.close(forget=True)
+        items = [] if camera is None else [item for item in read_recording(path) if isinstance(item, RecordedMessage)]
+        return Round(cpu / took, size / (took - SETTLED), len(items) / took, late)
+    finally:
+        shutil.rmtree(folder)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--robot", choices=("recording", "simulation"), default="simulation")
+    parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--rounds", type=int, default=3)
+    asked = parser.parse_args()
+    print(
+        f"Python {platform.python_version()}, the {asked.robot} robot, {asked.rounds} rounds of {asked.seconds:g} s\n"
+    )
+    rounds: dict[str, list[Round]] = {kind: [] for kind in KINDS}
+    for _ in range(asked.rounds):
+        for kind, camera in KINDS.items():
+            rounds[kind].append(live(asked.robot, camera, asked.seconds))
+    print(f"{'':20} {'CPU of a core':>14} {'messages/s':>11} {'MB an hour':>11} {'latest tick':>12}")
+    for kind, found in rounds.items():
+        cpu, size, messages, late = (statistics.median(column) for column in zip(*found, strict=True))
+        print(f"{kind:20} {cpu:>13.1%} {messages:>11.0f} {size * 3600 / 1e6:>11.0f} {late * 1000:>9.1f} ms")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,103 @@
+"""The robot as Foxglove shows it: its links where they are, and what they look like."""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from lumen.errors import LumenError
+from lumen.extras import demand
+from lumen.formats.recordings.foxglove import NANO, form_class, foxglove_channel, stamp
+from lumen.formats.recordings.recorded import RecordedMessage
+from lumen.language.projects import Project
+from lumen.loading.lending import model_files
+from lumen.ports import Joints, Message, Sense
+from lumen.robots.sense_codec import decode_reading
+
+if TYPE_CHECKING:
+    from lumen.robots.simulation.link_frames import LinkFrames, LinkShape
+
+FRAMES, LOOK = ".frames", ".look"
+"""What follows the joints' topic for the frames of the links, and for what they look like."""
+
+
+class RobotView:
+    """Makes frames of a robot's joints; `tell` hears why there are none: they need the extra `simulation`."""
+
+    def __init__(self, project: Project, tell: Callable[[str], None] = lambda text: None) -> None:
+        self._body, self._topic = project.body, project.key_of(Sense.JOINT)
+        self._links: "LinkFrames | None" = None  # noqa: UP037  imported where it is wanted
+        try:
+            demand("simulation", "the robot's shape in a recording", "mujoco", "dm_control")
+            from lumen.robots.simulation.link_frames import LinkFrames
+
+            self._links = LinkFrames(self._body, model_files(project)[0])
+        except LumenError as error:
+            tell(f"the recording shows no robot: {error}")
+
+    def __call__(self, message: Message, came: float) -> Iterator[RecordedMessage]:
+        """The frames of the links for a message of the joints."""
+        if self._links is None or message.key != self._topic:
+            return
+        joints = decode_reading(Sense.JOINT, message.body, tuple(self._body.joints))
+        if not isinstance(joints, Joints) or not all(map(math.isfinite, joints.angles)):
+            return
+        at, sent = int(came * NANO), int(message.time * NANO)
+        update = form_class("FrameTransforms")()
+        for frame in self._links.frames(joints):
+            one = update.transforms.add(parent_frame_id=frame.parent, child_frame_id=frame.name)
+            stamp(one.timestamp, at)
+            _place(one.translation, one.rotation, frame.position, frame.rotation)
+        yield RecordedMessage(
+            foxglove_channel(self._topic + FRAMES, "FrameTransforms"), at, sent, update.SerializeToString()
+        )
+
+    def look(self, at: float) -> Iterator[RecordedMessage]:
+        """What the links look like, from then on [s since 1970]."""
+        if self._links is None:
+            return
+        update, entities = form_class("SceneUpdate")(), dict[str, Any]()
+        for shape in self._links.shapes():
+            if shape.link not in entities:
+                entity = entities[shape.link] = update.entities.add(
+                    id=shape.link, frame_id=shape.link, frame_locked=True
+                )
+                stamp(entity.timestamp, int(at * NANO))
+            _draw(entities[shape.link], shape)
+        when = int(at * NANO)
+        channel = foxglove_channel(self._topic + LOOK, "SceneUpdate")
+        yield RecordedMessage(channel, when, when, update.SerializeToString())
+
+
+def _draw(entity: Any, shape: "LinkShape") -> None:
+    x, y, z = shape.size
+    match shape.kind:
+        case "mesh":
+            found = entity.triangles.add()
+            for vertex in shape.vertices:
+                found.points.add(x=vertex[0], y=vertex[1], z=vertex[2])
+            found.indices.extend(shape.faces.ravel().tolist())
+        case "box":
+            found = entity.cubes.add()
+            _size(found, 2 * x, 2 * y, 2 * z)
+        case "cylinder" | "capsule":
+            found = entity.cylinders.add(bottom_scale=1.0, top_scale=1.0)
+            _size(found, 2 * x, 2 * x, 2 * y)
+        case "sphere":
+            found = entity.spheres.add()
+            _size(found, 2 * x, 2 * x, 2 * x)
+        case "ellipsoid":
+            found = entity.spheres.add()
+            _size(found, 2 * x, 2 * y, 2 * z)
+        case _:
+            return
+    _place(found.pose.position, found.pose.orientation, shape.position, shape.rotation)
+    found.color.r, found.color.g, found.color.b, found.color.a = map(float, shape.colour)
+
+
+def _place(position: Any, rotation: Any, at: Any, turned: Any) -> None:
+    position.x, position.y, position.z = at.tolist()
+    rotation.w, rotation.x, rotation.y, rotation.z = turned.tolist()
+
+
+def _size(primitive: Any, x: float, y: float, z: float) -> None:
+    primitive.size.x, primitive.size.y, primitive.size.z = float(x), float(y), float(z)
