@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 from lumen.interpreters.explaining.conditions import first_false
 from lumen.interpreters.explaining.history import StepHistory
+from lumen.interpreters.explaining.insides import within
 from lumen.interpreters.explaining.names import PlacedDeed
-from lumen.interpreters.explaining.refusals import Reason, within
+from lumen.interpreters.explaining.refusals import Reason
 from lumen.interpreters.explaining.words import ordinal, prefix_of
 from lumen.interpreters.expressions import Scope
 from lumen.interpreters.expressions.scope import no_draw

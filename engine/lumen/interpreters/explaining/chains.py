@@ -7,7 +7,8 @@ from typing import Any, TypeAlias
 
 from lumen.interpreters.explaining.conditions import values
 from lumen.interpreters.explaining.effects import Effect
-from lumen.interpreters.explaining.history import OPERATOR_GOTO, RecordedStep, StepHistory
+from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
+from lumen.interpreters.explaining.insides import ended_timer, machine_within, sets_timer
 from lumen.interpreters.explaining.links import Link, LinkKind
 from lumen.interpreters.explaining.origins import origin
 from lumen.interpreters.explaining.tracing import Deed, TracedMicrostep
@@ -21,7 +22,7 @@ from lumen.interpreters.explaining.words import (
     prefix_of,
 )
 from lumen.interpreters.statechart.command_ids import answer_of, inner_id
-from lumen.interpreters.statechart.values import Snapshot, Timer
+from lumen.interpreters.statechart.values import Timer
 from lumen.language.commands import Command, Start
 from lumen.language.diagnostics import Place
 from lumen.language.events import Event
@@ -129,9 +130,9 @@ class Chain:
             yield self._link(
                 number, "activity", f"the `do` of {prefix_of(owner)}{name} {_ended(kind)}", values=brought(event)
             )
-            before = raised.microstep  # None where the `do` has run since an earlier step
-            go_on = partial(self.doing, number, owner, name, before)
-            yield go_on if before else partial(self.trigger, number, owner)
+            until = raised.microstep  # None where the `do` has run since an earlier step
+            go_on = partial(self.doing, number, owner, name, until)
+            yield go_on if until else partial(self.trigger, number, owner)
         elif thing == "invoke" and not raised.where:
             yield self._link(number, "event", f"the behaviour {name} {_ended(kind)}", values=brought(event))
             inner = f"{name}@{owner}" if owner else name
@@ -155,7 +156,7 @@ class Chain:
             yield self._link(
                 number, "person", f"{by} let it enter {event.data['state']} (lumen goto)", values=brought(event)
             )
-        elif timer := _timer(one.before, event):
+        elif timer := ended_timer(one.before, event):
             yield partial(self.timer, number, event, timer)
         elif not event.sendid and (answer := answer_of(event)):
             yield self._link(number, "event", _answered(answer.kind, answer.id, answer.reason), id=answer.id)
@@ -171,7 +172,7 @@ class Chain:
     def timer(self, number: int, event: Event, timer: Timer) -> LinkWalk:
         """The end of a timer, and what set it."""
         id, owner = inner_id(event.sendid)
-        machine = _machine(self.history.steps[number], owner)
+        machine = machine_within(self.history.steps[number], owner)
         text, place = f"{event.name}, {timer.delay:g} s after it was sent", None
         if timer.kind != "send":
             state = machine.states[timer.state]
@@ -180,7 +181,9 @@ class Chain:
             text = f"{awaited(waited)} in {name}" if waited else f"wait of {timer.delay:g} s in {name}"
             place = self._place(number, machine, waited.where if waited else (*state.where, "do"))
         yield self._link(number, "timer", text, place, event.sendid, {"seconds": timer.delay})
-        when = next((n for n in reversed(range(number)) if _sets(self.history.steps[n], event.sendid, timer)), None)
+        when = next(
+            (n for n in reversed(range(number)) if sets_timer(self.history.steps[n], event.sendid, timer)), None
+        )
         if when is None:
             return
         sent = next((d for d in self.history.trace(when).deeds if (d.owner, d.what) == (owner, id)), None)
@@ -198,7 +201,7 @@ class Chain:
             yield partial(self.trigger, number, owner)
             return
         id, _, around = owner.partition("@")
-        host = _machine(self.history.steps[number], around)
+        host = machine_within(self.history.steps[number], around)
         states = [state for state in host.states.values() if any(invoke.id == id for invoke in state.invoke)]
         for state in states:
             entered = self.history.trace(number).entering(around, state.name, step)
@@ -257,37 +260,6 @@ def _responsible(machine: MachineDefinition, step: TracedMicrostep, deed: Deed |
 
 def _related(one: str, other: str) -> bool:
     return one == other or one.startswith(f"{other}.") or other.startswith(f"{one}.") or not one
-
-
-def _timer(before: Snapshot | None, event: Event) -> Timer | None:
-    """The timer that has ended, in whichever behaviour it was."""
-    id, owner = inner_id(event.sendid)
-    inner = _within(before, owner)
-    return next((t for t in inner.timers if (t.id, t.event) == (id, event.name)), None) if inner and id else None
-
-
-def _sets(one: RecordedStep, sendid: str, timer: Timer) -> bool:
-    """Whether that step has set the timer."""
-    _, owner = inner_id(sendid)
-    before, after = _within(one.before, owner), _within(one.step.snapshot, owner)
-    return after is not None and timer in after.timers and (before is None or timer not in before.timers)
-
-
-def _within(snapshot: Snapshot | None, owner: str) -> Snapshot | None:
-    for id in reversed(owner.split("@")) if owner else ():
-        child = snapshot.invoked.get(id) if snapshot else None
-        snapshot = child.snapshot if child else None
-    return snapshot
-
-
-def _machine(one: RecordedStep, owner: str) -> MachineDefinition:
-    machine, around = one.machine, one.before
-    for id in reversed(owner.split("@")) if owner else ():
-        behaviors = [i.behavior for s in machine.states.values() for i in s.invoke if i.id == id]
-        child = around.invoked.get(id) if around else None
-        chosen = machine.invoked_behavior(child.state, id) if child else behaviors[0]
-        machine, around = machine.invoked[chosen], child.snapshot if child else None
-    return machine
 
 
 def _id(command: Command) -> str:

@@ -8,6 +8,7 @@ from lumen.errors import LumenError
 from lumen.interpreters.explaining.changes import ProposedChange, StepSituation
 from lumen.interpreters.explaining.conditions import GuardPart, first_false
 from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
+from lumen.interpreters.explaining.insides import within
 from lumen.interpreters.explaining.searching import Happens, smallest_change, taken
 from lumen.interpreters.explaining.tracing import Moment
 from lumen.interpreters.explaining.words import awaited, of_transition, prefix_of
@@ -146,15 +147,6 @@ class TransitionRefusals:
             change = {"state": source.name, **more} if more else None
         note = "" if change else f"it has to be in {name} first"
         return Reason("inactive", f"{text}: {name} was not active", at, place, change=change, note=note)
-
-
-def within(snapshot: Snapshot, owner: str) -> Snapshot | None:
-    """The snapshot of what runs under these ids; None where nothing does."""
-    for id in reversed(owner.split("@")) if owner else ():
-        if id not in snapshot.invoked:
-            return None
-        snapshot = snapshot.invoked[id].snapshot
-    return snapshot
 
 
 def _coming(
