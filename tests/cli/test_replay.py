@@ -49,6 +49,12 @@ def test_the_last_run_is_the_same_again_and_other_files_are_not(
     assert replayed(played, capsys)[0] == 0, "the files that ran then are kept"
 
 
+def test_a_run_is_shown_again(played: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["replay", "--project", str(played), "--robot", "recording", "--speed", "max"]) == 0
+    assert "“Hello" in capsys.readouterr().out
+
+
 def test_what_there_is_to_replay(played: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["replay", "--project", str(played), "--list"]) == 0

@@ -1,17 +1,22 @@
 """`lumen replay`: what happened, taken again with the files that ran then, or with others."""
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import datetime
 from pathlib import Path
 
+import lumen
 from lumen.app.replaying.journals import chosen, listed, until
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import against
 from lumen.app.replaying.replay_report import ReplayReport, replayed
+from lumen.app.replaying.show import show
+from lumen.app.setup import SPEEDS, set_up
 from lumen.app.versions import version
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.progress import progress
+from lumen.cli.transcript import Transcript
+from lumen.interpreters.replay.entries import RecordedEntry
 from lumen.loading.packaged import find_project
 
 SHOWN = 10
@@ -31,6 +36,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--project", metavar="DIR", help="whose journal; default: that of the project here or above")
     add("--until", metavar="14:03", help="only up to that time of day")
     add("--bundle", metavar="DIR", help="with these files: a folder, or a revision such as HEAD~1")
+    add("--robot", choices=("recording", "simulation"), help="show it again, by this robot")
+    add("--speed", choices=SPEEDS, default="1", help="with --robot: times real time (default: 1)")
     configure_format(parser)
 
 
@@ -44,6 +51,8 @@ def run(options: argparse.Namespace) -> int:
     if options.until:
         entries = until(entries, options.until)
     bundles = KeptBundles(root)
+    if options.robot:
+        return _show(root, entries, bundles, options)
     if options.bundle is None:
         report = replayed(entries, bundles.machine)
     else:
@@ -55,6 +64,17 @@ def run(options: argparse.Namespace) -> int:
     else:
         print("\n".join(_lines(report, other=options.bundle is not None)))
     return int(bool(report.differ))
+
+
+def _show(root: Path, entries: Iterable[RecordedEntry], bundles: KeptBundles, options: argparse.Namespace) -> int:
+    """A robot does again what was done."""
+    project = lumen.load(root)
+    setup = set_up(options.robot, project, options.speed)
+    try:
+        show(entries, bundles, setup, Transcript(setup.clock.now, lambda: project.machine))
+    finally:
+        setup.robot.close()
+    return 0
 
 
 def _lines(report: ReplayReport, *, other: bool) -> Iterator[str]:

@@ -1,0 +1,52 @@
+"""What happened, shown again: told, and performed by a robot, at the pace at which it happened or faster."""
+
+from collections.abc import Iterable
+
+from lumen.app.narrator import Narrator
+from lumen.app.replaying.kept_bundles import KeptBundles
+from lumen.app.setup import Setup
+from lumen.buses.memory import MemoryBus
+from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.interpreters.replay.replaying import Replayer
+from lumen.language.projects import Project
+from lumen.runtime.performer import Performer
+
+LEAD_IN = 1.0
+"""How long after its beginning a run that goes on is shown [s]."""
+
+
+def show(entries: Iterable[RecordedEntry], bundles: KeptBundles, setup: Setup, narrator: Narrator) -> None:
+    """Take all steps again, tell of each, and let the robot do what it asked for; what the robot answers is not heard.
+
+    Between runs no time passes.
+    """
+    replayer = Replayer(bundles.machine)
+    performer = Performer(setup.robot, MemoryBus(), lambda _: None)
+    project: Project | None = None
+    shift: float | None = None
+    for entry in entries:
+        row, at = replayer.take(entry), entry.at if isinstance(entry, JournalJump) else entry.event.at
+        if isinstance(entry, JournalJump):
+            project = bundles.project(entry.bundle, entry.behavior)
+            if entry.kind in ("start", "resume", "gap"):
+                shift = None
+        if shift is None:
+            shift = setup.clock.now() + LEAD_IN - at
+        if at + shift > setup.clock.now():
+            setup.clock.wait(at + shift)
+        setup.robot.poll()
+        if row.step is None or project is None:
+            continue
+        if isinstance(entry, JournalInput):
+            _tell(entry, narrator)
+        narrator.stepped(row.step)
+        for command in row.step.commands:
+            narrator.performing(command, setup.clock.now())
+            performer.perform(project, command, setup.clock.now())
+
+
+def _tell(entry: JournalInput, narrator: Narrator) -> None:
+    """What somebody said; all else is told where it changes something."""
+    data = entry.event.data
+    if isinstance(data, dict) and isinstance(said := data.get("result"), str):
+        narrator.line("visitor", f"“{said}”")
