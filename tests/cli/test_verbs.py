@@ -11,13 +11,7 @@ from lumen.cli.main import VERBS, command_line, main
 from lumen.cli.pages import page
 from lumen.cli.suggesting import parse
 
-NO_REPORT = {
-    "new": "makes a folder",
-    "completion": "prints a script",
-    "lsp": "speaks the protocol of editors",
-    "graph": "draws a diagram",
-    "plot": "draws a picture",
-}
+NO_REPORT = {"completion": "prints a script", "lsp": "speaks the protocol of editors"}
 """Verbs without `--format json`, and what they do instead of reporting."""
 
 
