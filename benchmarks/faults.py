@@ -166,15 +166,16 @@ class Exhibition:
         """The innermost state of the guide, as the brain told last since it began; empty where something else is on."""
         brain = self.parts["brain"]
         for told in reversed(brain.since(brain.begun)):
+            names: list[str] = []
             if told.who == "state":
                 names = told.text.partition("  (")[0].split(", ")
-                for name in reversed(names):
-                    if name in ("paused", "interrupted"):
-                        return ""
-                    if name in (*MOMENTS, "sing", "photo", "fine", "not_understood"):
-                        return name
-            if told.text.startswith("The last run ended without notice"):
-                return told.text.rpartition(" in ")[2].split(", ")[0].rstrip(".")
+            elif told.text.startswith("The last run ended without notice"):
+                names = told.text.rpartition(" in ")[2].rstrip(".").split(", ")
+            for name in reversed(names):
+                if name in ("paused", "interrupted"):
+                    return ""
+                if name in (*MOMENTS, "sing", "photo", "fine", "not_understood"):
+                    return name
         return ""
 
     def until(self, condition: Callable[[], object], patience: float, what: str) -> float:
@@ -215,7 +216,8 @@ class Exhibition:
     def reach(self, moment: str) -> None:
         """Have the visit come to that moment, from wherever it is."""
         deadline, said = time.monotonic() + MOMENT_TIMEOUT, ""
-        self.publish("avatar.NAO.hall", {"visitor": {"x": 1.2, "y": 0.0, "height": 1.65}})
+        there = moment != "idle" or self.state != "idle"
+        self.publish("avatar.NAO.hall", {"visitor": {"x": 1.2, "y": 0.0, "height": 1.65} if there else None})
         if self.state == moment in ("offer", "any_question"):  # anew, or who has said nothing for 30 s is sent away
             self.say(SPOKEN[moment])
             self.until(lambda: self.state != moment, MOMENT_TIMEOUT, f"{moment} is left")
